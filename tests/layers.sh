@@ -60,7 +60,7 @@ for folder in src/cli examples bench web/wasm; do
 done
 
 system='unistd|fcntl|dirent|sched|spawn|poll|termios|malloc|windows|io|sys\/[a-z]*'
-for file in $(grep -lE "^ *# *include *<($system)\.h>" "$root"/src/*/*.c "$root"/src/*/*.h); do
+for file in $(grep -lE "^ *# *include *<($system)\.h>" $(find "$root/src" -name "*.[ch]")); do
   case "$file" in
     */src/base/platform_*.c | */src/base/child.c) ;;
     *) complain "${file#"$root"/}: what differs between systems stands in src/base/platform.h" ;;

@@ -11,7 +11,7 @@
 
 #include "base/alloc.h"
 #include "base/parallel.h"
-#include "mesh/measure.h"
+#include "mesh/measure/measure.h"
 #include "mesh/mesh.h"
 
 #include <stdlib.h>

@@ -1,15 +1,15 @@
 /* Distances from the scan are taken at the points spread over it. A vertex of the scan lies no
  * farther from the level than its point does, plus the way between them; vertices that could be the
  * farthest by that bound are asked themselves. Distances back are taken at points spread over the
- * level, half as many: its facets are few and flat. Facets of the level are cut (mesh/distance.c)
- * where they could hold a point farther than the farthest found. */
+ * level, half as many: its facets are few and flat. Facets of the level are cut
+ * (mesh/measure/distance.c) where they could hold a point farther than the farthest found. */
 #include "choice/gauge.h"
 
 #include "base/alloc.h"
 #include "base/math.h"
 #include "base/parallel.h"
 #include "base/sum.h"
-#include "mesh/ray.h"
+#include "mesh/index/ray.h"
 
 #include <stdlib.h>
 #include <string.h>

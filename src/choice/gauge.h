@@ -4,8 +4,8 @@
 
 #include "choice/fit.h"
 #include "choice/spread.h"
-#include "mesh/extent.h"
-#include "mesh/surface.h"
+#include "mesh/measure/extent.h"
+#include "mesh/measure/surface.h"
 
 /* A place where the body has two sides. */
 typedef struct scree_body_wall {

@@ -7,7 +7,7 @@
 
 #include "base/alloc.h"
 #include "base/radix.h"
-#include "mesh/measure.h"
+#include "mesh/measure/measure.h"
 #include "mesh/mesh.h"
 
 enum { AXIS_BITS = 10 };

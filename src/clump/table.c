@@ -2,7 +2,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
-#include "mesh/write.h"
+#include "mesh/io/write.h"
 #include "scree.h"
 
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "base/eigen.h"
 #include "base/sum.h"
-#include "mesh/measure.h"
+#include "mesh/measure/measure.h"
 #include "particle/mass.h"
 
 #include <stdlib.h>

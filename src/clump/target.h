@@ -4,7 +4,7 @@
 #ifndef SCREE_CLUMP_TARGET_H
 #define SCREE_CLUMP_TARGET_H
 
-#include "mesh/bvh.h"
+#include "mesh/index/bvh.h"
 #include "mesh/mesh.h"
 
 /* Moments of a solid, in this order: volume; x y z; moments of inertia about the axes, yy + zz,

@@ -17,9 +17,9 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/number.h"
-#include "mesh/text.h"
+#include "mesh/io/text.h"
+#include "mesh/io/write.h"
 #include "mesh/weld.h"
-#include "mesh/write.h"
 #include "particle/columns.h"
 #include "particle/particle.h"
 

@@ -2,7 +2,7 @@
 #ifndef SCREE_PARTICLE_COLUMNS_H
 #define SCREE_PARTICLE_COLUMNS_H
 
-#include "mesh/text.h"
+#include "mesh/io/text.h"
 
 enum { SCREE_MOST_COLUMNS = 64 };
 

@@ -15,7 +15,7 @@
 
 #include "base/alloc.h"
 #include "mesh/mesh.h"
-#include "mesh/sharp.h"
+#include "mesh/repair/sharp.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-/* Mesh walls: any soup mended (mesh/soup.h), and on which side of what is closed the bodies are.
+/* Mesh walls: any soup mended (mesh/repair/soup.h), and on which side of what is closed the bodies
+ * are.
  *
  * Closed pieces divide space into regions, each within its outermost pieces. An inlet marks the
  * region that most of it lies in: bodies are there. Between a region with bodies and one without,

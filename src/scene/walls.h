@@ -2,7 +2,7 @@
 #ifndef SCREE_SCENE_WALLS_H
 #define SCREE_SCENE_WALLS_H
 
-#include "mesh/soup.h"
+#include "mesh/repair/soup.h"
 #include "scene/scene.h"
 
 typedef struct scree_scene_walls {

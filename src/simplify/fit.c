@@ -9,7 +9,7 @@
  * which brings the volume back. If in the end the distance, measured at other places of the scan,
  * is no less, or the volume could not be brought back, the level stays as it was. */
 #include "base/parallel.h"
-#include "mesh/closest.h"
+#include "mesh/index/closest.h"
 #include "mesh/mesh.h"
 #include "simplify/cost/deviation.h"
 #include "simplify/curve.h"

@@ -7,7 +7,7 @@
 
 #include "base/alloc.h"
 #include "mesh/adjacency.h"
-#include "mesh/measure.h"
+#include "mesh/measure/measure.h"
 #include "mesh/mesh.h"
 #include "simplify/fan.h"
 

@@ -1,7 +1,7 @@
 /* What the child process that reads COLLADA and the like hands back, as one that a hostile file has
  * taken over would. */
 #include "fuzz/reading.h"
-#include "mesh/read.h"
+#include "mesh/io/read.h"
 
 enum { MOST_BYTES = 1 << 16 };
 

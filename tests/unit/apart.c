@@ -1,9 +1,9 @@
 /* The quick proof that a surface nowhere meets itself, against the search for all meetings. */
-#include "mesh/apart.h"
+#include "mesh/index/apart.h"
 
 #include "base/alloc.h"
 
-#include "mesh/intersect.h"
+#include "mesh/index/intersect.h"
 #include "support/check.h"
 #include "support/shapes.h"
 

@@ -3,7 +3,7 @@
 #include "support/check.h"
 #include "support/shapes.h"
 
-#include "mesh/bvh.h"
+#include "mesh/index/bvh.h"
 #include "mesh/mesh.h"
 
 static scree_distance distance_of(const scree_mesh *a, const scree_mesh *b,

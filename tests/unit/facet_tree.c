@@ -5,7 +5,7 @@
 
 #include "base/alloc.h"
 #include "base/parallel.h"
-#include "mesh/facet_tree.h"
+#include "mesh/index/facet_tree.h"
 
 /* A disc of slivers round one vertex: second boxes and cones. */
 static scree_mesh make_disc(uint32_t count) {

@@ -3,7 +3,7 @@
  * own. */
 #include "choice/recommend.h"
 #include "choice/spread.h"
-#include "mesh/ray.h"
+#include "mesh/index/ray.h"
 #include "support/check.h"
 #include "support/shapes.h"
 

@@ -1,7 +1,7 @@
 /* A fitted level is nearer to the scan, by distances found slowly from all triangles, and as sound
  * as before: same triangles, volume, no crossing, fold or sliver that was not there. */
 #include "base/vec.h"
-#include "mesh/closest.h"
+#include "mesh/index/closest.h"
 #include "support/alloc_fail.h"
 #include "support/curve.h"
 #include "support/shapes.h"

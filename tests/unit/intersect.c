@@ -1,7 +1,7 @@
 /* Triangle-triangle classification against an oracle that intersects small integer triangles in
  * floating point with a tolerance far below the smallest distance such triangles can have, then the
  * same pairs under exact integer affine maps that blow the filters. */
-#include "mesh/intersect.h"
+#include "mesh/index/intersect.h"
 #include "base/rng.h"
 #include "base/vec.h"
 #include "support/check.h"

@@ -2,7 +2,7 @@
  * defeat grids and boxes. */
 #include "base/alloc.h"
 #include "base/rng.h"
-#include "mesh/intersect.h"
+#include "mesh/index/intersect.h"
 #include "mesh/mesh.h"
 #include "support/check.h"
 

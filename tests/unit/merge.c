@@ -1,5 +1,5 @@
 /* Shells that overlap become one surface: it passes the check, and its volume is that of the union,
- * which check counts in another way (mesh/union_volume.c). */
+ * which check counts in another way (mesh/measure/union_volume.c). */
 #include "base/rng.h"
 #include "base/vec.h"
 #include "support/alloc_fail.h"

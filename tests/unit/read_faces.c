@@ -1,7 +1,7 @@
 /* PLY, OBJ and OFF: every spelling of one cube, and the sentences for broken ones. */
 #include "base/alloc.h"
 #include "base/rng.h"
-#include "mesh/polygon.h"
+#include "mesh/io/polygon.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 

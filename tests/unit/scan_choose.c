@@ -6,7 +6,7 @@
  * with the reasons. */
 #include "base/alloc.h"
 #include "base/vec.h"
-#include "mesh/intersect.h"
+#include "mesh/index/intersect.h"
 #include "support/check.h"
 
 typedef struct expectation {

@@ -1,7 +1,7 @@
 /* Decimation against slow answers: the order of collapses, what one costs and where its vertex
  * goes, the deviation from the scan, and each guard. The oracles know a list of triangles and
  * nothing else; everything is computed from it anew, by other formulas than the engine's. */
-#include "mesh/intersect.h"
+#include "mesh/index/intersect.h"
 #include "simplify/decimate.h"
 #include "simplify/tuning.h"
 #include "support/check.h"

@@ -3,7 +3,7 @@
  * undone: noise of its corners, facets turned over, edges split on one side, slivers, facets twice,
  * sheets with two sides of other facets; what is added to it stays a piece of its own: baffles,
  * boxes that touch. Wherever points are asked, a mended solid is where it was. */
-#include "mesh/soup.h"
+#include "mesh/repair/soup.h"
 #include "base/vec.h"
 #include "mesh/adjacency.h"
 #include "support/alloc_fail.h"

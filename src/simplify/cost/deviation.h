@@ -8,7 +8,7 @@
 #ifndef SCREE_SIMPLIFY_DEVIATION_H
 #define SCREE_SIMPLIFY_DEVIATION_H
 
-#include "mesh/extent.h"
+#include "mesh/measure/extent.h"
 #include "simplify/fan.h"
 
 typedef struct scree_samples {

@@ -1,7 +1,7 @@
 #include "simplify/guard/apart.h"
 
 #include "base/alloc.h"
-#include "mesh/intersect.h"
+#include "mesh/index/intersect.h"
 
 #include <string.h>
 

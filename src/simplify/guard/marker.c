@@ -1,7 +1,7 @@
 #include "simplify/guard/marker.h"
 
 #include "base/alloc.h"
-#include "mesh/solid_angle.h"
+#include "mesh/measure/solid_angle.h"
 
 scree_status scree_markers_find(const scree_halfmesh *s, scree_markers *markers,
                                 scree_error *error) {

@@ -1,0 +1,45 @@
+/* A tree of boxes over the triangles of a mesh, in double precision: nearest points, overlaps of
+ * boxes, crossings of rays. Constant once built, so any number of threads may query it. The tree
+ * and all answers are the same bits for every number of threads. */
+#ifndef SCREE_MESH_INDEX_BVH_H
+#define SCREE_MESH_INDEX_BVH_H
+
+#include "base/error.h"
+#include "mesh/index/closest.h"
+
+/* Children of an inner node (count 0) are nodes first and first + 1; a leaf holds the triangles
+ * first to first + count - 1 in tree order. */
+typedef struct scree_bvh_node {
+  double low[3], high[3];
+  uint32_t first, count;
+} scree_bvh_node;
+
+typedef struct scree_bvh {
+  scree_bvh_node *nodes; /* nodes[0] is the root; none for an empty mesh */
+  size_t node_count;
+  double *corners; /* 9 per triangle, in tree order */
+  uint32_t *order; /* tree order -> triangle of the mesh; neighbours in it are near in space */
+  size_t triangle_count;
+} scree_bvh;
+
+/* Copies the mesh's corners, so the mesh may go. Needs a verified mesh. O(N log N), parallel; about
+ * 125 bytes per triangle stay, as many more are used while building. */
+scree_status scree_bvh_build(const scree_mesh *mesh, scree_bvh *bvh, scree_error *error);
+void scree_bvh_free(scree_bvh *bvh);
+
+typedef struct scree_bvh_hit {
+  double distance2;
+  vec3 point;
+  uint32_t index; /* in tree order; order[index] is the triangle of the mesh */
+} scree_bvh_hit;
+
+/* The point of the surface nearest to p, if nearer than hit->distance2, which the caller sets
+ * (INFINITY, or from a point known to be near, which saves time); else hit is left alone. Equally
+ * near triangles: one of them, depending on the bound. */
+bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit);
+
+/* The same for many points at once: those of the set that have a nearer triangle get it. Saves most
+ * where the points lie as near to each other as the triangles are large. */
+void scree_bvh_closest_block(const scree_bvh *bvh, scree_point_block *points);
+
+#endif

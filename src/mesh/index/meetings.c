@@ -1,0 +1,267 @@
+/* All facets of a mesh that meet where they should not: a tree of boxes (mesh/index/facet_tree.h)
+ * traversed against itself, the exact test (mesh/index/intersect.h) at its leaves.
+ *
+ * The tree and the cutting of the work depend on the mesh alone, and pairs are sorted at the end:
+ * the result is the same for any number of threads. */
+#include "base/array.h"
+#include "base/parallel.h"
+#include "mesh/index/facet_tree.h"
+#include "mesh/index/intersect.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  WORK_ITEMS = 2048, /* node pairs handed to the threads */
+  TICK_ITEMS = 64,   /* of these per call of the progress */
+  FACETS_PER_ITEM = 256,
+};
+
+typedef struct item {
+  uint32_t a, b;
+} item;
+
+typedef struct search {
+  const scree_facet_tree *tree;
+  const bool *settled; /* by facet: of two such it is known that they do not meet; NULL: of none */
+  bool *calm;          /* by node: all its facets are settled; NULL: none is */
+  item *work;
+  scree_meetings *found; /* per work item */
+  size_t limit;
+  atomic_size_t total;
+  atomic_bool failed;
+} search;
+
+static bool test_pair(search *s, uint32_t a, uint32_t b, scree_meetings *out) {
+  const scree_mesh *mesh = s->tree->mesh;
+  const uint32_t *t = mesh->triangles + 3 * (size_t)a, *u = mesh->triangles + 3 * (size_t)b;
+  if (s->settled && s->settled[a] && s->settled[b]) return true;
+  scree_meet meet = scree_triangles_meet(mesh->positions, t, u);
+  if (meet == SCREE_MEET_NOT) return true;
+  if (atomic_fetch_add(&s->total, 1) >= s->limit) return true;
+  uint32_t first = a < b ? a : b, second = a < b ? b : a;
+  return SCREE_PUSH(out, (scree_meeting){first, second, meet});
+}
+
+/* Facets of a leaf with their boxes. */
+typedef struct crowd {
+  uint32_t facet[SCREE_LEAF_FACETS];
+  scree_box box[SCREE_LEAF_FACETS];
+  int count;
+} crowd;
+
+/* Those of the leaf that are not apart from the box. */
+static void list_near(const scree_facet_tree *t, const scree_facet_node *leaf, const scree_box *box,
+                      crowd *near) {
+  near->count = 0;
+  for (uint32_t i = leaf->begin; i < leaf->begin + leaf->count; i++) {
+    near->facet[near->count] = t->order[i];
+    near->box[near->count] = scree_facet_box(t->mesh, t->order[i]);
+    near->count += scree_box_meets(&near->box[near->count], box);
+  }
+}
+
+static bool test_leaves(search *s, const scree_facet_node *a, const scree_facet_node *b,
+                        scree_meetings *out) {
+  crowd of_a, of_b;
+  list_near(s->tree, a, &b->bounds, &of_a);
+  if (of_a.count == 0) return true;
+  list_near(s->tree, b, &a->bounds, &of_b);
+  for (int i = 0; i < of_a.count; i++)
+    for (int j = a == b ? i + 1 : 0; j < of_b.count; j++)
+      if (scree_box_meets(&of_a.box[i], &of_b.box[j]) &&
+          !test_pair(s, of_a.facet[i], of_b.facet[j], out))
+        return false;
+  return true;
+}
+
+/* The pairs of nodes that (a, b) falls into; a == b is a node against itself. */
+static int divide(const scree_facet_tree *t, item pair, item parts[3]) {
+  const scree_facet_node *a = &t->nodes.items[pair.a], *b = &t->nodes.items[pair.b];
+  if (pair.a == pair.b) {
+    parts[0] = (item){pair.a + 1, pair.a + 1};
+    parts[1] = (item){a->right, a->right};
+    parts[2] = (item){pair.a + 1, a->right};
+    return 3;
+  }
+  if (scree_facet_node_is_leaf(b) || (!scree_facet_node_is_leaf(a) && a->count >= b->count)) {
+    parts[0] = (item){pair.a + 1, pair.b};
+    parts[1] = (item){a->right, pair.b};
+  } else {
+    parts[0] = (item){pair.a, pair.b + 1};
+    parts[1] = (item){pair.a, b->right};
+  }
+  return 2;
+}
+
+/* Whether nothing is to be found between the two nodes. */
+static bool apart(const search *s, item pair) {
+  const scree_facet_node *nodes = s->tree->nodes.items;
+  if (s->calm && s->calm[pair.a] && s->calm[pair.b]) return true;
+  return pair.a != pair.b && scree_facet_nodes_apart(s->tree, &nodes[pair.a], &nodes[pair.b]);
+}
+
+static bool both_leaves(const scree_facet_tree *t, item pair) {
+  return scree_facet_node_is_leaf(&t->nodes.items[pair.a]) &&
+         scree_facet_node_is_leaf(&t->nodes.items[pair.b]);
+}
+
+static bool traverse(search *s, item start, scree_meetings *out) {
+  const scree_facet_tree *t = s->tree;
+  /* each step replaces a pair by at most three of smaller nodes; depth is below 32 + 32 * 8 */
+  item stack[2048];
+  int depth = 0;
+  stack[depth++] = start;
+  while (depth > 0) {
+    item pair = stack[--depth];
+    if (apart(s, pair)) continue;
+    if (both_leaves(t, pair)) {
+      if (atomic_load_explicit(&s->total, memory_order_relaxed) > s->limit) return true;
+      if (!test_leaves(s, &t->nodes.items[pair.a], &t->nodes.items[pair.b], out)) return false;
+      continue;
+    }
+    depth += divide(t, pair, stack + depth);
+  }
+  return true;
+}
+
+static void traverse_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block;
+  (void)worker;
+  search *s = context;
+  for (size_t i = begin; i < end; i++)
+    if (!traverse(s, s->work[i], &s->found[i])) atomic_store(&s->failed, true);
+}
+
+/* Small meshes are not worth cutting finely. */
+static size_t work_items(const scree_facet_tree *t) {
+  size_t items = t->mesh->triangle_count / FACETS_PER_ITEM;
+  return items < 4 ? 4 : items < WORK_ITEMS ? items : WORK_ITEMS;
+}
+
+/* Divides the root's pair breadth first until there are enough pairs for the threads. */
+static size_t spread_work(const search *s, item *work, size_t most) {
+  const scree_facet_tree *t = s->tree;
+  size_t first = 0, count = 1;
+  work[0] = (item){0, 0};
+  /* pairs before `first` are done being divided: both leaves */
+  while (first < count && count + 2 < most) {
+    item pair = work[first], parts[3];
+    if (apart(s, pair)) {
+      work[first] = work[--count];
+    } else if (both_leaves(t, pair)) {
+      first++;
+    } else {
+      int part_count = divide(t, pair, parts);
+      memmove(work + first, work + first + 1, (count - first - 1) * sizeof *work);
+      count--;
+      for (int i = 0; i < part_count; i++) work[count++] = parts[i];
+    }
+  }
+  return count;
+}
+
+static scree_status run(search *s, size_t work_count, const scree_progress *progress,
+                        scree_error *error) {
+  scree_ticker ticker = {.progress = progress};
+  item *all = s->work;
+  scree_meetings *lists = s->found;
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; i < work_count && status == SCREE_OK; i += TICK_ITEMS) {
+    s->work = all + i;
+    s->found = lists + i;
+    scree_parallel_for(work_count - i < TICK_ITEMS ? work_count - i : TICK_ITEMS, 1, traverse_block,
+                       s);
+    double done = (double)(i + TICK_ITEMS) / (double)work_count;
+    if (!scree_tick(&ticker, "self-intersections", done < 1 ? done : 1))
+      status = scree_fail(error, SCREE_CANCELLED, "cancelled while looking for self-intersections");
+    if (atomic_load(&s->failed))
+      status = scree_fail_memory(error, sizeof(scree_meeting), "self-intersections");
+  }
+  s->work = all;
+  s->found = lists;
+  return status;
+}
+
+static int compare_meetings(const void *a, const void *b) {
+  const scree_meeting *x = a, *y = b;
+  if (x->first != y->first) return x->first < y->first ? -1 : 1;
+  return (x->second > y->second) - (x->second < y->second);
+}
+
+static scree_status gather(search *s, size_t work_count, scree_meetings *found,
+                           scree_error *error) {
+  size_t total = atomic_load(&s->total);
+  if (total > s->limit) {
+    *found = (scree_meetings){.count = s->limit, .truncated = true};
+    return SCREE_OK;
+  }
+  scree_meetings all = {.capacity = total};
+  SCREE_ALLOC_OR(all.items, total, error, out_of_memory);
+  for (size_t i = 0; i < work_count; i++) {
+    if (s->found[i].count)
+      memcpy(all.items + all.count, s->found[i].items, s->found[i].count * sizeof *all.items);
+    all.count += s->found[i].count;
+  }
+  qsort(all.items, all.count, sizeof *all.items, compare_meetings);
+  *found = all;
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* Children come after their node. */
+static void mark_calm(search *s) {
+  for (size_t i = s->tree->nodes.count; i-- > 0;) {
+    const scree_facet_node *n = &s->tree->nodes.items[i];
+    s->calm[i] = scree_facet_node_is_leaf(n) || (s->calm[i + 1] && s->calm[n->right]);
+    for (uint32_t j = n->begin; scree_facet_node_is_leaf(n) && j < n->begin + n->count; j++)
+      s->calm[i] &= s->settled[s->tree->order[j]];
+  }
+}
+
+scree_status scree_facet_meetings(const scree_facet_tree *tree, size_t limit,
+                                  const scree_progress *progress, scree_meetings *found,
+                                  scree_error *error) {
+  return scree_facet_meetings_new(tree, NULL, limit, progress, found, error);
+}
+
+scree_status scree_facet_meetings_new(const scree_facet_tree *tree, const bool *settled,
+                                      size_t limit, const scree_progress *progress,
+                                      scree_meetings *found, scree_error *error) {
+  search s = {.tree = tree, .settled = settled, .limit = limit};
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  size_t work_count = 0, most = work_items(tree);
+  if (settled) {
+    SCREE_ALLOC_OR(s.calm, tree->nodes.count, error, done);
+    mark_calm(&s);
+  }
+  SCREE_ALLOC_OR(s.work, most, error, done);
+  SCREE_ALLOC_OR(s.found, most, error, done);
+  memset(s.found, 0, most * sizeof *s.found);
+  work_count = spread_work(&s, s.work, most);
+  status = run(&s, work_count, progress, error);
+  if (status == SCREE_OK) status = gather(&s, work_count, found, error);
+done:
+  for (size_t i = 0; i < work_count; i++) scree_free(s.found[i].items);
+  scree_free(s.found);
+  scree_free(s.work);
+  scree_free(s.calm);
+  return status;
+}
+
+scree_status scree_mesh_meetings(const scree_mesh *mesh, size_t limit,
+                                 const scree_progress *progress, scree_meetings *found,
+                                 scree_error *error) {
+  scree_facet_tree tree;
+  if (mesh->triangle_count == 0) {
+    *found = (scree_meetings){0};
+    return SCREE_OK;
+  }
+  scree_status status = scree_facet_tree_build(mesh, &tree, error);
+  if (status != SCREE_OK) return status;
+  status = scree_facet_meetings(&tree, limit, progress, found, error);
+  scree_facet_tree_free(&tree);
+  return status;
+}

@@ -1,0 +1,117 @@
+/* Quickhull through the reentrant library (Barber, Dobkin, Huhdanpaa 1996, "The quickhull algorithm
+ * for convex hulls"). Qt triangulates merged facets. The volume is summed by us from tetrahedra to
+ * the mean of the corners, all positive for a convex body, with compensation. */
+#include "mesh/measure/hull.h"
+
+#include "base/alloc.h"
+#include "base/platform.h"
+#include "base/sum.h"
+
+#include <libqhull_r/qhull_ra.h>
+
+/* qhull fails on flat input by design, and very rarely on wide merges, which Q12 allows. */
+static const char *const commands[] = {"qhull Qt Pp", "qhull Qt Q12 Pp"};
+
+static bool run_qhull(qhT *qh, const vec3 *points, size_t point_count, const char *command,
+                      FILE *sink) {
+  char words[64];
+  snprintf(words, sizeof words, "%s", command);
+  qh_zero(qh, sink);
+  /* with ismalloc False the coordinates are only read */
+  return qh_new_qhull(qh, 3, (int)point_count, (coordT *)(uintptr_t)points, False, words, sink,
+                      sink) == 0;
+}
+
+static void free_qhull(qhT *qh) {
+  int curlong, totlong;
+  qh_freeqhull(qh, !qh_ALL);
+  qh_memfreeshort(qh, &curlong, &totlong);
+}
+
+/* qhull.h's loops, spelled out: its macros do not pass our warnings. */
+static scree_status copy_corners(qhT *qh, scree_hull *hull, scree_error *error) {
+  size_t corner = 0, triangle = 0;
+  for (vertexT *v = qh->vertex_list; v && v->next; v = v->next) hull->point_count++;
+  for (facetT *f = qh->facet_list; f && f->next; f = f->next) hull->triangle_count++;
+  SCREE_ALLOC_OR(hull->points, hull->point_count, error, out_of_memory);
+  SCREE_ALLOC_OR(hull->triangles, 3 * hull->triangle_count, error, out_of_memory);
+  for (vertexT *v = qh->vertex_list; v && v->next; v = v->next) {
+    v->visitid = (unsigned int)corner;
+    hull->points[corner++] = vec3_load(v->point);
+  }
+  for (facetT *f = qh->facet_list; f && f->next; f = f->next) {
+    uint32_t *out = hull->triangles + 3 * triangle++;
+    for (int k = 0; k < 3; k++) out[k] = ((vertexT *)f->vertices->e[k].p)->visitid;
+  }
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* Turns every triangle outward, and sums. */
+static void measure_hull(scree_hull *hull) {
+  scree_sum area = {0}, volume = {0};
+  vec3 inside = {0, 0, 0};
+  for (size_t i = 0; i < hull->point_count; i++)
+    inside = vec3_mad(inside, hull->points[i], 1 / (double)hull->point_count);
+  for (size_t t = 0; t < hull->triangle_count; t++) {
+    uint32_t *c = hull->triangles + 3 * t;
+    vec3 p = hull->points[c[0]];
+    vec3 normal = vec3_triangle_normal(p, hull->points[c[1]], hull->points[c[2]]);
+    double six_volume = vec3_dot(vec3_sub(p, inside), normal);
+    if (six_volume < 0) {
+      uint32_t second = c[1];
+      c[1] = c[2];
+      c[2] = second;
+    }
+    scree_sum_add(&area, vec3_norm(normal) / 2);
+    scree_sum_add(&volume, fabs(six_volume) / 6);
+  }
+  hull->area = scree_sum_value(area);
+  hull->volume = scree_sum_value(volume);
+}
+
+static scree_status keep_all(const vec3 *points, size_t point_count, scree_hull *hull,
+                             scree_error *error) {
+  SCREE_ALLOC_OR(hull->points, point_count, error, out_of_memory);
+  for (size_t i = 0; i < point_count; i++) hull->points[i] = points[i];
+  hull->point_count = point_count;
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_hull_build(const vec3 *points, size_t point_count, scree_hull *hull,
+                              scree_error *error) {
+  scree_hull made = {0};
+  if (point_count > INT32_MAX)
+    return scree_fail(error, SCREE_LIMIT, "%zu points, above the limit of %d for a convex hull",
+                      point_count, INT32_MAX);
+  FILE *sink = scree_null_open();
+  if (!sink) return scree_fail(error, SCREE_IO, "cannot open the null device");
+  bool done = point_count < 4;
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; i < sizeof commands / sizeof *commands && !done; i++) {
+    qhT qh;
+    done = run_qhull(&qh, points, point_count, commands[i], sink);
+    if (done) status = copy_corners(&qh, &made, error);
+    free_qhull(&qh);
+  }
+  fclose(sink);
+  if (status == SCREE_OK && made.triangle_count == 0)
+    status = keep_all(points, point_count, &made, error);
+  if (status != SCREE_OK) {
+    scree_hull_free(&made);
+    return status;
+  }
+  measure_hull(&made);
+  *hull = made;
+  return SCREE_OK;
+}
+
+void scree_hull_free(scree_hull *hull) {
+  if (!hull) return;
+  scree_free(hull->points);
+  scree_free(hull->triangles);
+  *hull = (scree_hull){0};
+}

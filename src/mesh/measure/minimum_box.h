@@ -1,0 +1,19 @@
+/* A box of least volume around points. */
+#ifndef SCREE_MESH_MEASURE_MINIMUM_BOX_H
+#define SCREE_MESH_MEASURE_MINIMUM_BOX_H
+
+#include "mesh/measure/hull.h"
+
+typedef struct scree_minimum_box {
+  mat3 axes; /* rows: unit directions of the sides, right-handed */
+  vec3 size; /* along the rows, descending */
+  vec3 center;
+} scree_minimum_box;
+
+/* Fits a box around a hull (see the top of oriented_box.c for how near to the least it comes); axes
+ * are three more directions to try, such as the principal ones. Never larger than the axis-aligned
+ * box, or the box along axes. */
+scree_status scree_minimum_box_fit(const scree_hull *hull, const mat3 *axes, scree_minimum_box *box,
+                                   scree_error *error);
+
+#endif

@@ -1,0 +1,343 @@
+/* What is wrong with a surface: topology (mesh/topology.c), meetings of facets
+ * (mesh/index/meetings.c) and the nesting of shells (mesh/repair/shells.c) put together, and a
+ * verdict.
+ *
+ * The volume of a solid is that where the winding number is positive. Where no facets meet, each
+ * shell bounds one region against one other: outward shells in empty space add their volume, inward
+ * ones in material take theirs away, and shells in material that are no cavities change nothing.
+ * Where facets meet it is counted piece by piece (mesh/measure/union_volume.c). Open or inside-out
+ * shells leave the volume unknown. */
+#include "mesh/repair/check.h"
+
+#include "base/alloc.h"
+#include "base/ending.h"
+#include "base/parallel.h"
+#include "base/sum.h"
+#include "mesh/adjacency.h"
+#include "mesh/index/apart.h"
+#include "mesh/index/intersect.h"
+#include "mesh/measure/measure.h"
+#include "mesh/measure/union_volume.h"
+#include "mesh/mesh.h"
+#include "mesh/repair/sharp.h"
+#include "mesh/repair/shells.h"
+#include "mesh/topology.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* What reading and welding accept, m; far within the range of the exact predicates. */
+#define LARGEST_COORDINATE 1e30
+
+/* Fewer facets are looked at as they are. */
+enum { PROOF_FACETS = 2000 };
+
+static const struct {
+  const char *name, *one, *several;
+  bool grave;
+} defects[] = {
+#define DEFECT_ROW(name, key, grave, one, several) {key, one, several, grave},
+    SCREE_DEFECT_LIST(DEFECT_ROW)
+#undef DEFECT_ROW
+};
+
+const char *scree_defect_name(scree_defect defect) {
+  return (unsigned)defect < SCREE_DEFECT_COUNT ? defects[defect].name : "unknown";
+}
+
+const char *scree_defect_text(scree_defect defect, size_t count) {
+  if ((unsigned)defect >= SCREE_DEFECT_COUNT) return "unknown";
+  return count == 1 ? defects[defect].one : defects[defect].several;
+}
+
+bool scree_defect_is_grave(scree_defect defect) {
+  return (unsigned)defect < SCREE_DEFECT_COUNT && defects[defect].grave;
+}
+
+bool scree_defect_is_counted(const scree_check *check, scree_defect defect) {
+  return !check->too_many_pairs || defect < SCREE_DEFECT_INSIDE_OUT_SHELL ||
+         defect > SCREE_DEFECT_EXTRA_BODY;
+}
+
+scree_check_options scree_default_check_options(void) {
+  return (scree_check_options){.intersections = true};
+}
+
+/* ---- Counting ---- */
+
+static scree_status verify_indices(const scree_mesh *mesh, scree_error *error) {
+  if (mesh->triangle_count > (UINT32_MAX - 1) / 3)
+    return scree_fail(error, SCREE_LIMIT, "the mesh has %zu triangles; the limit is %u",
+                      mesh->triangle_count, (UINT32_MAX - 1) / 3);
+  size_t stray = scree_mesh_stray_corner(mesh);
+  if (stray != SIZE_MAX)
+    return scree_fail(error, SCREE_BAD_MESH,
+                      "triangle %zu names vertex %u, but there are only %zu vertices", stray / 3,
+                      mesh->triangles[stray], mesh->vertex_count);
+  return SCREE_OK;
+}
+
+bool scree_vertex_is_bad(const double *position) {
+  for (int k = 0; k < 3; k++)
+    if (!(fabs(position[k]) <= LARGEST_COORDINATE)) return true;
+  return false;
+}
+
+static void take_topology(const scree_topology *t, scree_check *check) {
+  size_t *defect = check->defects;
+  defect[SCREE_DEFECT_DEGENERATE_FACET] = t->degenerate_facet_count;
+  defect[SCREE_DEFECT_DUPLICATE_FACET] = t->duplicate_facet_count;
+  defect[SCREE_DEFECT_BOUNDARY_EDGE] = t->boundary_edge_count;
+  defect[SCREE_DEFECT_HOLE] = t->boundary_count;
+  defect[SCREE_DEFECT_NON_MANIFOLD_EDGE] = t->non_manifold_edge_count;
+  defect[SCREE_DEFECT_NON_MANIFOLD_VERTEX] = t->non_manifold_vertex_count;
+  defect[SCREE_DEFECT_INCONSISTENT_EDGE] = t->inconsistent_edge_count;
+  defect[SCREE_DEFECT_UNUSED_VERTEX] = t->unused_vertex_count;
+}
+
+static bool all_closed(const scree_shells *shells) {
+  for (size_t i = 0; i < shells->count; i++)
+    if (!shells->items[i].closed) return false;
+  return true;
+}
+
+static scree_status count_meetings(const scree_facet_tree *tree, const scree_adjacency *adjacency,
+                                   const scree_shells *shells, const scree_progress *progress,
+                                   scree_shell_pairs *pairs, scree_check *check,
+                                   scree_error *error) {
+  scree_meetings found;
+  scree_status status = scree_facet_meetings(tree, SCREE_PAIR_LIMIT, progress, &found, error);
+  if (status != SCREE_OK) return status;
+  check->intersections_known = true;
+  if (found.truncated) {
+    check->too_many_pairs = true;
+    return SCREE_OK;
+  }
+  for (size_t i = 0; i < found.count; i++) {
+    scree_meet meet = found.items[i].meet;
+    check->defects[meet == SCREE_MEET_CROSS   ? SCREE_DEFECT_CROSSING_PAIR
+                   : meet == SCREE_MEET_TOUCH ? SCREE_DEFECT_TOUCHING_PAIR
+                                              : SCREE_DEFECT_OVERLAPPING_PAIR]++;
+  }
+  status = scree_shell_pairs_find(shells, &found, pairs, error);
+  check->defects[SCREE_DEFECT_OVERLAPPING_SHELLS] = pairs->count;
+  if (status == SCREE_OK && found.count && all_closed(shells))
+    status =
+        scree_union_volume(tree, adjacency, &found, &check->volume, &check->volume_known, error);
+  scree_free(found.items);
+  return status;
+}
+
+/* An inward shell that meets others may be a pocket in the wall of one: where the union's volume is
+ * known, no winding number is negative, and so it is. */
+static scree_shell_kind kind_in(const scree_check *check, const scree_shell *shell) {
+  scree_shell_kind kind = scree_shell_kind_of(shell);
+  return kind == SCREE_SHELL_INSIDE_OUT && shell->met && check->volume_known ? SCREE_SHELL_CAVITY
+                                                                             : kind;
+}
+
+static void count_kinds(const scree_shells *shells, scree_check *check) {
+  size_t kinds[SCREE_SHELL_INSIDE_OUT + 1] = {0};
+  scree_sum volume = {0};
+  for (size_t i = 0; i < shells->count; i++) {
+    scree_shell_kind kind = kind_in(check, &shells->items[i]);
+    kinds[kind]++;
+    if (kind == SCREE_SHELL_BODY || kind == SCREE_SHELL_CAVITY)
+      scree_sum_add(&volume, shells->items[i].volume);
+  }
+  size_t *defect = check->defects, bodies = kinds[SCREE_SHELL_BODY];
+  defect[SCREE_DEFECT_INSIDE_OUT_SHELL] = kinds[SCREE_SHELL_INSIDE_OUT];
+  defect[SCREE_DEFECT_NESTED_SHELL] = kinds[SCREE_SHELL_NESTED];
+  defect[SCREE_DEFECT_CAVITY] = kinds[SCREE_SHELL_CAVITY];
+  defect[SCREE_DEFECT_EXTRA_BODY] = bodies > 1 ? bodies - 1 : 0;
+  bool met = defect[SCREE_DEFECT_CROSSING_PAIR] || defect[SCREE_DEFECT_TOUCHING_PAIR] ||
+             defect[SCREE_DEFECT_OVERLAPPING_PAIR];
+  if (!met) {
+    check->volume_known = check->intersections_known && shells->count && !kinds[SCREE_SHELL_OPEN];
+    check->volume = scree_sum_value(volume);
+  }
+  if (kinds[SCREE_SHELL_INSIDE_OUT]) check->volume_known = false;
+  if (!check->volume_known) check->volume = 0;
+}
+
+/* Walks over the same surface, beside each other: shells, sharp edges, the parts of the topology.
+ */
+enum { WALKS = 2 + SCREE_TOPOLOGY_PARTS };
+typedef struct connection {
+  const scree_mesh *mesh;
+  const scree_adjacency *adjacency;
+  scree_topology topology;
+  scree_shells shells;
+  size_t sharp_count;
+  scree_status status[WALKS];
+  scree_error error[WALKS];
+} connection;
+
+static void connect(void *context, size_t begin, size_t end, size_t walk, int worker) {
+  (void)begin, (void)end, (void)worker;
+  connection *c = context;
+  c->status[walk] = SCREE_OK;
+  if (walk == 0)
+    c->status[walk] = scree_shells_find(c->mesh, c->adjacency, &c->shells, &c->error[walk]);
+  else if (walk == 1)
+    c->sharp_count = scree_sharp_edges(c->mesh, c->adjacency, NULL);
+  else
+    c->status[walk] =
+        scree_topology_count(c->mesh, c->adjacency, walk - 2, &c->topology, &c->error[walk]);
+}
+
+/* Topology and shells. */
+static scree_status find_connection(const scree_mesh *mesh, const scree_adjacency *adjacency,
+                                    scree_check *check, scree_shells *shells, scree_error *error) {
+  connection c = {.mesh = mesh, .adjacency = adjacency};
+  scree_parallel_for(WALKS, 1, connect, &c);
+  scree_status status = SCREE_OK;
+  for (int walk = 0; walk < WALKS && status == SCREE_OK; walk++) {
+    status = c.status[walk];
+    if (status != SCREE_OK && error) *error = c.error[walk];
+  }
+  if (status == SCREE_OK)
+    status = scree_topology_finish(mesh, adjacency, false, &c.topology, error);
+  if (status != SCREE_OK) {
+    scree_shells_free(&c.shells);
+    return status;
+  }
+  take_topology(&c.topology, check);
+  check->defects[SCREE_DEFECT_SHARP_EDGE] = c.sharp_count;
+  *shells = c.shells;
+  return SCREE_OK;
+}
+
+/* The facets at every vertex hang together. */
+static bool fans_are_whole(const scree_check *check) {
+  return !check->defects[SCREE_DEFECT_NON_MANIFOLD_VERTEX] &&
+         !check->defects[SCREE_DEFECT_DEGENERATE_FACET];
+}
+
+static scree_status examine(const scree_mesh *mesh, const scree_check_options *options,
+                            const scree_progress *progress, scree_check *check,
+                            scree_error *error) {
+  scree_adjacency adjacency = {0};
+  scree_shells shells = {0};
+  scree_shell_pairs pairs = {0};
+  scree_facet_tree tree = {0};
+  scree_status status = scree_adjacency_build(mesh, &adjacency, error);
+  if (status != SCREE_OK) return status;
+  status = find_connection(mesh, &adjacency, check, &shells, error);
+  check->shell_count = shells.count;
+  if (status != SCREE_OK || mesh->triangle_count == 0) goto done;
+  bool clear = false; /* the tree is dear: a clean scan of one shell does without */
+  if (status == SCREE_OK && options->intersections && shells.count == 1 &&
+      mesh->triangle_count >= PROOF_FACETS)
+    status = scree_facets_apart(mesh, fans_are_whole(check) ? &adjacency : NULL, &clear, error);
+  check->intersections_known = clear;
+  if (status == SCREE_OK && ((options->intersections && !clear) || shells.count > 1))
+    status = scree_facet_tree_build(mesh, &tree, error);
+  if (status == SCREE_OK && options->intersections && !clear)
+    status = count_meetings(&tree, &adjacency, &shells, progress, &pairs, check, error);
+  if (status != SCREE_OK || check->too_many_pairs) goto done;
+  if (shells.count > 1) status = scree_shells_wind(&shells, &pairs, &tree, error);
+  if (status == SCREE_OK) count_kinds(&shells, check);
+done:
+  scree_adjacency_free(&adjacency);
+  scree_facet_tree_free(&tree);
+  scree_shells_free(&shells);
+  scree_free(pairs.keys);
+  return status;
+}
+
+/* ---- The verdict ---- */
+
+typedef struct text {
+  char *at;
+  size_t left;
+} text;
+
+static void add_text(text *t, const char *words) {
+  size_t length = strlen(words);
+  if (length >= t->left) length = t->left - 1;
+  memcpy(t->at, words, length);
+  t->at += length;
+  t->left -= length;
+  *t->at = 0;
+}
+
+/* "1 non manifold edge", "12 boundary edges": the name is a plural. */
+static void add_count(text *t, size_t count, const char *name) {
+  static const struct {
+    const char *several, *one;
+  } endings[] = {{"vertices", "vertex"}, {"ies", "y"}, {"s", ""}};
+  char words[96];
+  snprintf(words, sizeof words, "%zu %s", count, name);
+  for (size_t i = 0; count == 1 && i < sizeof endings / sizeof *endings; i++) {
+    if (!scree_ends_with(words, endings[i].several)) continue;
+    size_t begin = strlen(words) - strlen(endings[i].several);
+    snprintf(words + begin, sizeof words - begin, "%s", endings[i].one);
+    break;
+  }
+  for (char *c = words; *c; c++)
+    if (*c == '_') *c = ' ';
+  add_text(t, words);
+}
+
+static void add_defects(text *t, const scree_check *check, bool grave) {
+  bool first = true;
+  if (grave && check->too_many_pairs) {
+    char words[64];
+    snprintf(words, sizeof words, "more than %d meeting pairs", SCREE_PAIR_LIMIT);
+    add_text(t, words);
+    first = false;
+  }
+  for (int i = 0; i < SCREE_DEFECT_COUNT; i++) {
+    if (!check->defects[i] || defects[i].grave != grave) continue;
+    if (!first) add_text(t, ", ");
+    first = false;
+    add_count(t, check->defects[i], defects[i].name);
+  }
+}
+
+static void conclude(scree_check *check) {
+  text t = {check->verdict, sizeof check->verdict};
+  bool grave = check->too_many_pairs, noted = false;
+  for (int i = 0; i < SCREE_DEFECT_COUNT; i++) {
+    grave |= check->defects[i] && defects[i].grave;
+    noted |= check->defects[i] && !defects[i].grave;
+  }
+  check->usable = !grave && check->triangle_count > 0;
+  if (check->triangle_count == 0) {
+    add_text(&t, "not usable as a particle: no facets");
+  } else if (grave) {
+    add_text(&t, "not usable as a particle: ");
+    add_defects(&t, check, true);
+  } else {
+    add_text(&t, "usable as a particle: closed, manifold, outward");
+    add_text(&t, check->intersections_known ? ", nowhere meeting itself"
+                                            : "; self-intersections were not looked for");
+  }
+  if (noted) {
+    add_text(&t, "; with ");
+    add_defects(&t, check, false);
+  }
+}
+
+scree_status scree_mesh_check(const scree_mesh *mesh, const scree_check_options *options,
+                              const scree_progress *progress, scree_check *check,
+                              scree_error *error) {
+  scree_check_options defaults = scree_default_check_options();
+  scree_check made = {.triangle_count = mesh->triangle_count, .vertex_count = mesh->vertex_count};
+  scree_status status = verify_indices(mesh, error);
+  if (status != SCREE_OK) return status;
+  for (size_t v = 0; v < mesh->vertex_count; v++)
+    made.defects[SCREE_DEFECT_BAD_COORDINATE] += scree_vertex_is_bad(mesh->positions + 3 * v);
+  bool finite = !made.defects[SCREE_DEFECT_BAD_COORDINATE];
+  if (finite && mesh->triangle_count) {
+    vec3 low, high;
+    scree_mesh_bounds(mesh, &low, &high);
+    vec3_store(made.size, vec3_sub(high, low));
+  }
+  if (finite) status = examine(mesh, options ? options : &defaults, progress, &made, error);
+  if (status != SCREE_OK) return status;
+  conclude(&made);
+  *check = made;
+  return SCREE_OK;
+}

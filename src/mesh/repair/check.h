@@ -1,0 +1,10 @@
+/* Shared by check and repair; the interface is in scree/check.h. */
+#ifndef SCREE_MESH_REPAIR_CHECK_H
+#define SCREE_MESH_REPAIR_CHECK_H
+
+#include "base/error.h"
+
+/* A coordinate is not finite, or beyond what exact predicates bear. */
+bool scree_vertex_is_bad(const double *position);
+
+#endif

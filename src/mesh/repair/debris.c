@@ -1,0 +1,326 @@
+/* Shells: scraps and debris dropped, the rest turned outside out, what lies inside material
+ * dropped, and facets cut out where a shell meets itself.
+ *
+ * A shell with nothing around it bounds material, whatever its winding was: an outermost shell that
+ * is inward is turned, and all shells within it are, so that a scan that is inside out as a whole
+ * keeps its cavities. An inward shell that then still has no material around it is turned alone. An
+ * outward shell within material adds nothing to the union and is dropped; an inward one is a cavity
+ * and stays. None of this is done to a shell that meets another: what is inside what has no answer
+ * there; and while it may be merged with the other it is no debris: together they are one body. */
+#include "base/alloc.h"
+#include "mesh/repair/repair.h"
+#include "mesh/repair/sharp.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  MEETING_LIMIT = 4000000, /* more, and cutting is hopeless */
+  TURNS = 64,              /* depth of shells in shells that is set right */
+};
+
+/* No more than this share of the facets is cut out: beyond it, it is no local repair. */
+#define CUT_SHARE 0.1
+
+typedef struct nest {
+  scree_adjacency adjacency;
+  scree_shells shells;
+  scree_facet_tree tree; /* empty where there is one shell */
+  scree_shell_pairs pairs;
+  bool all_tangled; /* there are more meetings than were looked for */
+  bool *drop;       /* by shell */
+  double largest_area;
+} nest;
+
+static void free_nest(nest *n) {
+  scree_adjacency_free(&n->adjacency);
+  scree_shells_free(&n->shells);
+  scree_facet_tree_free(&n->tree);
+  scree_free(n->pairs.keys);
+  scree_free(n->drop);
+}
+
+static scree_status find_nest(const scree_repair *r, nest *n, scree_error *error) {
+  *n = (nest){0};
+  scree_status status = scree_adjacency_build(&r->mesh, &n->adjacency, error);
+  if (status == SCREE_OK) status = scree_shells_find(&r->mesh, &n->adjacency, &n->shells, error);
+  if (status == SCREE_OK && n->shells.count > 1)
+    status = scree_facet_tree_build(&r->mesh, &n->tree, error);
+  if (status != SCREE_OK) goto failed;
+  status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(n->drop, n->shells.count, error, failed);
+  memset(n->drop, 0, n->shells.count);
+  for (size_t i = 0; i < n->shells.count; i++)
+    n->largest_area = fmax(n->largest_area, n->shells.items[i].area);
+  return SCREE_OK;
+failed:
+  free_nest(n);
+  return status;
+}
+
+/* Removes the facets of the shells marked. What they enclosed is not lost by cutting or merging. */
+static scree_status drop_shells(scree_repair *r, const nest *n, scree_error *error) {
+  bool *marked = NULL;
+  SCREE_ALLOC_OR(marked, r->mesh.triangle_count, error, out_of_memory);
+  for (size_t i = 0; i < n->shells.count; i++) {
+    const scree_shell *s = &n->shells.items[i];
+    if (n->drop[i] && s->closed && scree_shell_kind_of(s) != SCREE_SHELL_NESTED)
+      r->volume -= s->volume;
+  }
+  for (size_t t = 0; t < r->mesh.triangle_count; t++)
+    marked[t] = n->shells.label[t] != SCREE_NO_SHELL && n->drop[n->shells.label[t]];
+  scree_repair_remove(r, marked);
+  scree_free(marked);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_repair_scraps(scree_repair *r, scree_error *error) {
+  nest n;
+  scree_status status = find_nest(r, &n, error);
+  if (status != SCREE_OK) return status;
+  size_t count = 0;
+  for (size_t i = 0; i < n.shells.count; i++) {
+    const scree_shell *s = &n.shells.items[i];
+    n.drop[i] = !s->closed && s->area < r->options->debris_share * n.largest_area;
+    count += n.drop[i];
+  }
+  if (count) status = drop_shells(r, &n, error);
+  if (status == SCREE_OK) r->report.done[SCREE_REPAIR_DROP_DEBRIS] += count;
+  free_nest(&n);
+  return status;
+}
+
+/* ---- Outside out ---- */
+
+static void turn_shells(scree_repair *r, nest *n, const bool *turn) {
+  for (size_t t = 0; t < r->mesh.triangle_count; t++) {
+    uint32_t label = n->shells.label[t];
+    if (label == SCREE_NO_SHELL || !turn[label]) continue;
+    uint32_t *corner = r->mesh.triangles + 3 * t, keep = corner[1];
+    corner[1] = corner[2];
+    corner[2] = keep;
+  }
+  for (size_t i = 0; i < n->shells.count; i++) {
+    if (!turn[i]) continue;
+    n->shells.items[i].volume = -n->shells.items[i].volume;
+    r->report.done[SCREE_REPAIR_INVERT_SHELL]++;
+  }
+}
+
+static scree_status find_pairs(const scree_repair *r, nest *n, scree_error *error) {
+  scree_meetings found;
+  if (!r->options->intersections || r->untangled || n->shells.count < 2) return SCREE_OK;
+  scree_status status = scree_facet_meetings(&n->tree, MEETING_LIMIT, r->progress, &found, error);
+  if (status != SCREE_OK) return status;
+  status = scree_shell_pairs_find(&n->shells, &found, &n->pairs, error);
+  n->all_tangled = found.truncated;
+  scree_free(found.items);
+  return status;
+}
+
+static scree_status wind_shells(nest *n, scree_error *error) {
+  return n->shells.count > 1 ? scree_shells_wind(&n->shells, &n->pairs, &n->tree, error) : SCREE_OK;
+}
+
+/* Whether the shell meets another; once they are wound. */
+static bool is_tangled(const nest *n, size_t shell) {
+  return n->all_tangled || n->shells.items[shell].met;
+}
+
+/* Marks inward outermost shells with all that lies in them; true where there are any. */
+static bool mark_inverted_nests(const nest *n, bool *turn) {
+  bool any = false;
+  for (size_t i = 0; i < n->shells.count; i++) {
+    const scree_shell *s = &n->shells.items[i];
+    const scree_shell *out = s->outermost == SCREE_NO_SHELL ? s : &n->shells.items[s->outermost];
+    bool outer_tangled = is_tangled(n, (size_t)(out - n->shells.items));
+    turn[i] = s->closed && !is_tangled(n, i) && !outer_tangled && out->volume < 0;
+    any |= turn[i];
+  }
+  return any;
+}
+
+static bool mark_inverted(const nest *n, bool *turn) {
+  bool any = false;
+  long long least = 0;
+  for (size_t i = 0; i < n->shells.count; i++) {
+    const scree_shell *s = &n->shells.items[i];
+    turn[i] = scree_shell_kind_of(s) == SCREE_SHELL_INSIDE_OUT && !is_tangled(n, i);
+    if (turn[i] && (!any || s->depth < least)) least = s->depth;
+    any |= turn[i];
+  }
+  /* the outer ones first: turning them may make cavities of the others */
+  for (size_t i = 0; i < n->shells.count; i++)
+    turn[i] = turn[i] && n->shells.items[i].depth == least;
+  return any;
+}
+
+static scree_status turn_outward(scree_repair *r, nest *n, scree_error *error) {
+  bool *turn = NULL;
+  SCREE_ALLOC_OR(turn, n->shells.count, error, out_of_memory);
+  scree_status status = wind_shells(n, error);
+  if (status == SCREE_OK && mark_inverted_nests(n, turn)) {
+    turn_shells(r, n, turn);
+    status = wind_shells(n, error);
+  }
+  for (int i = 0; i < TURNS && status == SCREE_OK && mark_inverted(n, turn); i++) {
+    turn_shells(r, n, turn);
+    status = wind_shells(n, error);
+  }
+  scree_free(turn);
+  return status;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* ---- What stays ---- */
+
+static size_t largest_shell(const nest *n) {
+  size_t largest = 0;
+  for (size_t i = 0; i < n->shells.count; i++)
+    if (n->shells.items[i].area > n->shells.items[largest].area) largest = i;
+  return largest;
+}
+
+static void judge_shells(scree_repair *r, nest *n) {
+  const scree_repair_options *o = r->options;
+  size_t *done = r->report.done, largest = largest_shell(n);
+  for (size_t i = 0; i < n->shells.count; i++) {
+    const scree_shell *s = &n->shells.items[i];
+    scree_shell_kind kind = scree_shell_kind_of(s);
+    bool cavity = kind == SCREE_SHELL_CAVITY && !is_tangled(n, i);
+    bool of_largest = cavity && s->depth == 1 && s->outermost == largest;
+    bool waits = is_tangled(n, i) && !r->apart; /* it is to be merged first */
+    if (cavity && o->drop_cavities) {
+      n->drop[i] = true;
+      done[SCREE_REPAIR_DROP_CAVITY]++;
+    } else if (kind == SCREE_SHELL_NESTED && !is_tangled(n, i)) {
+      n->drop[i] = true;
+      done[SCREE_REPAIR_DROP_NESTED]++;
+    } else if (!waits && ((!cavity && s->area < o->debris_share * n->largest_area) ||
+                          (o->keep_largest && i != largest && !of_largest))) {
+      n->drop[i] = true;
+      done[SCREE_REPAIR_DROP_DEBRIS]++;
+    }
+  }
+}
+
+/* ---- Small cavities ---- */
+
+typedef struct cavity {
+  double volume;
+  size_t shell;
+} cavity;
+
+static int compare_cavities(const void *a, const void *b) {
+  const cavity *x = a, *y = b;
+  if (x->volume != y->volume) return x->volume < y->volume ? -1 : 1;
+  return (x->shell > y->shell) - (x->shell < y->shell);
+}
+
+/* Marks them from the smallest on, as long as all that was filled stays under the share. */
+static scree_status fill_cavities(scree_repair *r, nest *n, scree_error *error) {
+  cavity *cavities = NULL;
+  size_t count = 0;
+  double held = 0, *filled = &r->report.filled_volume;
+  SCREE_ALLOC_OR(cavities, n->shells.count, error, out_of_memory);
+  for (size_t i = 0; i < n->shells.count; i++) {
+    const scree_shell *s = &n->shells.items[i];
+    scree_shell_kind kind = scree_shell_kind_of(s);
+    if (kind == SCREE_SHELL_BODY) held += s->volume;
+    if (kind == SCREE_SHELL_CAVITY && !is_tangled(n, i) && !n->drop[i])
+      cavities[count++] = (cavity){-s->volume, i};
+  }
+  if (count) qsort(cavities, count, sizeof *cavities, compare_cavities);
+  for (size_t i = 0; i < count; i++) {
+    if (*filled + cavities[i].volume > r->options->cavity_share * held) break;
+    *filled += cavities[i].volume;
+    n->drop[cavities[i].shell] = true;
+    r->report.done[SCREE_REPAIR_FILL_CAVITY]++;
+  }
+  scree_free(cavities);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_repair_outward(scree_repair *r, scree_error *error) {
+  nest n;
+  scree_status status = find_nest(r, &n, error);
+  if (status != SCREE_OK) return status;
+  status = find_pairs(r, &n, error);
+  if (status == SCREE_OK) status = turn_outward(r, &n, error);
+  free_nest(&n);
+  return status;
+}
+
+scree_status scree_repair_shells(scree_repair *r, scree_error *error) {
+  nest n;
+  scree_status status = find_nest(r, &n, error);
+  if (status != SCREE_OK) return status;
+  status = find_pairs(r, &n, error);
+  if (status == SCREE_OK) status = turn_outward(r, &n, error);
+  if (status == SCREE_OK) {
+    judge_shells(r, &n);
+    status = fill_cavities(r, &n, error);
+  }
+  if (status == SCREE_OK) status = drop_shells(r, &n, error);
+  free_nest(&n);
+  return status;
+}
+
+/* ---- Cutting ---- */
+
+/* Marks the facets that have a vertex with a marked one. */
+static void grow_marks(const scree_mesh *mesh, bool *marked, bool *vertex) {
+  memset(vertex, 0, mesh->vertex_count);
+  for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
+    if (marked[c / 3]) vertex[mesh->triangles[c]] = true;
+  for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
+    if (vertex[mesh->triangles[c]]) marked[c / 3] = true;
+}
+
+static void mark_meetings(const scree_meetings *found, const scree_shells *shells, bool *marked) {
+  for (size_t i = 0; i < found->count; i++) {
+    const scree_meeting *m = &found->items[i];
+    if (shells->label[m->first] == shells->label[m->second])
+      marked[m->first] = marked[m->second] = true;
+  }
+}
+
+/* The share of the facets that is marked: areas would say little, facets that cross are often long.
+ */
+static double marked_share(const scree_mesh *mesh, const bool *marked) {
+  size_t count = 0;
+  for (size_t t = 0; t < mesh->triangle_count; t++) count += marked[t];
+  return (double)count / (double)mesh->triangle_count;
+}
+
+scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, scree_error *error) {
+  nest n;
+  scree_meetings found = {0};
+  bool *marked = NULL, *vertex = NULL;
+  *cut_count = 0;
+  scree_status status = find_nest(r, &n, error);
+  if (status != SCREE_OK) return status;
+  status = scree_mesh_meetings(&r->mesh, MEETING_LIMIT, r->progress, &found, error);
+  if (status != SCREE_OK || found.truncated) goto done;
+  status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(marked, r->mesh.triangle_count, error, done);
+  SCREE_ALLOC_OR(vertex, r->mesh.vertex_count, error, done);
+  status = SCREE_OK;
+  memset(marked, 0, r->mesh.triangle_count);
+  mark_meetings(&found, &n.shells, marked);
+  if (found.count + scree_sharp_edges(&r->mesh, &n.adjacency, marked) == 0) goto done;
+  for (int i = 0; i < rings; i++) grow_marks(&r->mesh, marked, vertex);
+  if (marked_share(&r->mesh, marked) <= CUT_SHARE) *cut_count = scree_repair_remove(r, marked);
+  r->report.done[SCREE_REPAIR_CUT_INTERSECTION] += *cut_count;
+done:
+  scree_free(found.items);
+  scree_free(marked);
+  scree_free(vertex);
+  free_nest(&n);
+  return status;
+}

@@ -1,0 +1,63 @@
+/* Changes to the mesh under repair. */
+#include "base/array.h"
+#include "mesh/repair/repair.h"
+
+#include <string.h>
+
+enum {
+  GROWTH = 64, /* times the facets that came in; more, and the rounds run away */
+  LEAST_LIMIT = 4096
+};
+
+bool scree_repair_add_vertex(scree_repair *r, const double *position, uint32_t *index) {
+  scree_mesh *m = &r->mesh;
+  double copy[3] = {position[0], position[1], position[2]}; /* may lie in the array that moves */
+  void *items = m->positions;
+  if (m->vertex_count >= UINT32_MAX - 1) return false;
+  bool room =
+      scree_array_reserve(&items, &r->vertex_capacity, m->vertex_count + 1, 3 * sizeof(double));
+  m->positions = items;
+  if (!room) return false;
+  memcpy(m->positions + 3 * m->vertex_count, copy, sizeof copy);
+  *index = (uint32_t)m->vertex_count++;
+  return true;
+}
+
+bool scree_repair_add_facet(scree_repair *r, uint32_t a, uint32_t b, uint32_t c) {
+  scree_mesh *m = &r->mesh;
+  void *items = m->triangles;
+  if (m->triangle_count >= (UINT32_MAX - 1) / 3) return false;
+  bool room = scree_array_reserve(&items, &r->triangle_capacity, m->triangle_count + 1,
+                                  3 * sizeof(uint32_t));
+  m->triangles = items;
+  if (!room) return false;
+  uint32_t *corner = m->triangles + 3 * m->triangle_count++;
+  corner[0] = a, corner[1] = b, corner[2] = c;
+  return true;
+}
+
+size_t scree_repair_remove(scree_repair *r, const bool *marked) {
+  scree_mesh *m = &r->mesh;
+  size_t kept = 0, before = m->triangle_count;
+  for (size_t t = 0; t < before; t++) {
+    if (marked[t]) continue;
+    if (kept != t) memcpy(m->triangles + 3 * kept, m->triangles + 3 * t, 3 * sizeof(uint32_t));
+    kept++;
+  }
+  m->triangle_count = kept;
+  return before - kept;
+}
+
+scree_status scree_repair_growth(const scree_repair *r, size_t triangle_count, scree_error *error) {
+  size_t limit = r->came_in < LEAST_LIMIT / GROWTH ? LEAST_LIMIT : GROWTH * r->came_in;
+  if (triangle_count <= limit) return SCREE_OK;
+  return scree_fail(
+      error, SCREE_BAD_MESH,
+      "the mesh cannot be repaired: each mending asks for more, and its %zu triangles "
+      "have become %zu; at most %zu are tried",
+      r->came_in, triangle_count, limit);
+}
+
+scree_status scree_repair_no_memory(scree_error *error) {
+  return scree_fail_memory(error, 0, "the repair");
+}

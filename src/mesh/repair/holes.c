@@ -1,0 +1,463 @@
+/* Filling holes: the boundary loops are found, and each is triangulated with the vertices it has.
+ *
+ * Loops follow boundary half-edges; where a loop comes back to a vertex it has been at, the part
+ * between is a loop of its own. Up to EXACT_EDGES edges, the triangulation is the best of all by
+ * dynamic programming over diagonals (Barequet and Sharir, CAGD 12 (1995)), by Liepa's measure
+ * ("Filling holes in meshes", SGP 2003): the smallest worst angle between neighbouring facets,
+ * those round the hole included, then the smallest area. Diagonals that are edges already are
+ * forbidden: a third facet there would not be a surface. Larger loops are cut ear by ear, the
+ * flattest and smallest first.
+ *
+ * Where large holes are asked for, fillings of more than SMOOTH_EDGES edges are then refined and
+ * smoothed (repair_fair.c). One that then meets the surface, or another, is taken back: a surface
+ * that is coarse there is better than one that crosses itself. */
+#include "base/alloc.h"
+#include "base/array.h"
+#include "mesh/repair/repair.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  EXACT_EDGES = 160, /* n^3 / 6 steps: 0.1 s */
+  MOST_EDGES = 4096,
+  SMOOTH_EDGES = 32,      /* fillings with more are made smooth */
+  MEETING_LIMIT = 100000, /* pairs: with more, it is not told apart which smooth filling meets */
+};
+
+typedef struct loop {
+  const scree_repair *r;
+  const scree_adjacency *adjacency;
+  uint32_t *vertex;    /* in the direction in which the filling runs along the hole */
+  uint32_t *half_edge; /* i: the facet's half-edge from vertex[i + 1] to vertex[i] */
+  size_t count;
+} loop;
+
+static vec3 at(const loop *l, size_t i) {
+  return vec3_load(l->r->mesh.positions + 3 * (size_t)l->vertex[i]);
+}
+
+static vec3 normal_of(const loop *l, size_t i, size_t j, size_t k) {
+  return vec3_unit(vec3_triangle_normal(at(l, i), at(l, j), at(l, k)));
+}
+
+/* The unit normal of the facet across the loop's edge i. */
+static vec3 normal_across(const loop *l, size_t i) {
+  size_t t = l->half_edge[i] / 3;
+  const scree_mesh *m = &l->r->mesh;
+  return vec3_unit(vec3_triangle_normal(scree_mesh_corner(m, t, 0), scree_mesh_corner(m, t, 1),
+                                        scree_mesh_corner(m, t, 2)));
+}
+
+/* Edges are sorted by lower, then higher vertex. */
+bool scree_repair_edge_exists(const scree_mesh *mesh, const scree_adjacency *adjacency, uint32_t a,
+                              uint32_t b) {
+  uint64_t want = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+  size_t low = 0, high = adjacency->edge_count;
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    uint32_t h = adjacency->edges[middle];
+    uint32_t u = scree_half_edge_from(mesh, h), v = scree_half_edge_to(mesh, h);
+    uint64_t key = u < v ? (uint64_t)u << 32 | v : (uint64_t)v << 32 | u;
+    if (key == want) return true;
+    if (key < want)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return false;
+}
+
+static bool edge_exists(const loop *l, size_t i, size_t j) {
+  return scree_repair_edge_exists(&l->r->mesh, l->adjacency, l->vertex[i], l->vertex[j]);
+}
+
+/* ---- The best triangulation ---- */
+
+/* The cost of a filling: 1 - cosine of its worst angle, then its area. */
+typedef struct cost {
+  double bend, area;
+} cost;
+
+static bool cheaper(cost a, cost b) {
+  /* angles alike within rounding are alike */
+  if (fabs(a.bend - b.bend) > 1e-9) return a.bend < b.bend;
+  return a.area < b.area;
+}
+
+typedef struct cell {
+  cost cost;
+  uint32_t apex; /* of the triangle on diagonal (i, k); 0: none is possible */
+} cell;
+
+static double bend_between(vec3 a, vec3 b) {
+  return 1 - vec3_dot(a, b);
+}
+
+/* The normal of what lies beyond side (i, j) of a new triangle: a chosen triangle, or the mesh. */
+static vec3 beyond(const loop *l, const cell *table, size_t i, size_t j) {
+  if (j == i + 1) return normal_across(l, i);
+  return normal_of(l, i, table[i * l->count + j].apex, j);
+}
+
+static cost cost_of(const loop *l, const cell *table, size_t i, size_t j, size_t k) {
+  size_t n = l->count;
+  const cell *left = &table[i * n + j], *right = &table[j * n + k];
+  vec3 doubled = vec3_triangle_normal(at(l, i), at(l, j), at(l, k));
+  vec3 normal = vec3_unit(doubled);
+  cost c = {fmax(left->cost.bend, right->cost.bend),
+            left->cost.area + right->cost.area + 0.5 * vec3_norm(doubled)};
+  c.bend = fmax(c.bend, bend_between(normal, beyond(l, table, i, j)));
+  c.bend = fmax(c.bend, bend_between(normal, beyond(l, table, j, k)));
+  if (i == 0 && k == n - 1) c.bend = fmax(c.bend, bend_between(normal, normal_across(l, n - 1)));
+  return c;
+}
+
+static bool possible(const loop *l, const cell *table, size_t i, size_t j) {
+  return j == i + 1 || table[i * l->count + j].apex != 0;
+}
+
+static void best_apex(const loop *l, cell *table, size_t i, size_t k) {
+  cell *best = &table[i * l->count + k];
+  *best = (cell){{DBL_MAX, DBL_MAX}, 0};
+  bool closing = i == 0 && k == l->count - 1; /* that side is the loop's own edge */
+  if (!closing && edge_exists(l, i, k)) return;
+  for (size_t j = i + 1; j < k; j++) {
+    if (!possible(l, table, i, j) || !possible(l, table, j, k)) continue;
+    cost c = cost_of(l, table, i, j, k);
+    if (best->apex == 0 || cheaper(c, best->cost)) *best = (cell){c, (uint32_t)j};
+  }
+}
+
+static bool add_filling(scree_repair *r, const loop *l, const cell *table) {
+  uint32_t stack[2 * EXACT_EDGES][2];
+  size_t depth = 0;
+  stack[depth][0] = 0, stack[depth++][1] = (uint32_t)l->count - 1;
+  while (depth > 0) {
+    uint32_t i = stack[--depth][0], k = stack[depth][1];
+    if (k == i + 1) continue;
+    uint32_t j = table[i * l->count + k].apex;
+    if (!scree_repair_add_facet(r, l->vertex[i], l->vertex[j], l->vertex[k])) return false;
+    stack[depth][0] = i, stack[depth++][1] = j;
+    stack[depth][0] = j, stack[depth++][1] = k;
+  }
+  return true;
+}
+
+static scree_status fill_best(scree_repair *r, const loop *l, bool *filled, scree_error *error) {
+  size_t n = l->count;
+  cell *table = NULL;
+  scree_status status = SCREE_OK;
+  SCREE_ALLOC_OR(table, n * n, error, out_of_memory);
+  memset(table, 0, n * n * sizeof *table);
+  for (size_t span = 2; span < n; span++)
+    for (size_t i = 0; i + span < n; i++) best_apex(l, table, i, i + span);
+  *filled = table[n - 1].apex != 0;
+  if (*filled && !add_filling(r, l, table)) status = scree_repair_no_memory(error);
+  scree_free(table);
+  return status;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* ---- Ear by ear ---- */
+
+/* How bad it is to cut the ear at b: its bend against the facets it meets, weighed by area. */
+static double ear_cost(const loop *l, const uint32_t *next, const uint32_t *previous,
+                       const vec3 *across, uint32_t b) {
+  uint32_t a = previous[b], c = next[b];
+  vec3 doubled = vec3_triangle_normal(at(l, a), at(l, b), at(l, c));
+  vec3 normal = vec3_unit(doubled);
+  double bend = fmax(bend_between(normal, across[a]), bend_between(normal, across[b]));
+  return (bend + 0.01) * vec3_norm2(vec3_sub(at(l, c), at(l, a)));
+}
+
+typedef struct ears {
+  uint32_t *next, *previous;
+  vec3 *across; /* i: normal of what lies beyond the side from i to next[i] */
+  double *cost;
+} ears;
+
+static scree_status alloc_ears(ears *e, size_t n, scree_error *error) {
+  SCREE_ALLOC_OR(e->next, n, error, out_of_memory);
+  SCREE_ALLOC_OR(e->previous, n, error, out_of_memory);
+  SCREE_ALLOC_OR(e->across, n, error, out_of_memory);
+  SCREE_ALLOC_OR(e->cost, n, error, out_of_memory);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static void free_ears(ears *e) {
+  scree_free(e->next);
+  scree_free(e->previous);
+  scree_free(e->across);
+  scree_free(e->cost);
+}
+
+static uint32_t cheapest_ear(const loop *l, const ears *e, uint32_t start, size_t left) {
+  uint32_t best = UINT32_MAX, b = start;
+  for (size_t i = 0; i < left; i++, b = e->next[b]) {
+    if (best != UINT32_MAX && e->cost[b] >= e->cost[best]) continue;
+    if (left > 3 && edge_exists(l, e->previous[b], e->next[b])) continue;
+    best = b;
+  }
+  return best;
+}
+
+/* O(n^2) and a search per ear considered; nothing is added where no ear can be cut. */
+static scree_status fill_by_ears(scree_repair *r, const loop *l, bool *filled, scree_error *error) {
+  size_t n = l->count, first_facet = r->mesh.triangle_count;
+  ears e = {0};
+  uint32_t b = 0;
+  scree_status status = alloc_ears(&e, n, error);
+  if (status != SCREE_OK) goto done;
+  for (uint32_t i = 0; i < n; i++) {
+    e.next[i] = i + 1 < n ? i + 1 : 0;
+    e.previous[i] = i ? i - 1 : (uint32_t)n - 1;
+    e.across[i] = normal_across(l, i);
+  }
+  for (uint32_t i = 0; i < n; i++) e.cost[i] = ear_cost(l, e.next, e.previous, e.across, i);
+  for (size_t left = n; left >= 3; left--) {
+    uint32_t ear = cheapest_ear(l, &e, b, left);
+    if (ear == UINT32_MAX) {
+      r->mesh.triangle_count = first_facet;
+      goto done;
+    }
+    uint32_t a = e.previous[ear], c = e.next[ear];
+    if (!scree_repair_add_facet(r, l->vertex[a], l->vertex[ear], l->vertex[c])) {
+      status = scree_repair_no_memory(error);
+      goto done;
+    }
+    e.across[a] = normal_of(l, a, ear, c);
+    e.next[a] = c;
+    e.previous[c] = b = a;
+    e.cost[a] = ear_cost(l, e.next, e.previous, e.across, a);
+    e.cost[c] = ear_cost(l, e.next, e.previous, e.across, c);
+  }
+  *filled = true;
+done:
+  free_ears(&e);
+  return status;
+}
+
+/* ---- Loops ---- */
+
+/* All boundary half-edges as chains: follow[h] is the boundary half-edge that starts where h ends,
+ * found by turning round that vertex through the facets of h's fan. */
+static uint32_t follow(const scree_mesh *mesh, const scree_adjacency *adjacency, uint32_t h) {
+  uint32_t g = scree_half_edge_next(h);
+  for (size_t turns = 0; turns < 3 * mesh->triangle_count; turns++) {
+    uint32_t other = adjacency->ring[g];
+    if (other == g) return g;
+    /* only plain edges with agreeing winding can be turned through */
+    if (adjacency->ring[other] != g || mesh->triangles[other] == mesh->triangles[g]) break;
+    g = scree_half_edge_next(other);
+  }
+  return SCREE_NO_HALF_EDGE;
+}
+
+typedef struct chain {
+  uint32_t *items;
+  size_t count, capacity;
+} chain;
+
+/* A smooth filling: the mesh's facets from begin to end, and what it was made from. */
+typedef struct smooth_filling {
+  size_t begin, end, plain_count;
+  uint32_t *plain; /* owned: three vertices a facet */
+} smooth_filling;
+
+/* The work on all holes. */
+typedef struct hole_work {
+  scree_repair *r;
+  scree_adjacency adjacency;
+  size_t edge_limit;
+  bool *seen;      /* by half-edge */
+  uint32_t *place; /* by vertex: 1 + its position in the chain, or 0 */
+  chain chain;
+  struct {
+    smooth_filling *items;
+    size_t count, capacity;
+  } smooth;
+} hole_work;
+
+static scree_status make_smooth(hole_work *w, const loop *l, size_t first, scree_error *error) {
+  scree_repair *r = w->r;
+  smooth_filling s = {.begin = first, .plain_count = r->mesh.triangle_count - first};
+  scree_filling filling = {l->adjacency, l->vertex, l->half_edge, l->count, first};
+  bool faired = false;
+  SCREE_ALLOC_OR(s.plain, 3 * s.plain_count, error, out_of_memory);
+  memcpy(s.plain, r->mesh.triangles + 3 * first, 3 * s.plain_count * sizeof *s.plain);
+  scree_status status = scree_repair_fair(r, &filling, &faired, error);
+  s.end = r->mesh.triangle_count;
+  if (status == SCREE_OK && faired && SCREE_PUSH(&w->smooth, s)) return SCREE_OK;
+  scree_free(s.plain);
+  return status == SCREE_OK && faired ? scree_repair_no_memory(error) : status;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* The mean edge's share that vertices of a plane rim may lie off the plane. */
+#define RIM_ROUGHNESS 0.25
+/* The cosine of the angle beyond which the surface does not go on over the rim (45 degrees). */
+#define RIM_BEND 0.7
+
+/* Whether the rim is plane and the surface comes to it at an edge, as where a flat face is missing
+ * or what stood on a plane was scanned: its filling is that plane. */
+static bool stands_on_plane(const loop *l) {
+  vec3 normal = {0, 0, 0}, first = at(l, 0);
+  double length = 0, along = 0, low = 0, high = 0;
+  for (size_t i = 0; i < l->count; i++) {
+    vec3 p = at(l, i), q = at(l, (i + 1) % l->count);
+    normal = vec3_add(normal, vec3_cross(vec3_sub(p, first), vec3_sub(q, first)));
+    length += vec3_distance(p, q);
+  }
+  normal = vec3_unit(normal);
+  for (size_t i = 0; i < l->count; i++) {
+    vec3 p = at(l, i), q = at(l, (i + 1) % l->count);
+    along += vec3_distance(p, q) * fabs(vec3_dot(normal_across(l, i), normal));
+    low = fmin(low, vec3_dot(vec3_sub(p, first), normal));
+    high = fmax(high, vec3_dot(vec3_sub(p, first), normal));
+  }
+  return 0.5 * (high - low) <= RIM_ROUGHNESS * length / (double)l->count &&
+         along < RIM_BEND * length;
+}
+
+/* One loop of half-edges, in the order of the boundary (against the filling's). */
+static scree_status fill_loop(hole_work *w, const uint32_t *half_edges, size_t count,
+                              scree_error *error) {
+  scree_repair *r = w->r;
+  loop l = {.r = r, .adjacency = &w->adjacency, .count = count};
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  bool filled = false;
+  size_t before = r->mesh.triangle_count;
+  if (count < 3 || count > w->edge_limit || count > MOST_EDGES) return SCREE_OK;
+  if (count == 3 && half_edges[0] / 3 == half_edges[1] / 3) return SCREE_OK; /* a lone facet */
+  SCREE_ALLOC_OR(l.vertex, count, error, done);
+  SCREE_ALLOC_OR(l.half_edge, count, error, done);
+  for (size_t i = 0; i < count; i++) {
+    /* the filling runs backwards: from the end of each half-edge to its start */
+    uint32_t h = half_edges[count - 1 - i];
+    l.vertex[i] = scree_half_edge_to(&r->mesh, h);
+    l.half_edge[i] = h;
+  }
+  status =
+      count <= EXACT_EDGES ? fill_best(r, &l, &filled, error) : fill_by_ears(r, &l, &filled, error);
+  if (status == SCREE_OK && filled && count > SMOOTH_EDGES && r->options->fill_large_holes &&
+      !r->options->flat_large_holes && !stands_on_plane(&l))
+    status = make_smooth(w, &l, before, error);
+  if (filled) {
+    r->report.done[SCREE_REPAIR_FILL_HOLE]++;
+    r->report.done[SCREE_REPAIR_FILL_FACET] += r->mesh.triangle_count - before;
+  }
+done:
+  scree_free(l.vertex);
+  scree_free(l.half_edge);
+  return status;
+}
+
+/* Walks the loop from `start`, filling each part that closes on itself. */
+static scree_status walk(hole_work *w, uint32_t start, scree_error *error) {
+  const scree_repair *r = w->r;
+  chain *c = &w->chain;
+  scree_status status = SCREE_OK;
+  c->count = 0;
+  for (uint32_t h = start; status == SCREE_OK && h != SCREE_NO_HALF_EDGE && !w->seen[h];
+       h = follow(&r->mesh, &w->adjacency, h)) {
+    w->seen[h] = true;
+    if (c->count == 0) w->place[r->mesh.triangles[h]] = 1;
+    if (!SCREE_PUSH(c, h)) return scree_repair_no_memory(error);
+    uint32_t end = scree_half_edge_to(&r->mesh, h);
+    if (!w->place[end]) {
+      w->place[end] = (uint32_t)c->count + 1;
+      continue;
+    }
+    size_t from = w->place[end] - 1;
+    status = fill_loop(w, c->items + from, c->count - from, error);
+    for (size_t i = from + 1; i < c->count; i++) w->place[r->mesh.triangles[c->items[i]]] = 0;
+    c->count = from;
+  }
+  for (size_t i = 0; i < c->count; i++) {
+    w->place[r->mesh.triangles[c->items[i]]] = 0;
+    w->place[scree_half_edge_to(&r->mesh, c->items[i])] = 0;
+  }
+  w->place[r->mesh.triangles[start]] = 0;
+  return status;
+}
+
+/* ---- Smooth fillings that meet something ---- */
+
+static bool meets(const smooth_filling *s, const scree_meetings *found) {
+  for (size_t i = 0; i < found->count && !found->truncated; i++)
+    if ((found->items[i].first >= s->begin && found->items[i].first < s->end) ||
+        (found->items[i].second >= s->begin && found->items[i].second < s->end))
+      return true;
+  return found->truncated;
+}
+
+static scree_status take_back(hole_work *w, const scree_meetings *found, scree_error *error) {
+  scree_repair *r = w->r;
+  size_t before = r->mesh.triangle_count, *done = r->report.done;
+  bool *marked = NULL;
+  SCREE_ALLOC_OR(marked, before, error, out_of_memory);
+  memset(marked, 0, before);
+  for (size_t i = 0; i < w->smooth.count; i++) {
+    smooth_filling *s = &w->smooth.items[i];
+    if (!meets(s, found)) {
+      s->plain_count = 0;
+      done[SCREE_REPAIR_SMOOTH_HOLE]++;
+      continue;
+    }
+    memset(marked + s->begin, true, s->end - s->begin);
+    done[SCREE_REPAIR_COARSE_HOLE]++;
+    done[SCREE_REPAIR_FILL_FACET] -= s->end - s->begin;
+    done[SCREE_REPAIR_FILL_FACET] += s->plain_count;
+  }
+  scree_repair_remove(r, marked);
+  scree_free(marked);
+  for (size_t i = 0; i < w->smooth.count; i++)
+    for (const uint32_t *v = w->smooth.items[i].plain,
+                        *end = v + 3 * w->smooth.items[i].plain_count;
+         v < end; v += 3)
+      if (!scree_repair_add_facet(r, v[0], v[1], v[2])) return scree_repair_no_memory(error);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static scree_status judge_smooth(hole_work *w, scree_error *error) {
+  scree_meetings found = {0};
+  scree_status status = SCREE_OK;
+  if (w->smooth.count == 0) return SCREE_OK;
+  if (w->r->options->intersections)
+    status = scree_mesh_meetings(&w->r->mesh, MEETING_LIMIT, w->r->progress, &found, error);
+  if (status == SCREE_OK) status = take_back(w, &found, error);
+  scree_free(found.items);
+  return status;
+}
+
+scree_status scree_repair_holes(scree_repair *r, size_t edge_limit, scree_error *error) {
+  hole_work w = {.r = r, .edge_limit = edge_limit};
+  size_t half_edge_count = 3 * r->mesh.triangle_count, vertex_count = r->mesh.vertex_count;
+  scree_status status = scree_adjacency_build(&r->mesh, &w.adjacency, error);
+  if (status != SCREE_OK) return status;
+  status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(w.seen, half_edge_count, error, done);
+  SCREE_ALLOC_OR(w.place, vertex_count, error, done);
+  memset(w.seen, 0, half_edge_count);
+  memset(w.place, 0, vertex_count * sizeof *w.place);
+  status = SCREE_OK;
+  for (uint32_t h = 0; h < half_edge_count && status == SCREE_OK; h++)
+    if (w.adjacency.ring[h] == h && !w.seen[h]) status = walk(&w, h, error);
+  if (status == SCREE_OK) status = judge_smooth(&w, error);
+done:
+  for (size_t i = 0; i < w.smooth.count; i++) scree_free(w.smooth.items[i].plain);
+  scree_free(w.smooth.items);
+  scree_free(w.seen);
+  scree_free(w.place);
+  scree_free(w.chain.items);
+  scree_adjacency_free(&w.adjacency);
+  return status;
+}

@@ -1,0 +1,219 @@
+/* Shells that overlap, cross or touch become one surface: that of the space where the winding
+ * number is positive.
+ *
+ * All facets are cut where they meet (mesh/repair/arrange.c). What then hangs together over edges
+ * of two facets has the same winding numbers on either side everywhere, so one facet is asked for
+ * all (mesh/index/winding.c); they bound the union where the winding number is positive on one side
+ * only. Edges and vertices at which the union touches itself are left to the stages for those. */
+#include "base/alloc.h"
+#include "base/rng.h"
+#include "mesh/index/winding.h"
+#include "mesh/repair/arrange.h"
+#include "mesh/repair/repair.h"
+
+#include <string.h>
+
+enum {
+  ATTEMPTS = 32, /* sample points of a patch; one in general position is all but sure */
+};
+
+typedef struct merger {
+  scree_arrangement parts;
+  scree_adjacency adjacency;
+  scree_facet_tree tree;
+  uint32_t *patch;   /* by facet: union-find over edges of two facets */
+  uint32_t *speaker; /* by root: the largest facet */
+  bool *keep;        /* by root */
+} merger;
+
+static void free_merger(merger *m) {
+  scree_arrangement_free(&m->parts);
+  scree_adjacency_free(&m->adjacency);
+  scree_facet_tree_free(&m->tree);
+  scree_free(m->patch);
+  scree_free(m->speaker);
+  scree_free(m->keep);
+}
+
+/* ---- What is merged ---- */
+
+typedef struct tangle {
+  bool closed;        /* every edge is used equally often both ways */
+  bool any, between;  /* facets meet; those of different shells do */
+  bool crowded;       /* some edge has more than two facets: shells that share edges count as one */
+  size_t shell_count; /* that meet another or themselves */
+} tangle;
+
+static bool is_crowded(const scree_adjacency *adjacency) {
+  for (size_t e = 0; e < adjacency->edge_count; e++) {
+    uint32_t h = adjacency->edges[e];
+    if (adjacency->ring[adjacency->ring[h]] != h) return true;
+  }
+  return false;
+}
+
+static bool all_closed(const scree_shells *shells) {
+  for (size_t i = 0; i < shells->count; i++)
+    if (!shells->items[i].closed) return false;
+  return true;
+}
+
+static scree_status count_tangled(const scree_shells *shells, const scree_meetings *found,
+                                  tangle *t, scree_error *error) {
+  bool *tangled = NULL;
+  SCREE_ALLOC_OR(tangled, shells->count, error, out_of_memory);
+  memset(tangled, 0, shells->count);
+  for (size_t i = 0; i < found->count; i++) {
+    uint32_t a = shells->label[found->items[i].first], b = shells->label[found->items[i].second];
+    if (a == SCREE_NO_SHELL || b == SCREE_NO_SHELL) continue;
+    tangled[a] = tangled[b] = t->any = true;
+    if (a != b) t->between = true;
+  }
+  for (size_t i = 0; i < shells->count; i++) t->shell_count += tangled[i];
+  scree_free(tangled);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static scree_status find_tangle(scree_repair *r, tangle *t, scree_error *error) {
+  scree_adjacency adjacency = {0};
+  scree_shells shells = {0};
+  scree_meetings found = {0};
+  *t = (tangle){.closed = false};
+  scree_status status = scree_adjacency_build(&r->mesh, &adjacency, error);
+  if (status == SCREE_OK) status = scree_shells_find(&r->mesh, &adjacency, &shells, error);
+  if (status != SCREE_OK) goto done;
+  t->closed = all_closed(&shells);
+  t->crowded = is_crowded(&adjacency);
+  if (!t->closed) goto done;
+  status = scree_mesh_meetings(&r->mesh, scree_arrange_limit(&r->mesh), r->progress, &found, error);
+  if (status == SCREE_OK && found.truncated) r->unmerged = scree_arrange_too_many;
+  if (status == SCREE_OK && !found.truncated) status = count_tangled(&shells, &found, t, error);
+done:
+  scree_free(found.items);
+  scree_shells_free(&shells);
+  scree_adjacency_free(&adjacency);
+  return status;
+}
+
+/* ---- Which side is which ---- */
+
+static double doubled_area(const scree_mesh *mesh, uint32_t t) {
+  return vec3_norm(vec3_triangle_normal(
+      scree_mesh_corner(mesh, t, 0), scree_mesh_corner(mesh, t, 1), scree_mesh_corner(mesh, t, 2)));
+}
+
+static scree_status find_patches(merger *m, scree_error *error) {
+  const scree_mesh *mesh = &m->parts.mesh;
+  size_t count = mesh->triangle_count;
+  SCREE_ALLOC_OR(m->patch, count, error, out_of_memory);
+  SCREE_ALLOC_OR(m->speaker, count, error, out_of_memory);
+  SCREE_ALLOC_OR(m->keep, count, error, out_of_memory);
+  for (uint32_t t = 0; t < count; t++) m->patch[t] = t;
+  for (size_t e = 0; e < m->adjacency.edge_count; e++) {
+    uint32_t h = m->adjacency.edges[e], g = m->adjacency.ring[h];
+    if (g != h && m->adjacency.ring[g] == h) scree_join(m->patch, h / 3, g / 3);
+  }
+  for (uint32_t t = 0; t < count; t++) {
+    uint32_t root = scree_find_root(m->patch, t); /* the lowest: it comes first */
+    if (root == t || doubled_area(mesh, t) > doubled_area(mesh, m->speaker[root]))
+      m->speaker[root] = t;
+  }
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* A point of the facet as it is seen, another for each attempt. */
+static scree_seen draw(const scree_view *f, scree_rng *rng) {
+  double sum = 0;
+  scree_seen p = {0, 0};
+  for (int k = 0; k < 3; k++) {
+    scree_seen q = scree_view_point(f, f->corner[k]);
+    double weight = 0.1 + scree_rng_uniform(rng);
+    sum += weight;
+    p.x += weight * q.x;
+    p.y += weight * q.y;
+  }
+  return (scree_seen){p.x / sum, p.y / sum};
+}
+
+/* Whether the facet bounds the union; why not is answered, as the end of a sentence. */
+static const char *ask(const scree_winding *w, uint32_t facet, bool folds, bool *keep) {
+  scree_view f = scree_view_of(w->tree->mesh, facet);
+  scree_rng rng = {.seed = facet};
+  for (int attempt = 0; attempt < ATTEMPTS && f.side; attempt++) {
+    scree_sides found;
+    if (!scree_winding_look(w, facet, &f, draw(&f, &rng), &found)) continue;
+    *keep = (found.above > 0) != (found.below > 0);
+    if (!folds && (found.above < 0 || found.below < 0))
+      return "where they cross, one is wound inward";
+    return NULL;
+  }
+  return "what is inside and what outside cannot be told";
+}
+
+static scree_status judge_patches(merger *m, bool folds, const char **reason, scree_error *error) {
+  const scree_mesh *mesh = &m->parts.mesh;
+  bool any = false;
+  if (mesh->triangle_count == 0) { /* each facet lies on one that is wound the other way */
+    *reason = "they enclose nothing";
+    return SCREE_OK;
+  }
+  scree_status status = scree_adjacency_build(mesh, &m->adjacency, error);
+  if (status == SCREE_OK) status = find_patches(m, error);
+  if (status == SCREE_OK) status = scree_facet_tree_build(mesh, &m->tree, error);
+  if (status != SCREE_OK) return status;
+  scree_winding w = {
+      .tree = &m->tree, .weights = m->parts.weights, .rounding = scree_winding_rounding(&m->tree)};
+  for (uint32_t t = 0; t < mesh->triangle_count && !*reason; t++) {
+    if (m->patch[t] != t) continue;
+    *reason = ask(&w, m->speaker[t], folds, &m->keep[t]);
+    any |= !*reason && m->keep[t];
+  }
+  if (!any && !*reason) *reason = "they enclose nothing";
+  return SCREE_OK;
+}
+
+/* ---- The surface ---- */
+
+/* The facets kept take the place of the mesh, wound so that the lower winding number is outside. */
+static void take_surface(scree_repair *r, merger *m) {
+  scree_mesh *mesh = &m->parts.mesh;
+  size_t kept = 0;
+  for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+    if (!m->keep[scree_find_root(m->patch, t)]) continue;
+    const uint32_t *v = mesh->triangles + 3 * (size_t)t;
+    bool turned = m->parts.weights[t] < 0;
+    uint32_t a = v[0], b = v[turned ? 2 : 1], c = v[turned ? 1 : 2];
+    uint32_t *out = mesh->triangles + 3 * kept++;
+    out[0] = a, out[1] = b, out[2] = c;
+  }
+  mesh->triangle_count = kept;
+  scree_mesh_free(&r->mesh);
+  r->mesh = *mesh;
+  r->vertex_capacity = mesh->vertex_count;
+  r->triangle_capacity = kept;
+  *mesh = (scree_mesh){0};
+}
+
+scree_status scree_repair_merge(scree_repair *r, bool early, bool *merged, scree_error *error) {
+  bool folds = r->options->merge_folds;
+  tangle t;
+  merger m = {.patch = NULL};
+  *merged = false;
+  r->unmerged = NULL;
+  scree_status status = find_tangle(r, &t, error);
+  if (status != SCREE_OK || r->unmerged || !t.closed || !t.any) return status;
+  if (early && !folds && !t.between && !t.crowded) return SCREE_OK;
+  status = scree_arrange(&r->mesh, r->progress, &m.parts, &r->unmerged, error);
+  if (status == SCREE_OK && !r->unmerged) status = judge_patches(&m, folds, &r->unmerged, error);
+  if (status == SCREE_OK && !r->unmerged) {
+    take_surface(r, &m);
+    r->report.done[SCREE_REPAIR_MERGE_SHELL] += t.shell_count;
+    *merged = true;
+  }
+  free_merger(&m);
+  return status;
+}

@@ -1,0 +1,588 @@
+/* The whole of a repair: check, do what the defects found ask for, check again, until nothing is
+ * wrong or nothing more can be done.
+ *
+ * A round begins with the cheap check (no self-intersections). While that finds something, the
+ * stages for what it found run, in an order in which each finds what it needs: duplicates and flat
+ * facets go, seams and T-junctions close, fins and membranes go, the winding is made to agree,
+ * edges of many facets are sorted out by it, open scraps go, holes are filled, and vertices with
+ * several fans are split last, because filling joins fans. Once the surface is closed and manifold,
+ * shells are put in order. Then the exact check looks for facets that meet; those of one shell are
+ * cut out with their neighbourhood, wider each time, shells that meet each other are merged, and
+ * the round starts over.
+ *
+ * Every round ends with a weld, so vertices and facets are always in canonical order and the result
+ * does not depend on the order of the input. Nothing is called repaired that the check has not
+ * passed. */
+#include "mesh/repair/repair.h"
+#include "base/alloc.h"
+#include "mesh/repair/check.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  ROUNDS = 24,    /* in all; three or four are usual */
+  CUT_ROUNDS = 4, /* of these with cutting */
+  MERGE_ROUNDS = 3
+};
+
+static const struct {
+  const char *name, *one, *several;
+} actions[] = {
+#define ACTION_ROW(name, key, one, several) {key, one, several},
+    SCREE_REPAIR_LIST(ACTION_ROW)
+#undef ACTION_ROW
+};
+
+const char *scree_repair_action_name(scree_repair_action action) {
+  return (unsigned)action < SCREE_REPAIR_ACTION_COUNT ? actions[action].name : "unknown";
+}
+
+const char *scree_repair_action_text(scree_repair_action action, size_t count) {
+  if ((unsigned)action >= SCREE_REPAIR_ACTION_COUNT) return "unknown";
+  return count == 1 ? actions[action].one : actions[action].several;
+}
+
+scree_repair_options scree_default_repair_options(void) {
+  return (scree_repair_options){.seam_tolerance = 1e-4,
+                                .hole_edges = 128,
+                                .debris_share = 0.01,
+                                .cut_intersections = true,
+                                .merge_shells = true,
+                                .intersections = true,
+                                .cavity_share = 1e-3,
+                                .volume_change = 0.01};
+}
+
+static scree_status verify_options(const scree_repair_options *o, scree_error *error) {
+  if (!(o->seam_tolerance >= 0 && o->seam_tolerance <= 0.01))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "seam_tolerance is %g; the range is [0, 0.01]",
+                      o->seam_tolerance);
+  if (!(o->debris_share >= 0 && o->debris_share < 1))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "debris_share is %g; the range is [0, 1)",
+                      o->debris_share);
+  if (!(o->cavity_share >= 0 && o->cavity_share <= 1))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "cavity_share is %g; the range is [0, 1]",
+                      o->cavity_share);
+  if (!(o->volume_change >= 0 && o->volume_change <= 1))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "volume_change is %g; the range is [0, 1]",
+                      o->volume_change);
+  return SCREE_OK;
+}
+
+/* ---- Welding ---- */
+
+static void measure_box(scree_repair *r) {
+  vec3 low = {DBL_MAX, DBL_MAX, DBL_MAX}, high = vec3_neg(low);
+  for (size_t v = 0; v < r->mesh.vertex_count; v++) {
+    low = vec3_min(low, vec3_load(r->mesh.positions + 3 * v));
+    high = vec3_max(high, vec3_load(r->mesh.positions + 3 * v));
+  }
+  r->diagonal = r->mesh.vertex_count ? vec3_distance(low, high) : 0;
+  vec3 far = vec3_max(vec3_neg(low), high);
+  r->largest = fmax(far.x, fmax(far.y, far.z));
+}
+
+static bool is_before(const double *a, const double *b) {
+  for (int k = 0; k < 3; k++)
+    if (a[k] != b[k]) return a[k] < b[k];
+  return false;
+}
+
+/* Whether vertices are distinct and sorted, no zero is negative, no coordinate is bad. */
+static bool vertices_are_canonical(const scree_mesh *mesh) {
+  for (size_t v = 0; v < mesh->vertex_count; v++) {
+    const double *p = mesh->positions + 3 * v;
+    if (scree_vertex_is_bad(p) || (v && !is_before(p - 3, p))) return false;
+    for (int k = 0; k < 3; k++)
+      if (p[k] == 0 && signbit(p[k])) return false;
+  }
+  return true;
+}
+
+static bool triangles_are_canonical(const scree_mesh *mesh) {
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    const uint32_t *c = mesh->triangles + 3 * t, *before = t ? c - 3 : c;
+    if (c[1] <= c[0] || c[2] <= c[0] || c[1] == c[2]) return false;
+    if (t && (c[0] != before[0]   ? c[0] < before[0]
+              : c[1] != before[1] ? c[1] < before[1]
+                                  : c[2] < before[2]))
+      return false;
+  }
+  return true;
+}
+
+/* Whether welding would give back the same bits; every vertex must be known to be in use. */
+static bool is_canonical(const scree_mesh *mesh) {
+  return vertices_are_canonical(mesh) && triangles_are_canonical(mesh);
+}
+
+/* Replaces the mesh under repair by `mesh` welded exactly and put in canonical order; facets with
+ * bad coordinates are left out. mesh may be r->mesh. */
+static scree_status weld(scree_repair *r, const scree_mesh *mesh, size_t *bad, size_t *collapsed,
+                         scree_error *error) {
+  scree_mesh welded;
+  double *corners = NULL;
+  size_t count = 0;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(corners, 9 * mesh->triangle_count, error, done);
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    bool good = true;
+    for (size_t k = 0; k < 3; k++) {
+      const double *p = mesh->positions + 3 * (size_t)mesh->triangles[3 * t + k];
+      good = good && !scree_vertex_is_bad(p);
+      memcpy(corners + 9 * count + 3 * k, p, 3 * sizeof *p);
+    }
+    count += good;
+  }
+  *bad = mesh->triangle_count - count;
+  status = scree_mesh_weld(corners, count, 0, &welded, collapsed, error);
+  if (status != SCREE_OK) goto done;
+  scree_mesh_free(&r->mesh);
+  r->mesh = welded;
+  r->vertex_capacity = welded.vertex_count;
+  r->triangle_capacity = welded.triangle_count;
+  measure_box(r);
+done:
+  scree_free(corners);
+  return status;
+}
+
+/* A mesh that is in canonical order already, as every reader gives it. */
+static scree_status take_copy(scree_repair *r, const scree_mesh *mesh, scree_error *error) {
+  scree_status status = scree_mesh_copy(mesh, &r->mesh, error);
+  if (status != SCREE_OK) return status;
+  r->vertex_capacity = mesh->vertex_count;
+  r->triangle_capacity = mesh->triangle_count;
+  measure_box(r);
+  return SCREE_OK;
+}
+
+/* ---- Duplicates ---- */
+
+typedef struct corner_key {
+  uint32_t low, middle, high, facet;
+} corner_key;
+
+static int compare_corner_keys(const void *a, const void *b) {
+  const corner_key *x = a, *y = b;
+  if (x->low != y->low) return x->low < y->low ? -1 : 1;
+  if (x->middle != y->middle) return x->middle < y->middle ? -1 : 1;
+  if (x->high != y->high) return x->high < y->high ? -1 : 1;
+  return (x->facet > y->facet) - (x->facet < y->facet);
+}
+
+static corner_key key_of(const scree_mesh *mesh, size_t t) {
+  const uint32_t *c = mesh->triangles + 3 * t;
+  uint32_t low = c[0] < c[1] ? c[0] : c[1], high = c[0] < c[1] ? c[1] : c[0], middle = c[2];
+  if (middle < low) {
+    uint32_t keep = low;
+    low = middle, middle = keep;
+  } else if (middle > high) {
+    uint32_t keep = high;
+    high = middle, middle = keep;
+  }
+  return (corner_key){low, middle, high, (uint32_t)t};
+}
+
+scree_status scree_repair_duplicates(scree_repair *r, scree_error *error) {
+  size_t count = r->mesh.triangle_count;
+  corner_key *keys = NULL;
+  bool *marked = NULL;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(keys, count, error, done);
+  SCREE_ALLOC_OR(marked, count, error, done);
+  memset(marked, 0, count);
+  for (size_t t = 0; t < count; t++) keys[t] = key_of(&r->mesh, t);
+  qsort(keys, count, sizeof *keys, compare_corner_keys);
+  for (size_t i = 1; i < count; i++)
+    if (keys[i].low == keys[i - 1].low && keys[i].middle == keys[i - 1].middle &&
+        keys[i].high == keys[i - 1].high)
+      marked[keys[i].facet] = true;
+  r->report.done[SCREE_REPAIR_DROP_DUPLICATE] += scree_repair_remove(r, marked);
+  status = SCREE_OK;
+done:
+  scree_free(keys);
+  scree_free(marked);
+  return status;
+}
+
+/* ---- Rounds ---- */
+
+static scree_status check_now(const scree_repair *r, bool intersections, scree_check *check,
+                              scree_error *error) {
+  scree_check_options options = {.intersections = intersections};
+  return scree_mesh_check(&r->mesh, &options, r->progress, check, error);
+}
+
+static bool surface_is_sound(const scree_check *check) {
+  for (int i = SCREE_DEFECT_BAD_COORDINATE; i <= SCREE_DEFECT_INCONSISTENT_EDGE; i++)
+    if (check->defects[i]) return false;
+  return true;
+}
+
+static scree_status mend_open(scree_repair *r, scree_error *error) {
+  const scree_repair_options *o = r->options;
+  /* the holes of a surface that was closed are all of the repair's own cutting */
+  bool was_closed = r->report.before.defects[SCREE_DEFECT_BOUNDARY_EDGE] == 0;
+  size_t edge_limit = o->fill_large_holes || was_closed ? SIZE_MAX : o->hole_edges;
+  scree_status status = scree_repair_scraps(r, error);
+  if (status == SCREE_OK) status = scree_repair_holes(r, edge_limit, error);
+  return status;
+}
+
+static scree_status mend_surface(scree_repair *r, const scree_check *check, scree_error *error) {
+  const size_t *defect = check->defects;
+  bool open = defect[SCREE_DEFECT_BOUNDARY_EDGE] > 0;
+  bool crowded = defect[SCREE_DEFECT_NON_MANIFOLD_EDGE] > 0;
+  bool dented = defect[SCREE_DEFECT_DEGENERATE_FACET] > 0;
+  scree_status status = SCREE_OK;
+  if (defect[SCREE_DEFECT_DUPLICATE_FACET]) status = scree_repair_duplicates(r, error);
+  if (status == SCREE_OK && dented) status = scree_repair_flat(r, error);
+  if (status == SCREE_OK && (open || dented)) status = scree_repair_seams(r, error);
+  if (status == SCREE_OK && (open || dented)) status = scree_repair_t_junctions(r, error);
+  if (status == SCREE_OK && crowded) status = scree_repair_fins(r, error);
+  if (status == SCREE_OK && crowded) status = scree_repair_membranes(r, error);
+  if (status == SCREE_OK && (crowded || defect[SCREE_DEFECT_INCONSISTENT_EDGE]))
+    status = scree_repair_winding(r, error);
+  if (status == SCREE_OK && crowded) status = scree_repair_edges(r, error);
+  if (status == SCREE_OK && open) status = mend_open(r, error);
+  if (status == SCREE_OK && !open && defect[SCREE_DEFECT_NON_MANIFOLD_VERTEX])
+    status = scree_repair_vertices(r, error);
+  return status;
+}
+
+static size_t actions_done(const scree_repair *r) {
+  size_t sum = 0;
+  for (int i = 0; i < SCREE_REPAIR_ACTION_COUNT; i++) sum += r->report.done[i];
+  return sum;
+}
+
+/* ---- What must not be lost ---- */
+
+/* A share of the volume that is worth a try in another way. */
+#define NOTABLE_LOSS 1e-3
+
+/* The volume that cutting and merging are to keep, once: where the exact check knows it of this
+ * closed surface, else the integral of the winding number, which counts twice where shells overlap
+ * and is of no use there. */
+static scree_status take_volume(scree_repair *r, scree_error *error) {
+  scree_check check;
+  double area;
+  bool as_given = actions_done(r) == r->report.done[SCREE_REPAIR_WELD];
+  if (isnan(r->volume) && as_given && r->report.before.volume_known)
+    r->volume = r->report.before.volume;
+  if (!isnan(r->volume)) return SCREE_OK;
+  scree_status status = check_now(r, r->options->intersections && !r->untangled, &check, error);
+  if (status == SCREE_OK && check.volume_known)
+    r->volume = check.volume;
+  else if (status == SCREE_OK && !check.defects[SCREE_DEFECT_OVERLAPPING_SHELLS] &&
+           !check.defects[SCREE_DEFECT_NON_MANIFOLD_EDGE]) /* shells that share one count as one */
+    status = scree_mesh_area_volume(&r->mesh, &area, &r->volume, error);
+  return status;
+}
+
+/* Of a surface whose coordinates may be bad, or that has no facets; NaN, 0. */
+static scree_status measure(const scree_mesh *mesh, const scree_check *check, double *area,
+                            double *volume, scree_error *error) {
+  *area = *volume = check->defects[SCREE_DEFECT_BAD_COORDINATE] ? NAN : 0;
+  if (check->defects[SCREE_DEFECT_BAD_COORDINATE] || mesh->triangle_count == 0) return SCREE_OK;
+  return scree_mesh_area_volume(mesh, area, volume, error);
+}
+
+/* The report on a mesh to which nothing is done. */
+static scree_status report_untouched(const scree_mesh *mesh, scree_repair_report *report,
+                                     scree_error *error) {
+  report->after = report->before;
+  scree_status status =
+      measure(mesh, &report->before, &report->area_before, &report->volume_after, error);
+  report->area_after = report->area_before;
+  report->volume_before = report->before.volume_known ? report->before.volume : NAN;
+  return status;
+}
+
+/* Of the result, as a share. */
+static double volume_change(const scree_repair *r) {
+  return isnan(r->volume) ? 0 : fabs(r->report.volume_after - r->volume) / fabs(r->volume);
+}
+
+static scree_status refuse_loss(const scree_repair *r, scree_error *error) {
+  const scree_repair_options *o = r->options;
+  if (!(volume_change(r) > o->volume_change)) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_MESH,
+                    "a repair would change the volume by %.3g %%, from %.6g to %.6g cm3, and more "
+                    "than %g %% is not allowed",
+                    100 * volume_change(r), 1e6 * r->volume, 1e6 * r->report.volume_after,
+                    100 * o->volume_change);
+}
+
+/* How often the dear stages have run. */
+typedef struct tries {
+  int cuts, merges;
+  bool refused;      /* merging was ... */
+  size_t refused_at; /* ... when so much had been done: as long as no more is, it would be again */
+} tries;
+
+static scree_status try_merge(scree_repair *r, tries *n, bool early, bool *merged,
+                              scree_error *error) {
+  *merged = false;
+  if (n->refused && n->refused_at == actions_done(r)) return SCREE_OK;
+  scree_status status = scree_repair_merge(r, early, merged, error);
+  n->refused = r->unmerged != NULL;
+  n->refused_at = actions_done(r);
+  return status;
+}
+
+/* Facets that meet are cut out, or shells merged; *settled where neither is done. */
+static scree_status untangle(scree_repair *r, tries *n, bool *settled, scree_error *error) {
+  const scree_repair_options *o = r->options;
+  size_t cut_count = 0;
+  bool merged = false;
+  scree_status status = SCREE_OK;
+  if (o->cut_intersections && !o->merge_folds && n->cuts < CUT_ROUNDS)
+    status = scree_repair_cut(r, ++n->cuts, &cut_count, error);
+  if (status == SCREE_OK && cut_count == 0 && o->merge_shells && n->merges < MERGE_ROUNDS) {
+    n->merges++;
+    status = try_merge(r, n, false, &merged, error);
+  }
+  *settled = cut_count == 0 && !merged;
+  if (*settled && !r->apart) { /* without the small ones, or all but the largest, it may do */
+    r->apart = true;
+    *settled = false;
+  }
+  return status;
+}
+
+/* One step on a mesh with the given cheap check; *settled where there is nothing left to do. */
+static scree_status step(scree_repair *r, const scree_check *check, tries *n, bool *settled,
+                         scree_error *error) {
+  size_t before = actions_done(r);
+  scree_status status;
+  *settled = false;
+  if (!surface_is_sound(check)) {
+    status = mend_surface(r, check, error);
+    *settled = status == SCREE_OK && actions_done(r) == before;
+    return status;
+  }
+  status = scree_repair_shells(r, error);
+  if (status != SCREE_OK || actions_done(r) != before) return status;
+  status = take_volume(r, error);
+  if (status != SCREE_OK) return status;
+  *settled = true;
+  if (!r->options->intersections || r->untangled) return SCREE_OK;
+  return untangle(r, n, settled, error);
+}
+
+/* Shells that are closed and overlap are merged before anything else is done: what coincides is no
+ * duplicate there, and edges of four facets are no defect. */
+static scree_status merge_early(scree_repair *r, tries *n, scree_error *error) {
+  const size_t *defect = r->report.before.defects;
+  bool met = defect[SCREE_DEFECT_CROSSING_PAIR] || defect[SCREE_DEFECT_TOUCHING_PAIR] ||
+             defect[SCREE_DEFECT_OVERLAPPING_PAIR] || r->report.before.too_many_pairs;
+  bool merged;
+  size_t bad, collapsed;
+  if (!r->options->merge_shells || !met) return SCREE_OK;
+  scree_status status = SCREE_OK;
+  if (!defect[SCREE_DEFECT_BOUNDARY_EDGE] && !defect[SCREE_DEFECT_INCONSISTENT_EDGE]) {
+    status = scree_repair_outward(r, error);
+    if (status == SCREE_OK) status = take_volume(r, error);
+  }
+  if (status == SCREE_OK) status = try_merge(r, n, true, &merged, error);
+  return status == SCREE_OK && merged ? weld(r, &r->mesh, &bad, &collapsed, error) : status;
+}
+
+static scree_status run_rounds(scree_repair *r, scree_error *error) {
+  tries n = {0};
+  size_t bad, collapsed;
+  r->came_in = r->mesh.triangle_count;
+  scree_status status = merge_early(r, &n, error);
+  for (int round = 0; round < ROUNDS && status == SCREE_OK; round++) {
+    bool settled;
+    status = check_now(r, false, &r->report.after, error);
+    if (status != SCREE_OK || r->mesh.triangle_count == 0) return status;
+    status = step(r, &r->report.after, &n, &settled, error);
+    if (status != SCREE_OK || settled) break;
+    status = weld(r, &r->mesh, &bad, &collapsed, error);
+    r->report.done[SCREE_REPAIR_DROP_DEGENERATE] += status == SCREE_OK ? collapsed : 0;
+    if (status == SCREE_OK) status = scree_repair_growth(r, r->mesh.triangle_count, error);
+  }
+  return status;
+}
+
+/* Everything after the first check, which found what r->report.before says. */
+static scree_status mend(scree_repair *r, const scree_mesh *mesh, scree_error *error) {
+  size_t *done = r->report.done, collapsed = 0;
+  size_t unused = r->report.before.defects[SCREE_DEFECT_UNUSED_VERTEX];
+  size_t used = r->report.before.vertex_count - unused;
+  scree_status status;
+  if (unused || !is_canonical(mesh))
+    status = weld(r, mesh, &done[SCREE_REPAIR_DROP_BAD], &collapsed, error);
+  else
+    status = take_copy(r, mesh, error);
+  if (status != SCREE_OK) return status;
+  done[SCREE_REPAIR_DROP_DEGENERATE] = collapsed;
+  if (!done[SCREE_REPAIR_DROP_BAD] && !collapsed && used > r->mesh.vertex_count)
+    done[SCREE_REPAIR_WELD] = used - r->mesh.vertex_count;
+  r->untangled = r->report.before.usable;
+  if (!r->report.before.usable || r->report.before.shell_count > 1) status = run_rounds(r, error);
+  if (status != SCREE_OK) return status;
+  r->report.after = r->report.before; /* of the same facets */
+  if (actions_done(r) > 0 || r->report.before.defects[SCREE_DEFECT_UNUSED_VERTEX])
+    status = check_now(r, r->options->intersections, &r->report.after, error);
+  if (status == SCREE_OK)
+    status =
+        measure(&r->mesh, &r->report.after, &r->report.area_after, &r->report.volume_after, error);
+  r->report.volume_before = r->report.before.volume_known ? r->report.before.volume : r->volume;
+  return status;
+}
+
+/* Whether cutting has taken so much of the body, or added so much, that another way may keep it
+ * better. A fold that was filled adds a little. */
+static bool has_lost(const scree_repair *r) {
+  const size_t *before = r->report.before.defects, *after = r->report.after.defects;
+  return r->report.done[SCREE_REPAIR_CUT_INTERSECTION] &&
+         (!r->report.after.usable || volume_change(r) > r->options->volume_change ||
+          r->report.volume_after < (1 - NOTABLE_LOSS) * r->volume ||
+          after[SCREE_DEFECT_EXTRA_BODY] > before[SCREE_DEFECT_EXTRA_BODY]);
+}
+
+/* The same with folds merged instead of cut out, which takes r's place where it keeps more. */
+static scree_status mend_otherwise(scree_repair *r, const scree_mesh *mesh, scree_error *error) {
+  scree_repair_options options = *r->options;
+  scree_repair other = {.options = &options,
+                        .progress = r->progress,
+                        .volume = NAN,
+                        .report.before = r->report.before};
+  scree_error reason;
+  options.merge_folds = true;
+  scree_status status = mend(&other, mesh, &reason);
+  other.options = r->options;
+  bool sound = status == SCREE_OK && other.report.after.usable;
+  size_t bodies = r->report.after.defects[SCREE_DEFECT_EXTRA_BODY],
+         other_bodies = other.report.after.defects[SCREE_DEFECT_EXTRA_BODY];
+  if (sound && (!r->report.after.usable || other_bodies < bodies ||
+                (other_bodies == bodies && volume_change(&other) < volume_change(r)))) {
+    scree_mesh_free(&r->mesh);
+    *r = other;
+  } else {
+    scree_mesh_free(&other.mesh);
+  }
+  if (status != SCREE_CANCELLED && status != SCREE_OUT_OF_MEMORY) return SCREE_OK;
+  if (error) *error = reason;
+  return status;
+}
+
+/* Whether mend would come to a copy. */
+static bool needs_nothing(const scree_mesh *mesh, const scree_check *check) {
+  return check->usable && check->shell_count == 1 && !check->defects[SCREE_DEFECT_UNUSED_VERTEX] &&
+         is_canonical(mesh);
+}
+
+/* mesh with its check known. */
+static scree_status repair_checked(const scree_mesh *mesh, const scree_check *before,
+                                   const scree_repair_options *options,
+                                   const scree_progress *progress, scree_mesh *repaired,
+                                   scree_repair_report *report, scree_error *error) {
+  scree_repair r = {.options = options,
+                    .progress = progress,
+                    .apart = !options->merge_shells,
+                    .volume = NAN,
+                    .report.before = *before};
+  double area_before, unsaid;
+  scree_status status = measure(mesh, before, &area_before, &unsaid, error);
+  if (status == SCREE_OK) status = mend(&r, mesh, error);
+  if (status == SCREE_OK && options->merge_shells && !options->merge_folds && has_lost(&r))
+    status = mend_otherwise(&r, mesh, error);
+  r.report.area_before = area_before;
+  if (status == SCREE_OK || status == SCREE_BAD_MESH)
+    if (report) *report = r.report;
+  if (status == SCREE_OK && !r.report.after.usable)
+    status =
+        scree_fail(error, SCREE_BAD_MESH, "the mesh cannot be repaired; what remains is %s%s%s",
+                   r.report.after.verdict, r.unmerged ? "; shells were not merged: " : "",
+                   r.unmerged ? r.unmerged : "");
+  if (status == SCREE_OK) status = refuse_loss(&r, error);
+  if (status == SCREE_OK)
+    *repaired = r.mesh;
+  else
+    scree_mesh_free(&r.mesh);
+  return status;
+}
+
+/* What stands on a plane, repaired. */
+static scree_status repair_cut_off(const scree_mesh *mesh, const scree_repair_options *options,
+                                   const scree_progress *progress, scree_mesh *repaired,
+                                   scree_repair_report *report, scree_error *error) {
+  scree_repair_options chosen = *options;
+  scree_check_options how = {.intersections = chosen.intersections};
+  scree_repair_report made = {.seam_distance = 0};
+  scree_cut_plane plane;
+  scree_check before;
+  scree_mesh above, whole;
+  size_t dropped;
+  double area, unsaid;
+  scree_status status = scree_mesh_check(mesh, &how, progress, &before, error);
+  if (status == SCREE_OK) status = measure(mesh, &before, &area, &unsaid, error);
+  if (status == SCREE_OK)
+    status = scree_repair_cut_off(mesh, chosen.cut == SCREE_CUT_GIVEN ? &chosen.plane : NULL,
+                                  &plane, &dropped, &above, error);
+  if (status != SCREE_OK) return status;
+  chosen.cut = SCREE_CUT_NONE;
+  chosen.keep_largest = chosen.fill_large_holes = chosen.flat_large_holes = true;
+  status = scree_mesh_repair(&above, &chosen, progress, &whole, &made, error);
+  scree_mesh_free(&above);
+  made.done[SCREE_REPAIR_CUT_OFF] = dropped;
+  made.plane = plane;
+  made.before = before;
+  made.area_before = area;
+  made.volume_before = before.volume_known ? before.volume : NAN;
+  if (report && (status == SCREE_OK || status == SCREE_BAD_MESH)) *report = made;
+  if (status != SCREE_OK) return status;
+  if (mesh == repaired) scree_mesh_free(repaired);
+  *repaired = whole;
+  return SCREE_OK;
+}
+
+scree_status scree_mesh_repair(const scree_mesh *mesh, const scree_repair_options *options,
+                               const scree_progress *progress, scree_mesh *repaired,
+                               scree_repair_report *report, scree_error *error) {
+  scree_repair_options chosen = options ? *options : scree_default_repair_options();
+  scree_check_options how = {.intersections = chosen.intersections};
+  scree_repair_report untouched = {.seam_distance = 0};
+  scree_check *before = &untouched.before;
+  scree_status status = verify_options(&chosen, error);
+  if (status == SCREE_OK && chosen.cut != SCREE_CUT_NONE)
+    return repair_cut_off(mesh, &chosen, progress, repaired, report, error);
+  if (status == SCREE_OK) status = scree_mesh_check(mesh, &how, progress, before, error);
+  if (status != SCREE_OK) return status;
+  if (mesh == repaired && needs_nothing(mesh, before)) {
+    status = report_untouched(mesh, &untouched, error);
+    if (report && status == SCREE_OK) *report = untouched;
+    return status;
+  }
+  scree_mesh made;
+  status = repair_checked(mesh, before, &chosen, progress, &made, report, error);
+  if (status != SCREE_OK) return status;
+  if (mesh == repaired) scree_mesh_free(repaired);
+  *repaired = made;
+  return SCREE_OK;
+}
+
+scree_status scree_mesh_prepare(const scree_mesh *mesh, const scree_repair_options *options,
+                                const scree_progress *progress, scree_mesh *ready,
+                                scree_repair_report *report, scree_error *error) {
+  scree_repair_report made = {.seam_distance = 0};
+  if (options) return scree_mesh_repair(mesh, options, progress, ready, report, error);
+  scree_status status = scree_mesh_check(mesh, NULL, progress, &made.before, error);
+  if (status != SCREE_OK) return status;
+  status = report_untouched(mesh, &made, error);
+  if (status != SCREE_OK) return status;
+  if (!made.before.usable)
+    status = scree_fail(error, SCREE_BAD_MESH, "the mesh is %s", made.before.verdict);
+  else if (mesh != ready)
+    status = scree_mesh_copy(mesh, ready, error);
+  if (report && (status == SCREE_OK || status == SCREE_BAD_MESH)) *report = made;
+  return status;
+}
