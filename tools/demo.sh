@@ -10,6 +10,6 @@ echo "results: $folder/ (the curves as CSV, the chosen meshes as STL, the figure
 echo "report:  $folder/report.html (open it in a browser)"
 
 echo
-echo "A heap of these nine shapes, at a tenth of the chosen triangles so that it takes about a minute:"
-"$program" repose "$folder"/*.stl --rp 0.1 -p demo -o "$folder/heap" -f
+echo "A heap of these nine shapes at the chosen triangles, in a minute or two:"
+"$program" repose "$folder"/*.stl --rp 1 -p demo -o "$folder/heap" -f
 [ ! -f "$folder/heap/heap.png" ] || echo "picture:           $folder/heap/heap.png"
