@@ -8,20 +8,22 @@
 extern "C" {
 #endif
 
-/* From a curve to a triangle count. Three rules, and which to take:
+/* From a curve to a triangle count, by one of three rules.
  *
- *   recommended  the default: the coarsest level that keeps a tolerance on each of several errors
- *                against the scan (scree/fidelity.h). It is the same for scans of any resolution
- * and noise, and gives every body the same fidelity paper        the least Ip on a logarithmic grid
- * of Rp = N / Nm, where (Katagiri and Koyanaka 2020, eq. 1 and 2)
+ * recommended, the default: the coarsest level that keeps a tolerance on each of several errors
+ * against the scan (scree/fidelity.h). It is the same for scans of any resolution and noise, and
+ * gives every body the same fidelity.
  *
- *                  eps_s(N) = |S(N) - S_ref| / S_ref        Ip(N) = eps_s(N) + w N / Nm
+ * paper: the least Ip on a logarithmic grid of Rp = N / Nm (Katagiri and Koyanaka 2020, eq. 1 and
+ * 2), to repeat what they did:
  *
- *                with S the surface area at N triangles, Nm the scan's count, S_ref the scan's area
- *                Sm and w = 1: to repeat what the paper did
- *   robust       the least of (worst eps_s at N or any finer level) + w N / Nm, over every level:
- *                eps_s falls to zero where S crosses S_ref by accident, the worst so far does not.
- *                The paper's criterion for a single scan
+ *     eps_s(N) = |S(N) - S_ref| / S_ref        Ip(N) = eps_s(N) + w N / Nm
+ *
+ * with S the surface area at N triangles, Nm the scan's count, S_ref the scan's area and w = 1.
+ *
+ * robust: the least of (worst eps_s at N or any finer level) + w N / Nm, over every level. eps_s
+ * falls to zero where S crosses S_ref by accident, the worst so far does not: the paper's criterion
+ * for a single scan.
  *
  * Beside them stands the criterion in the paper's form with a scale that is the cost of simulating
  * and not the scan's count, I = mean distance / D + N / SCREE_COST_COUNT: no tolerances, but unlike
