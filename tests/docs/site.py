@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The site is built without a warning; nothing on it is missing or asked from a network: pages, anchors, styles, scripts,
-pictures; its search finds from disk, and no page scrolls sideways on a telephone. usage: site.py ROOT BUILD"""
+pictures; the keyboard reaches code; its search finds from disk, and no page scrolls sideways on a telephone. usage: site.py ROOT BUILD"""
 import html.parser
 import os
 import re
@@ -16,13 +16,14 @@ root, build = sys.argv[1:]
 class Page(html.parser.HTMLParser):
     def __init__(self, path):
         super().__init__()
-        self.links, self.ids = [], set()
+        self.links, self.ids, self.unreached = [], set(), 0
         with open(path, encoding="utf-8") as file:
             self.feed(file.read())
 
     def handle_starttag(self, tag, attributes):
         values = dict(attributes)
         self.ids.add(values.get("id"))
+        self.unreached += tag == "pre" and "tabindex" not in values
         link = values.get("href") if tag in ("a", "link") else values.get("src")
         if link:
             self.links.append((tag, link))
@@ -33,6 +34,8 @@ def missing(folder):
     for path in pages:
         pages[path] = Page(path)
     for path, page in pages.items():
+        if page.unreached:
+            yield f"{path}: code that the keyboard does not reach"
         for tag, link in page.links:
             url = urllib.parse.urlsplit(link)
             if url.scheme in ("http", "https"):

@@ -107,6 +107,12 @@ def style_formulas(app, name, template, context, doctree):
         app.add_css_file("katex.min.css")
 
 
+def reach_code(app, name, template, context, doctree):
+    """Code that scrolls sideways must be reached by the keyboard."""
+    if "body" in context:
+        context["body"] = context["body"].replace("<pre>", '<pre tabindex="0">')
+
+
 def set_before(translator, node):
     raise AssertionError("formulas are set before pages are written")
 
@@ -116,4 +122,5 @@ def setup(app):
     app.connect("doctree-resolved", gather_sections, priority=400)
     app.connect("doctree-resolved", set_formulas, priority=500)
     app.connect("html-page-context", style_formulas)
+    app.connect("html-page-context", reach_code)
     app.connect("build-finished", finish)
