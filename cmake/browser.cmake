@@ -1,5 +1,5 @@
 # Small where speed is not asked for: the page has it all inside.
-file(GLOB cold src/report/*.c src/cli/*.c src/scene/*.c src/sample/*.c src/pile/*.c src/heap/*.c)
+file(GLOB cold src/report/*.c src/cli/*.c src/scene/*.c src/sample/*.c src/heap/*.c)
 set_source_files_properties(${cold} PROPERTIES COMPILE_OPTIONS -Os)
 target_compile_options(qhull_sources PRIVATE -Os)
 target_compile_options(yaml_sources PRIVATE -Os)

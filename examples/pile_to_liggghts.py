@@ -2,7 +2,7 @@
 with its velocities.
 
     scree drop phone.stl=50 --clump 20 -o drop
-    scree export drop/last.world -o pile
+    scree export drop/checkpoint.scree -o pile
     python3 pile_to_liggghts.py pile liggghts           writes liggghts/in.pile and liggghts/clump-K.txt
     cd liggghts && liggghts -in in.pile                 (Debian: liggghts)
 

@@ -36,7 +36,6 @@
 #include "scree/measure.h"
 #include "scree/mesh.h"
 #include "scree/particle.h"
-#include "scree/pile.h"
 #include "scree/report.h"
 #include "scree/sample.h"
 #include "scree/scene.h"

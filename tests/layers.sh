@@ -8,7 +8,7 @@ set -eu
 cd "$1"
 root=.
 compiler=$2
-layers="base mesh simplify choice sample particle clump world heap scene pile study calibrate report"
+layers="base mesh simplify choice sample particle clump world heap scene study calibrate report"
 failed=0
 complain() {
   echo "$1"
@@ -16,7 +16,7 @@ complain() {
 }
 
 earlier=""
-for header in base mesh measure check simplify fidelity choice sample particle clump world heap scene pile study calibrate report; do
+for header in base mesh measure check simplify fidelity choice sample particle clump world heap scene study calibrate report; do
   for included in $(sed -n 's/^#include "scree\/\([a-z]*\)\.h"/\1/p' "$root/include/scree/$header.h"); do
     case " $earlier " in
       *" $included "*) ;;

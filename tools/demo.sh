@@ -12,4 +12,4 @@ echo "report:  $folder/report.html (open it in a browser)"
 echo
 echo "A heap of these nine shapes at the chosen triangles, in a minute or two:"
 "$program" repose "$folder"/*.stl --rp 1 -p demo -o "$folder/heap" -f
-[ ! -f "$folder/heap/heap.png" ] || echo "picture:           $folder/heap/heap.png"
+[ ! -f "$folder/heap/scene.png" ] || echo "picture:           $folder/heap/scene.png"

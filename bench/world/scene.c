@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double soft = 0.3;       /* stiffness while a scene is made */
 static const double entry_speed = 3;  /* m/s, about */
@@ -85,41 +86,64 @@ static scree_world *settle(scree_world *world) {
   return stage(world, (remake){.stiffness_factor = 1, .gravity = 9.81}, hard_time);
 }
 
-/* A run refuses layers that would enter faster than 8 m/s: the shortest time it takes is lengthened
- * to our speed. */
-static scree_run *create_run(scree_experiment *e, const scree_run_shape *shapes, size_t count) {
+static void set(scree_scene_file *file, const char *field, double value) {
   scree_error error;
-  scree_run *run = NULL;
-  e->pack_time = 0.1;
-  while (scree_run_create(e, shapes, count, &run, &error) == SCREE_BAD_ARGUMENT &&
-         e->pack_time < 1e3)
-    e->pack_time *= 1.2;
-  scree_run_free(run);
-  run = NULL;
-  e->pack_time *= 8 / entry_speed;
-  need(scree_run_create(e, shapes, count, &run, &error), &error);
-  return run;
+  char text[32];
+  snprintf(text, sizeof text, "%.17g", value);
+  need(scree_scene_file_set(file, field, text, &error), &error);
+}
+
+/* A scene refuses layers that would enter faster than 8 m/s: the shortest time it takes is
+ * lengthened to our speed. */
+static scree_scene *create_scene(scree_scene_file *file, scree_shape_store *store) {
+  scree_error error;
+  scree_scene *scene = NULL;
+  double pack_time = 0.1;
+  set(file, "phases.pack_time", pack_time);
+  while (scree_scene_create_from(file, store, NULL, &scene, &error) == SCREE_BAD_ARGUMENT &&
+         pack_time < 1e3)
+    set(file, "phases.pack_time", pack_time *= 1.2);
+  scree_scene_free(scene);
+  set(file, "phases.pack_time", pack_time * 8 / entry_speed);
+  need(scree_scene_create_from(file, store, NULL, &scene, &error), &error);
+  return scene;
+}
+
+/* The template `repose`, filled with the shapes in equal shares. */
+static scree_scene *fill(const shape_set *shapes, size_t count, uint64_t seed) {
+  scree_error error;
+  scree_scene_file *file;
+  scree_shape_store *store;
+  scree_poured poured[MOST_SHAPES];
+  char names[MOST_SHAPES][16];
+  need(scree_scene_file_template("repose", &file, &error), &error);
+  need(scree_shape_store_create(&store, &error), &error);
+  for (size_t i = 0; i < shapes->count; i++) {
+    snprintf(names[i], sizeof names[i], "shape-%zu", i);
+    poured[i] = (scree_poured){names[i], "file", names[i], 1};
+    need(scree_shape_store_give(store, names[i], shapes->items[i], &error), &error);
+  }
+  need(scree_scene_file_pour(file, poured, shapes->count, &error), &error);
+  set(file, "particles", (double)count);
+  set(file, "seed", (double)seed);
+  set(file, "contact.stiffness_factor", soft);
+  set(file, "gravity", 0.981);
+  set(file, "phases.settle_time", 0.2);
+  scree_scene *scene = create_scene(file, store);
+  scree_shape_store_free(store);
+  scree_scene_file_free(file);
+  return scene;
 }
 
 scree_world *fill_scene(const shape_set *shapes, size_t count, uint64_t seed) {
   scree_error error;
-  scree_experiment e;
-  need(scree_experiment_preset("paper", &e, &error), &error);
-  e.particle_count = count;
-  e.seed = seed;
-  e.stiffness_factor = soft;
-  e.gravity = 0.981;
-  e.settle_time = 0.2;
-  scree_run_shape list[MOST_SHAPES];
-  for (size_t i = 0; i < shapes->count; i++)
-    list[i] = (scree_run_shape){.particle = shapes->items[i], .density_factor = 1};
-  scree_run *run = create_run(&e, list, shapes->count);
-  while (scree_run_phase(run) < SCREE_PHASE_LIFT)
-    need(scree_run_advance(run, 1000, &error), &error);
+  scree_scene *scene = fill(shapes, count, seed);
+  while (strcmp(scree_scene_phase(scene), "pack") == 0 ||
+         strcmp(scree_scene_phase(scene), "settle") == 0)
+    need(scree_scene_advance(scene, 1000, &error), &error);
   scree_world *world =
-      make_again(scree_run_world(run), &(remake){.stiffness_factor = soft, .gravity = 9.81});
-  scree_run_free(run);
-  scree_experiment_free(&e);
+      make_again(scree_scene_view(scene), &(remake){.stiffness_factor = soft, .gravity = 9.81});
+  scree_scene_free(scene);
   return settle(world);
 }
 

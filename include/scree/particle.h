@@ -2,7 +2,7 @@
 #ifndef SCREE_PARTICLE_H
 #define SCREE_PARTICLE_H
 
-#include "scree/mesh.h"
+#include "scree/simplify.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -90,6 +90,63 @@ SCREE_API const scree_mesh *scree_particle_mesh(const scree_particle *particle);
 /* Sphere or contact point `index` in the particle's frame, with its radius. */
 SCREE_API void scree_particle_point(const scree_particle *particle, size_t index, double centre[3],
                                     double *radius);
+
+/* ---- From a scan to a particle ---- */
+
+/* What a shape is made from: one of file, sample, table, sphere and box. Texts are borrowed. */
+typedef struct scree_shape_spec {
+  const char *file;         /* a scan: read, checked, repaired where need be */
+  const char *sample;       /* a built-in device, as "sp-1" */
+  const char *table;        /* of the spheres of a clump (scree_particle_clump_read) */
+  double sphere;            /* m, its diameter; 0: none */
+  double box[3];            /* m, its sides; the first 0: none */
+  double unit_m;            /* m per unit of the files; 0: as they say, else mm */
+  double resolution, noise; /* m, of a sample; 0, of noise NaN: as usual */
+  uint64_t sample_seed;
+  bool no_repair;      /* refuse a scan that is no closed surface */
+  scree_method method; /* of decimation */
+  /* Of scans, samples and boxes: "all" or "scan", "recommended" (as `scree choose` does), a
+   * multiple as "0.5*recommended", a percentage reduction in (0, 1], "clump:20" (so many spheres
+   * that stand for it), "spheres" (of a table too: the sphere of its volume). NULL: all, or where
+   * those are more than SCREE_DENSE_SCAN triangles as recommended. */
+  const char *level;
+  size_t triangle_count; /* or at most so many triangles; 0: by level */
+  size_t spheres;        /* a clump of so many spheres that stands for that level; 0: none */
+} scree_shape_spec;
+SCREE_API scree_shape_spec scree_default_shape_spec(void);
+
+/* Why a text is no level; NULL: it is one. */
+SCREE_API const char *scree_shape_level_error(const char *level);
+
+typedef struct scree_shape_made {
+  scree_particle *particle;                   /* to be freed */
+  size_t scan_triangle_count, triangle_count; /* 0: of spheres */
+  double scan_volume;                         /* m3, before decimation */
+  double recommended;      /* the Rp chosen, where it was asked for or taken; else NaN */
+  bool repaired;           /* it was no closed surface */
+  scree_checksum checksum; /* of the file; zero: of none */
+} scree_shape_made;
+
+/* Keeps what was made, so that it is made once; scans of one file are decimated once for all levels
+ * that are asked for one after the other. */
+typedef struct scree_shape_store scree_shape_store;
+SCREE_API scree_status scree_shape_store_create(scree_shape_store **store, scree_error *error);
+SCREE_API void scree_shape_store_free(scree_shape_store *store);
+
+/* Has the store give this particle for a shape of that file, whatever is in it; it holds its own
+ * reference. */
+SCREE_API scree_status scree_shape_store_give(scree_shape_store *store, const char *file,
+                                              scree_particle *particle, scree_error *error);
+
+/* Makes the particle, or takes it from the store (NULL: none). Levels do not hang on the file's
+ * unit; a level is the first with at most so many triangles, truncated, or the last where the scan
+ * cannot be reduced so far, in canonical order. Errors as of reading, scree_mesh_prepare,
+ * scree_curve_build and scree_particle_from_mesh; SCREE_LIMIT where more than
+ * SCREE_MOST_TRIANGLES triangles are left. Cost: that of reading and of decimating. */
+enum { SCREE_MOST_TRIANGLES = 100000 };
+SCREE_API scree_status scree_shape_make(const scree_shape_spec *spec, scree_shape_store *store,
+                                        const scree_progress *progress, scree_shape_made *made,
+                                        scree_error *error);
 
 #ifdef __cplusplus
 }

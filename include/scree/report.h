@@ -6,7 +6,7 @@
 #include "scree/clump.h"
 #include "scree/measure.h"
 #include "scree/particle.h"
-#include "scree/pile.h"
+#include "scree/scene.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -448,41 +448,6 @@ SCREE_API scree_status scree_world_export(const scree_world *world,
                                           const scree_export_options *options, const char *folder,
                                           scree_error *error);
 
-/* ---- Heaps: JSON, CSV, pictures ---- */
-
-/* A run and what was measured of it. Texts are borrowed. */
-typedef struct scree_heap_entry {
-  const scree_run *run;
-  const scree_run_result *result;
-  const char *file;                /* the frame measured; NULL: the run itself, as it ended */
-  const scree_experiment *measure; /* the settings of the measurement; NULL: the run's own */
-  const char *command_line;        /* NULL: unknown */
-} scree_heap_entry;
-
-/* One object: version, command, experiment, shapes, the heap three ways, costs, and the series as
- * columns (docs/reference/formats.md). "-" is stdout. */
-SCREE_API scree_status scree_heap_json_write(const scree_heap_entry *entry, const char *path,
-                                             bool overwrite, scree_error *error);
-/* The series, one row a point. "-" is stdout. */
-SCREE_API scree_status scree_series_csv_write(const scree_run *run, const char *path,
-                                              bool overwrite, scree_error *error);
-
-/* ---- Pours: JSON ---- */
-
-/* A pour as it stands. Texts are borrowed. */
-typedef struct scree_pour_entry {
-  const scree_pour *pour;
-  const char *const *names;    /* of each shape, short */
-  const char *const *sources;  /* where each came from; NULL: unknown */
-  const char *stopped_because; /* it was interrupted, or diverged; NULL: it came to its end */
-  const char *command_line;    /* NULL: unknown */
-} scree_pour_entry;
-
-/* One object: version, command, the state at the end, options, shapes in the order of their first
- * bodies, and its series as columns (docs/reference/formats.md). "-" is stdout. */
-SCREE_API scree_status scree_pour_json_write(const scree_pour_entry *entry, const char *path,
-                                             bool overwrite, scree_error *error);
-
 /* ---- Scenes: JSON and pictures ---- */
 
 /* A scene as it stands. Texts are borrowed. */
@@ -492,12 +457,23 @@ typedef struct scree_scene_entry {
   const char *stopped_because; /* it was interrupted, or diverged; NULL: it came to its end */
   const char *command_line;    /* NULL: unknown */
   double seconds;              /* on the clock */
+  const scree_pile_settings *measure; /* of piles; NULL: the scene's own */
 } scree_scene_entry;
 
-/* One object: version, command, why it ended, the book, shapes, inlets, outlets, and every column
- * with its last value, mean, extremes and series (docs/reference/formats.md). "-" is stdout. */
+/* One object: version, command, why it ended, costs, the book, piles three ways, shapes, inlets,
+ * outlets, and every column with its last value, mean, extremes and series
+ * (docs/reference/formats.md). "-" is stdout. */
 SCREE_API scree_status scree_scene_json_write(const scree_scene_entry *entry, const char *path,
                                               bool overwrite, scree_error *error);
+/* The series, a row each. "-" is stdout. */
+SCREE_API scree_status scree_scene_csv_write(const scree_scene *scene, const char *path,
+                                             bool overwrite, scree_error *error);
+/* The first pile's bodies without the geometry, seen as options say; a focus of radius 0 is put on
+ * the pile, strays may lie outside. Errors as scree_render. */
+SCREE_API scree_status scree_scene_pile_picture(const scree_scene *scene,
+                                                const scree_render_options *options,
+                                                const scree_progress *progress, scree_image *image,
+                                                scree_error *error);
 /* The bodies and the geometry, which is cut open towards the viewer. Errors as scree_render. */
 SCREE_API scree_status scree_scene_picture(const scree_scene *scene,
                                            const scree_render_options *options,
@@ -510,11 +486,6 @@ SCREE_API scree_status scree_world_picture(const scree_world *world,
                                            const scree_render_options *options,
                                            const scree_progress *progress, scree_image *image,
                                            scree_error *error);
-/* The particles of a run as they stand, each shape in its colour, seen as options say; a focus of
- * radius 0 is put on the heap, strays may lie outside. Errors as scree_render. */
-SCREE_API scree_status scree_run_picture(const scree_run *run, const scree_render_options *options,
-                                         const scree_progress *progress, scree_image *image,
-                                         scree_error *error);
 
 #ifdef __cplusplus
 }

@@ -25,10 +25,37 @@ SCREE_API scree_status scree_scene_file_read(const char *path, scree_scene_file 
 SCREE_API scree_status scree_scene_file_parse(const char *text, size_t byte_count, const char *name,
                                               scree_scene_file **file, scree_error *error);
 SCREE_API void scree_scene_file_free(scree_scene_file *file);
+/* A copy of a template (scree_scene_template_name), to be changed. */
+SCREE_API scree_status scree_scene_file_template(const char *name, scree_scene_file **file,
+                                                 scree_error *error);
+/* Reads a scene; or of a file without inlets settings for a template: values of its parameters and
+ * fields, over those of a preset: its own, else that one (NULL: none). */
+SCREE_API scree_status scree_scene_file_read_over(const char *path, const char *template_name,
+                                                  const char *preset, scree_scene_file **file,
+                                                  scree_error *error);
 /* Sets any field, as `inlets.feed.rate` to "5" or `gravity` to "[0, 0, -1.62]"; items of lists are
- * counted from 0, as in `geometry.drum.motion.0.rotate.speed`. */
+ * counted from 0, as in `geometry.drum.motion.0.rotate.speed`. A parameter of the file sets the
+ * fields that it stands for, `preset` all values of that preset. */
 SCREE_API scree_status scree_scene_file_set(scree_scene_file *file, const char *field,
                                             const char *value, scree_error *error);
+/* Sets a field and checks all; the error begins with the field. SCREE_BAD_FILE: it stays set, and
+ * may be good once others are. */
+SCREE_API scree_status scree_scene_file_try(scree_scene_file *file, const char *field,
+                                            const char *value, scree_error *error);
+
+/* Shapes of a study, or of the command line, at most. */
+enum { SCREE_MOST_SHAPES = 1000 };
+
+/* One of the shapes that a scene's inlets pour; texts are borrowed. */
+typedef struct scree_poured {
+  const char *name;         /* of the shape, at most 64 characters and no point */
+  const char *kind, *value; /* "file" and its path, "sample" and its name, "sphere" and m, ... */
+  double share;             /* by number */
+} scree_poured;
+/* Puts these shapes in place of all others, of the first material that no geometry is of, and has
+ * all inlets pour them. */
+SCREE_API scree_status scree_scene_file_pour(scree_scene_file *file, const scree_poured *shapes,
+                                             size_t count, scree_error *error);
 /* Checks all but the files it names. */
 SCREE_API scree_status scree_scene_file_check(const scree_scene_file *file, scree_error *error);
 /* The columns that its sensors will have (scree_scene_column_name), known before it is made; to be
@@ -57,6 +84,16 @@ typedef struct scree_scene scree_scene;
 SCREE_API scree_status scree_scene_create(const scree_scene_file *file,
                                           const scree_progress *progress, scree_scene **scene,
                                           scree_error *error);
+/* The same with shapes from a store, which may be NULL. */
+SCREE_API scree_status scree_scene_create_from(const scree_scene_file *file,
+                                               scree_shape_store *store,
+                                               const scree_progress *progress, scree_scene **scene,
+                                               scree_error *error);
+/* m: the diameter of the largest shape of a file, which is made for it. */
+SCREE_API scree_status scree_scene_file_largest(const scree_scene_file *file,
+                                                scree_shape_store *store,
+                                                const scree_progress *progress, double *diameter,
+                                                scree_error *error);
 SCREE_API void scree_scene_free(scree_scene *scene);
 
 /* Advances by at most step_count time steps; stops earlier where the scene ends. SCREE_DIVERGED as
@@ -65,6 +102,8 @@ SCREE_API scree_status scree_scene_advance(scree_scene *scene, size_t step_count
                                            scree_error *error);
 /* Why it has ended: "the time is over", "still", "empty"; NULL: it has not. */
 SCREE_API const char *scree_scene_end(const scree_scene *scene);
+/* The phase that it is in; NULL: none. */
+SCREE_API const char *scree_scene_phase(const scree_scene *scene);
 /* s: the scene's `time`. */
 SCREE_API double scree_scene_duration(const scree_scene *scene);
 SCREE_API const char *scree_scene_title(const scree_scene *scene);
@@ -170,6 +209,40 @@ SCREE_API const double *scree_scene_series(const scree_scene *scene, size_t *row
 SCREE_API const double *scree_scene_wear(const scree_scene *scene, size_t wall,
                                          size_t *triangle_count);
 
+/* ---- Piles ---- */
+
+/* How a pile is measured: the fields of a `pile` sensor. */
+typedef struct scree_pile_settings {
+  double cell; /* m, of the height field; 0: a tenth of the size of a body */
+  size_t sectors;
+  double band_low, band_high;
+} scree_pile_settings;
+
+typedef struct scree_pile {
+  scree_repose repose;
+  size_t body_count;       /* bodies of it: above the floor, and over the disc where there is one */
+  double packing_fraction; /* their solid volume over the volume under the height field */
+  double size;             /* m, of a body */
+} scree_pile;
+
+/* The sensor of pile `index`; NULL past the last. */
+SCREE_API const char *scree_scene_pile_name(const scree_scene *scene, size_t index);
+SCREE_API scree_pile_settings scree_scene_pile_settings(const scree_scene *scene, size_t index);
+/* Measures it as it stands; settings may be NULL: the scene's own. */
+SCREE_API scree_status scree_scene_measure_pile(const scree_scene *scene, size_t index,
+                                                const scree_pile_settings *settings,
+                                                scree_pile *pile, scree_error *error);
+
+/* ---- What it cost ---- */
+
+/* All pieces between interruptions together. */
+typedef struct scree_scene_costs {
+  uint64_t body_steps;                    /* sum over the steps of the bodies in the world */
+  double wall_seconds, processor_seconds; /* of advancing it; processor: of the process */
+  uint64_t piece_count;                   /* 1, and one more for every resume */
+} scree_scene_costs;
+SCREE_API scree_scene_costs scree_scene_get_costs(const scree_scene *scene);
+
 /* ---- Scenes on disk ---- */
 
 /* Writes a checkpoint (docs/reference/formats.md), which stands alone. Complete under its name or
@@ -177,8 +250,13 @@ SCREE_API const double *scree_scene_wear(const scree_scene *scene, size_t wall,
  */
 SCREE_API scree_status scree_scene_save(const scree_scene *scene, const char *path, bool overwrite,
                                         scree_error *error);
-/* Reads one; every later step has the same bits as in the scene that was saved. SCREE_BAD_FILE with
- * file and reason. */
+/* Writes a frame: the same without the contacts, a fraction of the size; it can be measured and
+ * drawn, not continued. */
+SCREE_API scree_status scree_scene_save_frame(const scree_scene *scene, const char *path,
+                                              bool overwrite, scree_error *error);
+SCREE_API bool scree_scene_is_frame(const scree_scene *scene);
+/* Reads either; every later step has the same bits as in the scene that was saved, a frame is
+ * refused by scree_scene_advance with SCREE_UNSUPPORTED. SCREE_BAD_FILE with file and reason. */
 SCREE_API scree_status scree_scene_load(const char *path, scree_scene **scene, scree_error *error);
 
 /* Its bodies as a table that `bodies: {file: ...}` of a scene reads: shape, position, orientation,
@@ -203,6 +281,11 @@ typedef struct scree_scene_job {
    * Only title, time, stop and output may differ, but for output.frames and series. Without resume
    * a folder that has one is refused with SCREE_EXISTS, unless overwrite. */
   bool resume, overwrite;
+  /* The folder also gets a frame at every output.frames, frame-NNNNNN.scree counted from 0, and
+   * last.scree at the end. */
+  bool states;
+  bool no_motion;                 /* and no motion.scree */
+  scree_shape_store *store;       /* where its shapes are made; NULL: none */
   const scree_progress *progress; /* of making the scene; may be NULL */
   /* Called a few times a second; false cancels: the checkpoint is written, and the answer is
    * SCREE_CANCELLED. NULL: none. */
@@ -224,17 +307,16 @@ SCREE_API scree_status scree_scene_complete(const scree_scene_job *job, scree_sc
 
 /* ---- Motion ---- */
 
-/* Where every body of a run, a pour or a scene was at moments of its time. */
+/* Where every wall and body of a scene was at moments of its time. */
 typedef struct scree_motion {
-  size_t frame_count, body_count;
-  double *time;            /* s, of each frame, rising */
-  double *cylinder_height; /* m, likewise, of a run */
+  size_t frame_count, body_count; /* the walls first, which count as bodies here */
+  double *time;                   /* s, of each frame, rising */
   float *poses; /* of body b in frame f the 7 from 7 (f body_count + b): position, m, and quaternion
                    w x y z (within 2e-5 rad); NaN where the body is not in the world */
 } scree_motion;
 
-/* Reads motion.scree of a run's folder; a frame at its end that was not written whole is left out.
- * SCREE_BAD_FILE for anything else. */
+/* Reads motion.scree of a scene's folder; a frame at its end that was not written whole is left
+ * out. SCREE_BAD_FILE for anything else. */
 SCREE_API scree_status scree_motion_read(const char *path, scree_motion *motion,
                                          scree_error *error);
 SCREE_API void scree_motion_free(scree_motion *motion);

@@ -12,14 +12,13 @@ lists where it is not. What the library refuses is a scree.Error with one senten
 from ._calibrate import calibrate, optimise
 from ._library import Error, c_uint32 as _uint32, lib as _lib
 from ._mesh import Choice, Curve, Mesh, load, sample, samples
-from ._pour import Pour
-from ._run import Experiment, Motion, Run, report, repose
+from ._results import Motion, report
 from ._scene import Scene
 from ._values import whole as _whole
 from ._world import Particle, World, write_pvd
 
-__all__ = ["Choice", "Curve", "Error", "Experiment", "Mesh", "Motion", "Particle", "Pour", "Run", "Scene", "World", "calibrate", "load",
-           "optimise", "report", "repose", "sample", "samples", "set_threads", "version", "write_pvd"]
+__all__ = ["Choice", "Curve", "Error", "Mesh", "Motion", "Particle", "Scene", "World", "calibrate", "load", "optimise",
+           "report", "sample", "samples", "set_threads", "version", "write_pvd"]
 
 
 def version():

@@ -19,7 +19,6 @@ SHAPE_ERRORS = ("area", "volume", "hausdorff", "mean_distance", "inertia", "widt
                 "normals")
 PARTICLE_KINDS = ("mesh", "sphere", "clump")
 LAWS = ("linear", "hysteretic", "hertz")
-CONTAINERS = ("cylinder", "box")
 WALL_KINDS = ("plane", "disc", "cylinder", "mesh")
 MOTION_LAWS = ("constant", "sine", "positions", "speeds")
 VIEWS = ("surfaces", "points", "contacts", "walls")
@@ -256,64 +255,40 @@ class scree_repose(Structure):
                 ("run_out", c_double), ("envelope_volume", c_double)]
 
 
-class scree_run_result(Structure):
-    _fields_ = [("repose", scree_repose), ("body_count", c_size_t), ("left_count", c_size_t),
-                ("packing_fraction", c_double), ("coordination", c_double), ("particle_size", c_double),
-                ("kinetic", c_double), ("time", c_double), ("still", c_bool)]
+class scree_pile(Structure):
+    _fields_ = [("repose", scree_repose), ("body_count", c_size_t), ("packing_fraction", c_double), ("size", c_double)]
 
 
-class scree_run_point(Structure):
-    _fields_ = [("time", c_double), ("phase", c_int), ("body_count", c_size_t)] + [(name, c_double) for name in (
-        "kinetic", "mean_rotation", "highest_speed", "largest_overlap", "coordination", "cylinder_height",
-        "sector_deg", "cone_deg", "silhouette_deg", "height")]
+class scree_pile_settings(Structure):
+    _fields_ = [("cell", c_double), ("sectors", c_size_t), ("band_low", c_double), ("band_high", c_double)]
 
 
-class scree_run_shape(Structure):
-    _fields_ = [("particle", c_void_p), ("density_factor", c_double), ("name", c_char_p), ("source", c_char_p)]
+class scree_poured(Structure):
+    _fields_ = [("name", c_char_p), ("kind", c_char_p), ("value", c_char_p), ("share", c_double)]
 
 
-class scree_run_costs(Structure):
-    _fields_ = [("time_step", c_double), ("step_count", c_uint64), ("particle_steps", c_uint64),
-                ("wall_seconds", c_double), ("processor_seconds", c_double), ("piece_count", c_size_t),
-                ("largest_overlap", c_double)]
+class scree_scene_costs(Structure):
+    _fields_ = [("body_steps", c_uint64), ("wall_seconds", c_double), ("processor_seconds", c_double),
+                ("piece_count", c_uint64)]
 
 
-class scree_run_state(Structure):
-    _fields_ = [("run", c_void_p), ("now", scree_run_point), ("fraction", c_double),
-                ("steps_per_second", c_double), ("seconds_left", c_double)]
+class scree_scene_state(Structure):
+    _fields_ = [("scene", c_void_p)] + [(name, c_double) for name in (
+        "time", "fraction", "steps_per_second", "seconds_left")]
 
 
-class scree_experiment(Structure):
-    _fields_ = [("preset", c_void_p), ("particle_count", c_size_t), ("seed", c_uint64), ("density", c_double),
-                ("mass_rule", c_int)] + [(name, c_double) for name in (
-                    "cylinder_diameter", "disc_diameter", "pack_time", "settle_time", "lift_speed", "lift_time",
-                    "hold_time", "still_energy")] + [
-        ("stop_when_still", c_bool), ("inlet", c_int)] + [(name, c_double) for name in (
-            "drop_height", "gravity", "young_particle", "young_wall", "restitution",
-            "friction_particle", "friction_wall")] + [("contact_law", c_int)] + [(name, c_double) for name in (
-                "steps_per_contact", "stiffness_factor", "frame_interval", "checkpoint_interval",
-                "series_interval", "angle_interval", "height_cell")] + [
-        ("sector_count", c_size_t), ("band_low", c_double), ("band_high", c_double)]
+WATCH = CFUNCTYPE(c_bool, c_void_p, POINTER(scree_scene_state))
 
 
-WATCH = CFUNCTYPE(c_bool, c_void_p, POINTER(scree_run_state))
-FRAME = CFUNCTYPE(c_int, c_void_p, c_void_p, c_size_t, c_void_p)
+class scree_scene_job(Structure):
+    _fields_ = [("file", c_void_p), ("folder", c_char_p), ("resume", c_bool), ("overwrite", c_bool), ("states", c_bool),
+                ("no_motion", c_bool), ("store", c_void_p), ("progress", POINTER(scree_progress)), ("watch", WATCH),
+                ("begun", c_void_p), ("frame", c_void_p), ("context", c_void_p)]
 
 
-class scree_run_job(Structure):
-    _fields_ = [("experiment", POINTER(scree_experiment)), ("shapes", POINTER(scree_run_shape)),
-                ("shape_count", c_size_t), ("folder", c_char_p), ("motion", c_bool), ("resume", c_bool),
-                ("overwrite", c_bool), ("watch", WATCH), ("frame", FRAME), ("context", c_void_p)]
-
-
-class scree_pour_shape(Structure):
-    _fields_ = [("particle", c_void_p), ("count", c_size_t), ("name", c_char_p), ("source", c_char_p)]
-
-
-class scree_pour_options(Structure):
-    _fields_ = [("world", scree_world_options), ("particles", scree_material), ("walls", scree_material),
-                ("container", c_int), ("width", c_double), ("depth", c_double), ("drop_height", c_double),
-                ("entry_speed", c_double), ("seed", c_uint64)]
+class scree_scene_entry(Structure):
+    _fields_ = [("scene", c_void_p), ("file", c_char_p), ("stopped_because", c_char_p), ("command_line", c_char_p),
+                ("seconds", c_double), ("measure", POINTER(scree_pile_settings))]
 
 
 class scree_scene_book(Structure):
@@ -324,12 +299,7 @@ class scree_scene_book(Structure):
 
 class scree_motion(Structure):
     _fields_ = [("frame_count", c_size_t), ("body_count", c_size_t), ("time", POINTER(c_double)),
-                ("cylinder_height", POINTER(c_double)), ("poses", POINTER(c_float))]
-
-
-class scree_heap_entry(Structure):
-    _fields_ = [("run", c_void_p), ("result", POINTER(scree_run_result)), ("file", c_char_p),
-                ("measure", POINTER(scree_experiment)), ("command_line", c_char_p)]
+                ("poses", POINTER(c_float))]
 
 
 class scree_calibration_progress(Structure):
@@ -395,33 +365,26 @@ _FALLIBLE = {  # argument types before the error
     "world_vtp_write": (_H, c_int, _S, c_bool),
     "world_export": (_H, POINTER(scree_export_options), _S),
     "pvd_write": (POINTER(_S), POINTER(c_double), c_size_t, _S, c_bool),
-    "run_load": (_S, _HH),
-    "run_measure": (_H, POINTER(scree_run_result)),
-    "run_complete": (POINTER(scree_run_job), _HH),
     "calibration_read": (_S, _HH),
     "calibration_open": (_H, _S),
     "calibration_work": (_H, c_size_t, _H, _P),
     "calibration_analyse": (_H, POINTER(scree_calibration_result)),
     "calibration_report_write": (POINTER(scree_calibration_result), _S),
     "motion_read": (_S, POINTER(scree_motion)),
-    "pour_create": (POINTER(scree_pour_shape), c_size_t, POINTER(scree_pour_options), _HH),
-    "pour_advance": (_H, c_size_t),
-    "pour_record": (_H, _S, c_double),
-    "pour_record_end": (_H,),
-    "pour_save": (_H, _S, c_bool),
-    "pour_load": (_S, _HH),
     "scene_file_read": (_S, _HH),
+    "scene_file_template": (_S, _HH),
+    "scene_file_pour": (_H, POINTER(scree_poured), c_size_t),
+    "shape_store_create": (_HH,),
+    "shape_store_give": (_H, _S, _H),
     "scene_file_set": (_H, _S, _S),
-    "scene_create": (_H, POINTER(scree_progress), _HH),
+    "scene_create_from": (_H, _H, _P, _HH),
+    "scene_complete": (POINTER(scree_scene_job), _HH),
+    "scene_measure_pile": (_H, c_size_t, POINTER(scree_pile_settings), POINTER(scree_pile)),
+    "scene_json_write": (POINTER(scree_scene_entry), _S, c_bool),
     "scene_advance": (_H, c_size_t),
     "scene_measure": (_H, POINTER(c_double)),
     "scene_save": (_H, _S, c_bool),
     "scene_load": (_S, _HH),
-    "experiment_preset": (_S, POINTER(scree_experiment)),
-    "experiment_read": (_S, POINTER(scree_experiment)),
-    "experiment_set": (POINTER(scree_experiment), _S, _S),
-    "experiment_check": (POINTER(scree_experiment),),
-    "heap_json_write": (POINTER(scree_heap_entry), _S, c_bool),
     "page_write": (POINTER(_S), c_size_t, _S, c_bool),
 }
 _PLAIN = {  # result, argument types
@@ -479,28 +442,7 @@ _PLAIN = {  # result, argument types
     "world_time_step": (c_double, (_H, c_char_p)),
     "world_observe": (None, (_H, POINTER(scree_observation))),
     "world_hash": (scree_checksum, (_H,)),
-    "experiment_free": (None, (POINTER(scree_experiment),)),
-    "experiment_key": (_S, (c_size_t,)),
-    "experiment_get": (c_bool, (POINTER(scree_experiment), _S, c_char_p, c_size_t)),
     "motion_free": (None, (POINTER(scree_motion),)),
-    "default_pour_options": (scree_pour_options, ()),
-    "pour_free": (None, (_H,)),
-    "pour_world": (_H, (_H,)),
-    "pour_get_options": (None, (_H, POINTER(scree_pour_options))),
-    "pour_particle_count": (c_size_t, (_H,)),
-    "pour_shape_of": (c_size_t, (_H, c_size_t)),
-    "pour_filling_time": (c_double, (_H,)),
-    "pour_entered_energy": (c_double, (_H,)),
-    "run_shape_count": (c_size_t, (_H,)),
-    "run_get_shape": (None, (_H, c_size_t, POINTER(scree_run_shape))),
-    "run_body_shape": (c_size_t, (_H, c_size_t)),
-    "run_get_costs": (None, (_H, POINTER(scree_run_costs))),
-    "run_free": (None, (_H,)),
-    "run_world": (_H, (_H,)),
-    "run_phase": (c_int, (_H,)),
-    "run_is_frame": (c_bool, (_H,)),
-    "run_series": (POINTER(scree_run_point), (_H, POINTER(c_size_t))),
-    "phase_name": (_S, (c_int,)),
     "calibration_free": (None, (_H,)),
     "calibration_is_search": (c_bool, (_H,)),
     "calibration_result_free": (None, (POINTER(scree_calibration_result),)),
@@ -508,7 +450,14 @@ _PLAIN = {  # result, argument types
     "scene_template_name": (_S, (c_size_t,)),
     "scene_template": (_S, (_S,)),
     "scene_free": (None, (_H,)),
+    "shape_store_free": (None, (_H,)),
     "scene_end": (_S, (_H,)),
+    "scene_phase": (_S, (_H,)),
+    "scene_is_frame": (c_bool, (_H,)),
+    "scene_get_costs": (scree_scene_costs, (_H,)),
+    "scene_pile_name": (_S, (_H, c_size_t)),
+    "scene_pile_settings": (scree_pile_settings, (_H, c_size_t)),
+    "scene_shape_source": (_S, (_H, c_size_t)),
     "scene_duration": (c_double, (_H,)),
     "scene_text": (_S, (_H,)),
     "scene_world": (_H, (_H,)),

@@ -6,8 +6,8 @@ import types
 
 from . import _library as c
 from ._library import call, lib
-from ._values import column, from_struct, whole
-from ._world import Owner, World
+from ._values import column, from_struct, set_fields, whole
+from ._world import Owner, Particle, World
 
 
 class Scene:
@@ -18,18 +18,57 @@ class Scene:
         scene.sensors["torque.power"]       # every number that is followed, now
         scene.bodies().position             # an array, a row a body
 
-    fields: any fields of the file and their values. `world` is the World, to look at and to push bodies in."""
+    fields: any fields and parameters of the file and their values. `world` is the World, to look at and to push bodies
+    in."""
 
     def __init__(self, path, fields=()):
         file = ctypes.c_void_p()
         call("scene_file_read", os.fsencode(path), file)
-        owner = Owner("scene_file_free", file)
-        for field, value in dict(fields).items():
-            call("scene_file_set", file, field.encode(), _yaml(value).encode())
+        self._make(file, fields)
+
+    @classmethod
+    def template(cls, name, shapes=(), fields=()):
+        """A template with shapes and fields of your own:
+
+            scene = Scene.template("repose", {"phone": mesh, "ball": Particle.sphere(0.02)}, {"preset": "small"})
+
+        name: one of templates(). shapes: by name a closed Mesh or a Particle, or one with its share by number, as
+        (mesh, 2); those of the template where there are none. fields: as of a scene; a preset goes first."""
+        file = ctypes.c_void_p()
+        call("scene_file_template", name.encode(), file)
+        self = cls.__new__(cls)
+        self._make(file, fields, {str(key): shape for key, shape in dict(shapes).items()})
+        return self
+
+    @staticmethod
+    def templates():
+        """The templates, by name: their text, to start a file from."""
+        return {name: lib["scene_template"](name.encode()).decode() for name in _names("scene_template_name")}
+
+    def _make(self, file, fields, shapes=()):
+        self._file, self._file_owner = file, Owner("scene_file_free", file)
+        self._store = ctypes.c_void_p()
+        call("shape_store_create", self._store)
+        self._store_owner = Owner("shape_store_free", self._store)
+        if shapes:
+            self._pour(shapes)
+        fields = dict(fields)
+        for field in sorted(fields, key="preset".__ne__):  # what else is given stands over the preset
+            call("scene_file_set", file, field.encode(), _yaml(fields[field]).encode())
         handle = ctypes.c_void_p()
-        call("scene_create", file, None, handle)
-        del owner
+        call("scene_create_from", file, self._store, None, handle)
         self._take(handle)
+
+    def _pour(self, shapes):
+        rows = (c.scree_poured * len(shapes))()
+        for row, (name, shape) in zip(rows, shapes.items()):
+            if not 0 < len(name) <= 64 or set(name) & set(".*"):
+                raise ValueError(f"a shape is named '{name}': 1 to 64 letters, no point and no star")
+            shape, share = shape if isinstance(shape, tuple) else (shape, 1)
+            particle = shape if isinstance(shape, Particle) else Particle(shape)
+            row.name, row.kind, row.value, row.share = name.encode(), b"file", name.encode(), share
+            call("shape_store_give", self._store, name.encode(), particle._handle)
+        call("scene_file_pour", self._file, rows, len(rows))
 
     def _take(self, handle):
         self._handle = handle
@@ -41,28 +80,78 @@ class Scene:
 
     @classmethod
     def load(cls, path):
-        """From a checkpoint of save(), or of `scree run`; goes on with the same bits."""
+        """From a checkpoint of save(), or of `scree run`; goes on with the same bits. Or from a frame, which can be
+        measured, and not gone on with."""
         handle = ctypes.c_void_p()
         call("scene_load", os.fsencode(path), handle)
-        return cls.__new__(cls)._take(handle)
+        self = cls.__new__(cls)
+        self._file = self._store = None
+        return self._take(handle)
 
     def save(self, path, overwrite=False):
         call("scene_save", self._handle, os.fsencode(path), overwrite)
 
-    @staticmethod
-    def template(name):
-        """The text of a template, such as "drum"; templates() are their names."""
-        text = lib["scene_template"](name.encode())
-        if text is None:
-            raise ValueError(f"no template '{name}'; there are {', '.join(Scene.templates())}")
-        return text.decode()
+    def complete(self, folder=None, resume=False, overwrite=False, progress=None):
+        """Runs the scene from its beginning to its end as `scree run -o` does; this is then how it stands. The folder gets
+        checkpoint.scree, series.csv, motion.scree, last.scree, and at the end scene.yaml and result.json, of which
+        report() makes a page. With resume it goes on from the checkpoint in the folder, where there is one.
+        progress(phase, fraction) cancels by returning False: the checkpoint is written, and Error has the status
+        CANCELLED."""
+        if self._file is None:
+            raise ValueError("a scene from a checkpoint has no beginning: run() goes on with it")
+        problems = []
 
-    @staticmethod
-    def templates():
-        return _names("scene_template_name")
+        def watch(_context, state):
+            try:
+                now = state.contents
+                phase = (lib["scene_phase"](now.scene) or b"scene").decode()
+                return progress is None or progress(phase, now.fraction) is not False
+            except BaseException as problem:  # must not pass through C
+                problems.append(problem)
+                return False
+
+        job = c.scree_scene_job(file=self._file, folder=os.fsencode(folder) if folder is not None else None, resume=resume,
+                                overwrite=overwrite, states=True, store=self._store, watch=c.WATCH(watch))
+        handle = ctypes.c_void_p()
+        try:
+            call("scene_complete", job, handle)
+        except c.Error:
+            if problems:
+                raise problems[0] from None
+            raise
+        finally:
+            if handle:
+                self._take(handle)
+        if folder is not None:
+            with open(os.path.join(os.fsdecode(folder), "scene.yaml"), "w", encoding="utf-8") as text:
+                text.write(str(self))
+            self.write_json(os.path.join(os.fsdecode(folder), "result.json"), overwrite=True)
+        return self
+
+    def write_json(self, path, overwrite=False):
+        """Why it ended, what it cost, piles, shapes and every column (docs/reference/formats.md): with this as result.json
+        and its text as scene.yaml in its folder, `report` shows the scene."""
+        entry = c.scree_scene_entry(scene=self._handle, seconds=self.costs().wall_seconds)
+        call("scene_json_write", entry, os.fsencode(path), overwrite)
+
+    def costs(self):
+        """body_steps, wall_seconds, processor_seconds, piece_count, of all pieces between interruptions."""
+        return from_struct(lib["scene_get_costs"](self._handle))
+
+    def piles(self, **settings):
+        """The piles of its sensors as they stand, by name: repose (angles in degrees, NaN where there is none),
+        body_count, packing_fraction, size. settings: cell, sectors, band_low, band_high, for the scene's own."""
+        found = {}
+        for i, name in enumerate(_names("scene_pile_name", self._handle)):
+            pile, how = c.scree_pile(), set_fields(lib["scene_pile_settings"](self._handle, i), settings, "a pile")
+            call("scene_measure_pile", self._handle, i, how, pile)
+            found[name] = from_struct(pile)
+        return found
 
     end = property(lambda self: (lib["scene_end"](self._handle) or b"").decode() or None,
                    doc="Why it has ended, such as \"the time is over\"; None: it has not.")
+    phase = property(lambda self: (lib["scene_phase"](self._handle) or b"").decode() or None, doc="None: it has none now.")
+    is_frame = property(lambda self: lib["scene_is_frame"](self._handle))
     time = property(lambda self: self.world.time, doc="s")
     duration = property(lambda self: lib["scene_duration"](self._handle), doc="s: the scene's own time")
     shapes = property(lambda self: _names("scene_shape_name", self._handle), doc="Names.")

@@ -329,6 +329,22 @@ static scree_status read_weights(const scree_reader *r, const scree_yaml *node,
   return SCREE_OK;
 }
 
+static scree_status read_values(const scree_reader *r, const scree_yaml *node,
+                                scree_values *value) {
+  if (node->kind != SCREE_YAML_MAPPING) return fail_at(r, node, "must be {name: value, ...}");
+  value->names = scree_arena_take(r->arena, node->item_count, sizeof *value->names);
+  value->texts = scree_arena_take(r->arena, node->item_count, sizeof *value->texts);
+  if (!value->names || !value->texts) return fail_memory(r);
+  value->count = node->item_count;
+  for (size_t i = 0; i < value->count; i++) {
+    value->names[i] = keep_text(r, node->items[i].key);
+    if (!value->names[i]) return fail_memory(r);
+    scree_status status = read_text(r, &node->items[i], &value->texts[i]);
+    if (status != SCREE_OK) return status;
+  }
+  return SCREE_OK;
+}
+
 /* ---- records ---- */
 
 /* One record below the reader's, at `path`. */
@@ -418,6 +434,8 @@ scree_status scree_field_read(const scree_reader *r, const scree_yaml *node, con
   case SCREE_FIELD_NAMED:
   case SCREE_FIELD_LIST:
     return read_records(r, node, f, value);
+  case SCREE_FIELD_VALUES:
+    return read_values(r, node, value);
   case SCREE_FIELD_NODE:
     *(const scree_yaml **)value = node;
     return SCREE_OK;
@@ -465,6 +483,10 @@ bool scree_field_is_given(const scree_field *field, const void *record) {
     return !isnan(*(const double *)value);
   case SCREE_FIELD_COUNT:
     return *(const size_t *)value > 0;
+  case SCREE_FIELD_WORD:
+    return *(const int *)value >= 0;
+  case SCREE_FIELD_VALUES:
+    return ((const scree_values *)value)->count > 0;
   case SCREE_FIELD_TEXT:
   case SCREE_FIELD_RECORD:
   case SCREE_FIELD_NODE:
@@ -493,8 +515,9 @@ static void put_text(FILE *stream, const char *text) {
   }
   putc('"', stream);
   for (; *text; text++) {
-    if (*text == '"' || *text == '\\') putc('\\', stream);
-    putc(*text, stream);
+    char escaped[SCREE_YAML_ESCAPED];
+    scree_yaml_escape(*text, escaped);
+    fputs(escaped, stream);
   }
   putc('"', stream);
 }
@@ -551,6 +574,17 @@ static void put_texts(FILE *stream, const scree_texts *texts) {
   putc(']', stream);
 }
 
+static void put_values(FILE *stream, const scree_values *values) {
+  putc('{', stream);
+  for (size_t i = 0; i < values->count; i++) {
+    if (i) fputs(", ", stream);
+    put_text(stream, values->names[i]);
+    fputs(": ", stream);
+    put_text(stream, values->texts[i]);
+  }
+  putc('}', stream);
+}
+
 void scree_field_text(const scree_field *f, const void *record, char *text, size_t size) {
   const void *value = (const char *)record + f->offset;
   char real[SCREE_NUMBER_SIZE];
@@ -596,6 +630,9 @@ static void put_value(FILE *stream, const scree_field *f, const void *record) {
     break;
   case SCREE_FIELD_WEIGHTS:
     put_weights(stream, value);
+    break;
+  case SCREE_FIELD_VALUES:
+    put_values(stream, value);
     break;
   default:
     scree_field_text(f, record, text, sizeof text);

@@ -13,7 +13,7 @@ typedef enum scree_field_kind {
   SCREE_FIELD_COUNT,   /* size_t; 0: not given */
   SCREE_FIELD_SEED,    /* uint64_t */
   SCREE_FIELD_FLAG,    /* bool */
-  SCREE_FIELD_WORD,    /* int: which of the words that `unit` lists */
+  SCREE_FIELD_WORD,    /* int: which of the words that `unit` lists; -1: not given */
   SCREE_FIELD_TEXT,    /* const char *; NULL: not given */
   SCREE_FIELD_TEXTS,   /* scree_texts: one text, or a list of them */
   SCREE_FIELD_VECTOR,  /* double[3]; first NAN: not given */
@@ -23,6 +23,7 @@ typedef enum scree_field_kind {
   SCREE_FIELD_RECORD,  /* struct *; NULL: not given */
   SCREE_FIELD_NAMED,   /* scree_records: {name: record, ...} */
   SCREE_FIELD_LIST,    /* scree_records: [record, ...] */
+  SCREE_FIELD_VALUES,  /* scree_values: {name: any one value, ...} */
   SCREE_FIELD_NODE, /* const scree_yaml *: as it stands there, for its reader to look at; NULL: not
                        given; never printed */
 } scree_field_kind;
@@ -42,6 +43,11 @@ typedef struct scree_weights {
   double *values;
   size_t count;
 } scree_weights;
+
+typedef struct scree_values {
+  const char **names, **texts;
+  size_t count;
+} scree_values;
 
 typedef struct scree_records {
   void *items;

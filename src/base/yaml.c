@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/file.h"
 
+#include <stdio.h>
 #include <string.h>
 #include <yaml.h>
 
@@ -15,6 +16,14 @@ void scree_yaml_free(scree_yaml *root) {
   scree_free(root->key);
   scree_free(root->text);
   *root = (scree_yaml){0};
+}
+
+void scree_yaml_escape(char byte, char escaped[SCREE_YAML_ESCAPED]) {
+  unsigned char c = (unsigned char)byte;
+  if (c < ' ' || c == 127)
+    snprintf(escaped, SCREE_YAML_ESCAPED, "\\x%02x", c);
+  else
+    snprintf(escaped, SCREE_YAML_ESCAPED, "%s%c", c == '"' || c == '\\' ? "\\" : "", c);
 }
 
 const scree_yaml *scree_yaml_find(const scree_yaml *mapping, const char *key) {

@@ -28,6 +28,10 @@ scree_status scree_yaml_parse(const char *bytes, size_t byte_count, const char *
                               scree_yaml *root, scree_error *error);
 void scree_yaml_free(scree_yaml *root);
 
+/* How a byte of a text stands between double quotes. */
+enum { SCREE_YAML_ESCAPED = 5 };
+void scree_yaml_escape(char byte, char escaped[SCREE_YAML_ESCAPED]);
+
 /* The item with the key, or NULL. */
 const scree_yaml *scree_yaml_find(const scree_yaml *mapping, const char *key);
 

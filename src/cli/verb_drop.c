@@ -1,13 +1,38 @@
-/* scree drop: pour shapes into a container, watch them come to rest. */
+/* scree drop: the scene of a template, shapes poured into a container until they lie still. */
 #include "base/platform.h"
-#include "cli/drop.h"
 #include "cli/output.h"
+#include "cli/scene_run.h"
 #include "cli/terminal.h"
-#include "report/provenance.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+typedef struct drop_arguments {
+  const char *output;
+  cli_source source;
+  double rp;
+  size_t triangles, clump, seed, particles, rays;
+  double width, depth, drop_height, speed;
+  double time, still, frame_interval, checkpoint_interval;
+  double young, young_wall, density, restitution, friction, friction_wall;
+  double steps_per_contact, stiffness_factor;
+  int container, law;
+  bool no_repair, no_picture, overwrite, resume;
+} drop_arguments;
+
+enum { NAME_BYTES = 4096 };
+
+typedef struct drop {
+  const cli_call *call;
+  const drop_arguments *arguments;
+  scree_scene_file *file;
+  scree_shape_store *store;
+  cli_poured poured;
+  char (*names)[NAME_BYTES]; /* words without their counts */
+  double *counts;
+  scree_error error;
+} drop;
 
 /* What is not asked for is as for particles of this size; of smaller ones heights shrink with the
  * size, speeds and times with its root: a fall by one's own size looks the same at every size. */
@@ -40,7 +65,8 @@ static const drop_arguments defaults = {.output = "drop",
 #define AT(field) offsetof(drop_arguments, field)
 static const cli_option options[] = {
     {"output", CLI_TEXT, AT(output), "DIR",
-     "The folder for drop.pvd, frame-*.vtp, series.csv, drop.png and report.html, made if need be. "
+     "The folder for bodies.pvd, frame-*.vtp, series.csv, scene.png and report.html, made if need "
+     "be. "
      "Default: drop.",
      0, 0, NULL},
     {"container", CLI_CHOICE, AT(container), "KIND", "cylinder or box. Default: cylinder.", 0, 0,
@@ -114,231 +140,217 @@ static const cli_option options[] = {
     CLI_SAMPLE_OPTIONS(drop_arguments, source),
     {"no-repair", CLI_FLAG, AT(no_repair), NULL,
      "Refuse files that cannot serve as they are, instead of repairing them.", 0, 0, NULL},
-    {"no-picture", CLI_FLAG, AT(no_picture), NULL, "Do not render drop.png.", 0, 0, NULL},
-    {"rays", CLI_COUNT, AT(rays), "N", "Rays a pixel of drop.png. Default: 24.", 1, 65536, NULL},
+    {"no-picture", CLI_FLAG, AT(no_picture), NULL, "Do not render scene.png.", 0, 0, NULL},
+    {"rays", CLI_COUNT, AT(rays), "N", "Rays a pixel of scene.png. Default: 24.", 1, 65536, NULL},
     {"force", CLI_FLAG, AT(overwrite), NULL,
      "Begin anew in a folder with an earlier drop, whose files go.", 0, 0, NULL},
 };
 
-/* The diameter of the largest particle: of the shapes, or of the pour that goes on. */
-static double largest_size(const drop_run *run) {
-  double largest = 0;
-  size_t count = run->pour ? scree_pour_shape_count(run->pour) : run->shape_count;
-  for (size_t i = 0; i < count; i++) {
-    scree_particle_measures m;
-    scree_particle_measure(
-        run->pour ? scree_pour_get_shape(run->pour, i).particle : run->shapes[i].particle, &m);
-    largest = fmax(largest, 2 * m.bounding_radius);
+/* ---- words ---- */
+
+/* A shape by its name alone. */
+static bool is_known(const char *name) {
+  return cli_is_sample(name, NULL) || !strncmp(name, "sphere:", 7) || scree_path_exists(name);
+}
+
+/* "phone.stl=30": the name, and the count behind the last '='. A file may have a name like that. */
+static int read_count(drop *d, size_t index) {
+  const char *word = d->call->inputs[index], *equals = strrchr(word, '='),
+             *digits = equals ? equals + 1 : "";
+  char *name = d->names[index];
+  bool counted = *digits && digits[strspn(digits, "0123456789")] == 0;
+  size_t length = equals ? (size_t)(equals - word) : strlen(word);
+  d->counts[index] = (double)d->arguments->particles;
+  if (length == 0 || strlen(word) >= NAME_BYTES)
+    return cli_misuse(d->call->verb, "'%.40s': not a name", word);
+  snprintf(name, NAME_BYTES, "%.*s", (int)length, word);
+  if (equals && !counted && (scree_path_exists(word) || !is_known(name))) {
+    snprintf(name, NAME_BYTES, "%s", word);
+    return 0;
   }
-  return largest;
+  if (!equals) return 0;
+  double count = counted ? strtod(digits, NULL) : 0;
+  if (!(count >= 1 && count <= 1e7))
+    return cli_misuse(d->call->verb,
+                      "%s: the count behind '=' must be a whole number from 1 to 10000000", word);
+  d->counts[index] = count;
+  return 0;
 }
 
-static void take(double *value, double usual_value) {
-  if (isnan(*value)) *value = usual_value;
+static int check_sphere(const drop *d, size_t index) {
+  const char *name = d->names[index];
+  double diameter;
+  char *unit = NULL;
+  if (strncmp(name, "sphere:", 7) != 0) return 0;
+  bool has_unit = strtod(name + 7, &unit) > 0 && *unit;
+  if (has_unit && cli_length_from_text(name + 7, &diameter) && diameter > 0) return 0;
+  return cli_misuse(d->call->verb, "%s: not a sphere such as sphere:40mm", d->call->inputs[index]);
 }
 
-static void settle(drop_run *run) {
-  drop_arguments *a = &run->settled;
-  double share = fmin(1, largest_size(run) / usual_size), root = sqrt(share);
-  take(&a->drop_height, share * usual.drop_height);
-  take(&a->speed, root * usual.speed);
-  take(&a->time, root * usual.time);
-  take(&a->still, share * share * share * share * usual.still); /* mass times height */
-  take(&a->frame_interval, root * usual.frame_interval);
-  run->schedule = (scree_pour_schedule){.time = a->time,
-                                        .still = a->still,
-                                        .rest = root * usual.still_time,
-                                        .frames = a->frame_interval,
-                                        .series = root * usual.line_interval,
-                                        .checkpoint = a->checkpoint_interval};
-}
-
-static scree_pour_options pour_options(const drop_arguments *a) {
-  scree_pour_options o = scree_default_pour_options();
-  o.world.law = (scree_law)a->law;
-  o.world.steps_per_contact = a->steps_per_contact;
-  o.world.stiffness_factor = a->stiffness_factor;
-  o.particles = (scree_material){.stiffness = a->young,
-                                 .density = a->density,
-                                 .restitution = a->restitution,
-                                 .friction = a->friction};
-  o.walls = o.particles;
-  o.walls.stiffness = a->young_wall;
-  o.walls.friction = a->friction_wall;
-  o.container = (scree_container)a->container;
-  o.width = a->width;
-  o.depth = a->depth;
-  o.drop_height = a->drop_height;
-  o.entry_speed = a->speed;
-  o.seed = a->seed;
-  return o;
-}
-
-static void say_pour(const drop_run *run, scree_pour *pour) {
-  scree_pour_options o;
-  if (run->call->quiet) return;
-  size_t count = scree_pour_particle_count(pour);
-  scree_pour_get_options(pour, &o);
-  if (o.container == SCREE_CONTAINER_BOX)
-    printf("%zu particle%s into a box of %.4g x %.4g mm\n", count, cli_plural(count), 1e3 * o.width,
-           1e3 * o.depth);
-  else
-    printf("%zu particle%s into a cylinder of %.4g mm\n", count, cli_plural(count), 1e3 * o.width);
-  printf("time step %.4g us, %g steps per quarter period of the fastest contact\n",
-         1e6 * scree_world_time_step(scree_pour_world(pour), NULL), o.world.steps_per_contact);
-  cli_flush();
-}
-
-/* ---- the run ---- */
-
-/* Draws the progress; false after Ctrl-C. */
-static bool watch(void *context, const scree_pour *pour, double fraction) {
-  drop_run *run = context;
-  const scree_progress *p = run->call->progress;
-  if (scree_now() - run->shown < p->interval) return !cli_interrupted();
-  run->shown = scree_now();
-  bool all = scree_pour_entered_count(pour) == scree_pour_particle_count(pour);
-  return p->report(p->context, all ? "settling, at most" : "pouring", fraction);
-}
-
-static scree_status on_begin(void *context, scree_pour *pour, bool resumed, scree_error *error) {
-  drop_run *run = context;
-  say_pour(run, pour);
-  if (!resumed) return SCREE_OK;
-  return cli_frames_recall(&run->frames, run->schedule.frames, scree_pour_view(pour), error);
-}
-
-static scree_status on_frame(void *context, scree_pour *pour, scree_error *error) {
-  return drop_write_frame(context, pour, error);
-}
-
-static scree_status simulate(drop_run *run, scree_error *error) {
-  scree_pour_options o = pour_options(run->arguments);
-  scree_pour_shape *shapes = calloc(run->shape_count + 1, sizeof *shapes);
-  if (!shapes) return drop_no_memory(error);
-  for (size_t i = 0; i < run->shape_count; i++)
-    shapes[i] = (scree_pour_shape){run->shapes[i].particle, run->shapes[i].count,
-                                   run->shapes[i].title, run->shapes[i].source};
-  const scree_pour_job job = {.shapes = shapes,
-                              .shape_count = run->shape_count,
-                              .options = &o,
-                              .schedule = run->schedule,
-                              .folder = run->arguments->output,
-                              .resume = run->arguments->resume,
-                              .overwrite = run->arguments->overwrite,
-                              .watch = watch,
-                              .begun = on_begin,
-                              .frame = on_frame,
-                              .context = run};
-  scree_status status = scree_pour_complete(&job, &run->pour, error);
-  free(shapes);
-  return status;
-}
-
-static bool is_still(const drop_run *run) {
-  const char *end = scree_scene_end(scree_pour_scene(run->pour));
-  return end && !strcmp(end, "still");
-}
-
-static void print_summary(FILE *stream, const drop_run *run, bool still) {
-  scree_observation o;
-  const scree_world *world = scree_pour_view(run->pour);
-  double entered = scree_pour_entered_energy(run->pour);
-  unsigned long long steps = scree_world_step_count(world);
-  scree_world_observe(world, &o);
-  double sum = drop_energy(&o);
-  size_t count = scree_pour_particle_count(run->pour);
-  fprintf(stream, "%s after %.4g s, %llu step%s; %zu of %zu particle%s %s in\n",
-          still ? "still" : "stopped", o.time, steps, cli_plural(steps),
-          scree_pour_entered_count(run->pour), count, cli_plural(count), count == 1 ? "is" : "are");
-  fprintf(stream, "contacts          %zu in %zu touching pair%s, %.3g neighbours a particle\n",
-          o.contact_count, o.pair_count, cli_plural(o.pair_count), o.coordination);
-  fprintf(stream, "largest overlap   %.4g um\n", 1e6 * o.largest_overlap);
-  fprintf(stream, "highest speed     %.3g m/s\n", o.highest_speed);
-  fprintf(stream,
-          "energy            %.5g J came in; kinetic %.3g, potential %.5g, elastic %.3g, lost to "
-          "dashpots %.5g, to friction %.5g; unaccounted %.2g of what came in\n",
-          entered, o.kinetic + o.rotational, o.potential, o.elastic, o.dissipated_dashpot + 0.0,
-          o.dissipated_friction + 0.0, entered > 0 ? (sum - entered) / entered : 0);
-}
-
-static void print_costs(const drop_run *run, double seconds) {
-  const scree_world *world = scree_pour_view(run->pour);
-  double steps = (double)scree_world_step_count(world);
-  if (run->call->quiet) return;
-  fprintf(stderr, "%.1f s of computing: %.3g steps/s, %.3g particle-steps/s\n", seconds,
-          steps / seconds, steps * (double)scree_pour_entered_count(run->pour) / seconds);
-  if (run->arguments->stiffness_factor != 1)
-    fprintf(stderr, "stiffness times %g: overlaps are larger by its inverse\n",
-            run->arguments->stiffness_factor);
-}
-
-/* Prints how the pour stands at its end and leaves it in the folder. stopped: NULL, or why it did
- * not come to its end. */
-static scree_status tell(drop_run *run, const char *stopped, double seconds, scree_error *error) {
-  char *text = NULL;
-  size_t size;
-  FILE *stream = scree_memory_open(&text, &size);
-  if (stream) print_summary(stream, run, is_still(run));
-  if (!stream || !scree_memory_close(stream)) {
-    free(text);
-    return drop_no_memory(error);
+static int read_words(drop *d) {
+  size_t count = d->call->input_count;
+  d->names = calloc(count + 1, sizeof *d->names);
+  d->counts = calloc(count + 1, sizeof *d->counts);
+  const char **words = calloc(count + 1, sizeof *words);
+  int code = 0;
+  scree_status status = SCREE_OK;
+  if (!d->names || !d->counts || !words)
+    status = cli_refuse(&d->error, SCREE_OUT_OF_MEMORY, "shapes", "out of memory");
+  for (size_t i = 0; status == SCREE_OK && code == 0 && i < count; i++) {
+    code = read_count(d, i);
+    if (code == 0) code = check_sphere(d, i);
+    words[i] = d->names[i];
   }
-  cli_terminal_end();
-  fputs(text, stdout);
-  cli_flush();
-  print_costs(run, seconds);
-  scree_status status = drop_write_report(run, stopped, text, error);
-  free(text);
-  return status;
+  if (status == SCREE_OK && code == 0 && count)
+    status = cli_make_poured(words, d->counts, count, &d->poured, &d->error);
+  free(words);
+  return status == SCREE_OK ? code : cli_fail(&d->error);
 }
 
-static scree_status draw(drop_run *run, scree_error *error) {
-  if (run->arguments->no_picture) return SCREE_OK;
-  scree_status status = drop_write_picture(run, error);
-  if (status != SCREE_UNSUPPORTED) return status;
-  fprintf(stderr, "no picture: %s\n", error->message);
-  return SCREE_OK;
+/* ---- the scene ---- */
+
+/* NaN: not asked for. */
+static scree_status set(drop *d, const char *field, double value) {
+  char text[40];
+  if (isnan(value)) return SCREE_OK;
+  snprintf(text, sizeof text, "%.17g", value);
+  return scree_scene_file_set(d->file, field, text, &d->error);
+}
+
+static double given(double value, double usual_value) {
+  return isnan(value) ? usual_value : value;
 }
 
 /* What is as usual hangs on the particles. */
-static scree_status settle_by_particles(drop_run *run, scree_error *error) {
-  char path[DROP_PATH_BYTES];
-  scree_status status = SCREE_OK;
-  if (run->shape_count) {
-    status = drop_make_particles(run, error);
-  } else {
-    status = drop_path(run, "checkpoint.scree", path, error);
-    if (status == SCREE_OK && !scree_path_exists(path))
-      return cli_refuse(error, SCREE_IO, path, "no checkpoint to go on from");
-    if (status == SCREE_OK) status = scree_pour_load(path, &run->pour, error);
-  }
-  if (status == SCREE_OK) settle(run);
-  scree_pour_free(run->pour);
-  run->pour = NULL;
+static scree_status set_usual(drop *d) {
+  const drop_arguments *a = d->arguments;
+  double largest;
+  scree_status status =
+      scree_scene_file_largest(d->file, d->store, d->call->progress, &largest, &d->error);
+  if (status != SCREE_OK) return status;
+  double share = fmin(1, largest / usual_size), root = sqrt(share);
+  const struct {
+    const char *field;
+    double value;
+  } fields[] = {
+      {"drop_height", given(a->drop_height, share * usual.drop_height)},
+      {"speed", given(a->speed, root * usual.speed)},
+      {"time", given(a->time, root * usual.time)},
+      {"still", given(a->still, share * share * share * share * usual.still)}, /* mass x height */
+      {"stop.rest", root * usual.still_time},
+      {"output.frames", given(a->frame_interval, root * usual.frame_interval)},
+      {"output.series", root * usual.line_interval},
+  };
+  for (size_t i = 0; status == SCREE_OK && i < sizeof fields / sizeof *fields; i++)
+    status = set(d, fields[i].field, fields[i].value);
   return status;
 }
 
-static scree_status pour(drop_run *run, scree_error *error) {
-  scree_status status = drop_check_output(run, error);
-  if (status == SCREE_OK) status = settle_by_particles(run, error);
-  if (status == SCREE_OK && run->arguments->overwrite && !run->arguments->resume)
-    status = drop_clear_output(run, error);
-  if (status != SCREE_OK) return status;
-  double start = scree_now();
-  status = simulate(run, error);
-  double seconds = scree_now() - start;
-  if (!run->pour) return status;
-  scree_error later; /* what happened first is what is told */
-  scree_status listed = drop_list_frames(run, status == SCREE_OK ? error : &later);
-  if (status == SCREE_OK) status = listed;
-  if (status == SCREE_OK) status = draw(run, error);
-  scree_status told = tell(run, status == SCREE_OK ? NULL : error->message, seconds,
-                           status == SCREE_OK ? error : &later);
-  return status != SCREE_OK ? status : told;
+static scree_status set_options(drop *d) {
+  const drop_arguments *a = d->arguments;
+  double count = 0;
+  for (size_t i = 0; i < d->poured.count; i++) count += d->counts[i];
+  const struct {
+    const char *field;
+    double value;
+  } fields[] = {
+      {"inlets.fill.count", count},
+      {"seed", (double)a->seed},
+      {"width", a->width > 0 ? a->width : (double)NAN},
+      {"depth", a->depth > 0 ? a->depth : (double)NAN},
+      {"density", a->density},
+      {"young", a->young},
+      {"young_wall", a->young_wall},
+      {"restitution", a->restitution},
+      {"friction", a->friction},
+      {"friction_wall", a->friction_wall},
+      {"contact.steps", a->steps_per_contact},
+      {"contact.stiffness_factor", a->stiffness_factor},
+      {"output.checkpoint", a->checkpoint_interval},
+  };
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < sizeof fields / sizeof *fields; i++)
+    status = set(d, fields[i].field, fields[i].value);
+  if (status == SCREE_OK && a->law)
+    status = scree_scene_file_set(d->file, "contact.law", "hysteretic", &d->error);
+  return status;
 }
 
-/* What may be asked of a pour that goes on without its shapes. */
+static scree_status set_levels(drop *d) {
+  const drop_arguments *a = d->arguments;
+  const struct {
+    const char *field;
+    double value;
+  } fields[] = {{"rp", a->rp}, {"triangles", (double)a->triangles}, {"clump", (double)a->clump}};
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < sizeof fields / sizeof *fields; i++) {
+    char text[40];
+    snprintf(text, sizeof text, "%.17g", fields[i].value);
+    if (fields[i].value > 0)
+      status = cli_set_scans(d->file, &d->poured, fields[i].field, text, &d->error);
+  }
+  return status;
+}
+
+static scree_status make_file(drop *d) {
+  const drop_arguments *a = d->arguments;
+  const char *name = a->container ? "drop-box" : "drop";
+  scree_status status = scree_scene_file_template(name, &d->file, &d->error);
+  if (status == SCREE_OK)
+    status = cli_pour(d->file, &d->poured, &a->source, a->no_repair, &d->error);
+  if (status == SCREE_OK) status = set_levels(d);
+  if (status == SCREE_OK) status = set_options(d);
+  if (status == SCREE_OK) status = set_usual(d);
+  return status == SCREE_OK ? scree_scene_file_check(d->file, &d->error) : status;
+}
+
+/* Without shapes it is that of the checkpoint, with what may be asked of any. */
+static scree_status take_file(drop *d) {
+  const drop_arguments *a = d->arguments;
+  char path[NAME_BYTES + 32];
+  scree_scene *scene;
+  snprintf(path, sizeof path, "%.4000s/checkpoint.scree", a->output);
+  if (!scree_path_exists(path))
+    return cli_refuse(&d->error, SCREE_IO, path, "no checkpoint to go on from");
+  scree_status status = scree_scene_load(path, &scene, &d->error);
+  if (status != SCREE_OK) return status;
+  const char *text = scree_scene_text(scene);
+  status = scree_scene_file_parse(text, strlen(text), path, &d->file, &d->error);
+  scree_scene_free(scene);
+  if (status == SCREE_OK) status = set(d, "time", a->time);
+  if (status == SCREE_OK) status = set(d, "still", a->still);
+  if (status == SCREE_OK) status = set(d, "output.frames", a->frame_interval);
+  if (status == SCREE_OK && a->checkpoint_interval != defaults.checkpoint_interval)
+    status = set(d, "output.checkpoint", a->checkpoint_interval);
+  return status;
+}
+
+static scree_status simulate(drop *d) {
+  const drop_arguments *a = d->arguments;
+  cli_scene_run run = {.call = d->call,
+                       .start = scree_work_started(),
+                       .output = a->output,
+                       .rays = a->rays,
+                       .views = CLI_BODIES,
+                       .resume = a->resume,
+                       .overwrite = a->overwrite,
+                       .no_picture = a->no_picture};
+  scree_status status = cli_check_scene_output(&run, &d->error);
+  if (status == SCREE_OK) status = scree_shape_store_create(&d->store, &d->error);
+  if (status == SCREE_OK) status = d->poured.count ? make_file(d) : take_file(d);
+  cli_terminal_end();
+  if (status == SCREE_OK && a->overwrite && !a->resume)
+    status = cli_clear_scene_output(d->call, a->output, &d->error);
+  run.file = d->file;
+  run.store = d->store;
+  if (status == SCREE_OK) status = cli_run_scene(&run, &d->error);
+  cli_scene_run_free(&run);
+  return status;
+}
+
+/* ---- the call ---- */
+
+/* What may be asked of a drop that goes on without its shapes. */
 static const char *const of_any[] = {"output", "time",       "still", "frames", "checkpoint",
                                      "resume", "no-picture", "rays",  "force"};
 
@@ -358,33 +370,32 @@ static const char *shape_option(const drop_arguments *a) {
   return NULL;
 }
 
-static int run(const cli_call *call) {
-  drop_run run = {.call = call,
-                  .settled = *(const drop_arguments *)call->options,
-                  .shape_count = call->input_count,
-                  .start = scree_work_started()};
-  run.arguments = &run.settled;
-  if (run.arguments->rp > 0 && run.arguments->triangles)
-    return cli_misuse(call->verb, "-r and -n exclude each other");
-  if (run.arguments->source.noise > 0.25 * run.arguments->source.resolution)
+static int check_call(const cli_call *call) {
+  const drop_arguments *a = call->options;
+  size_t shapes = call->input_count;
+  if (a->rp > 0 && a->triangles) return cli_misuse(call->verb, "-r and -n exclude each other");
+  if (a->source.noise > 0.25 * a->source.resolution)
     return cli_misuse(call->verb, "--noise %g mm: at most a quarter of the resolution, %g mm",
-                      1e3 * run.arguments->source.noise, 0.25e3 * run.arguments->source.resolution);
-  if (run.arguments->depth > 0 && run.shape_count &&
-      run.arguments->container != SCREE_CONTAINER_BOX)
+                      1e3 * a->source.noise, 0.25e3 * a->source.resolution);
+  if (a->depth > 0 && shapes && !a->container)
     return cli_misuse(call->verb, "--depth does nothing without --container box");
-  if (run.shape_count == 0 && !run.arguments->resume)
+  if (shapes == 0 && !a->resume)
     return cli_misuse(call->verb, "needs a SHAPE, or --resume with -o DIR");
-  if (run.shape_count == 0 && shape_option(run.arguments))
-    return cli_misuse(call->verb, "--%s does nothing without a SHAPE", shape_option(run.arguments));
-  scree_error error = {SCREE_OUT_OF_MEMORY, "out of memory"};
-  run.shapes = calloc(run.shape_count + 1, sizeof *run.shapes);
-  if (!run.shapes) return cli_fail(&error);
-  int code = drop_read_words(&run);
-  if (code == 0 && pour(&run, &error) != SCREE_OK) code = cli_fail(&error);
-  scree_pour_free(run.pour);
-  for (size_t i = 0; i < run.shape_count; i++) scree_particle_free(run.shapes[i].particle);
-  free(run.shapes);
-  free(run.frames.times);
+  if (shapes == 0 && shape_option(a))
+    return cli_misuse(call->verb, "--%s does nothing without a SHAPE", shape_option(a));
+  return 0;
+}
+
+static int run(const cli_call *call) {
+  drop d = {.call = call, .arguments = call->options};
+  int code = check_call(call);
+  if (code == 0) code = read_words(&d);
+  if (code == 0 && simulate(&d) != SCREE_OK) code = cli_fail(&d.error);
+  scree_scene_file_free(d.file);
+  scree_shape_store_free(d.store);
+  cli_poured_free(&d.poured);
+  free(d.names);
+  free(d.counts);
   return code;
 }
 
@@ -398,14 +409,15 @@ const cli_verb cli_verb_drop = {
         "sphere:40mm, or NAME.csv with the spheres of a clump (x, y, z, radius a line, in the "
         "files' unit); =COUNT says how many. Files are checked, repaired where need be, and "
         "decimated.\n\n"
-        "Writes into DIR: report.html, which shows and plays the pour, made of drop.json, "
-        "motion.scree and last.world (a checkpoint: scree export takes it); drop.pvd with "
-        "frame-*.vtp (surfaces; body, shape and speeds by triangle) for ParaView; series.csv with "
-        "energies, contacts and overlaps over time; drop.png. The same options give the same bits "
-        "for any number of threads. Ctrl-C stops: what was written stays, drop.pvd lists it, the "
-        "report shows it, and --resume goes on from checkpoint.scree with the same bits, as after "
-        "a crash. A pour that leaves the range of the contact law stops with step, body and "
-        "cause, and leaves the state shortly before in stopped.scree.",
+        "It is a scene, the template drop or drop-box of `scree run`. Writes into DIR: "
+        "report.html, "
+        "which shows and plays it, made of result.json and motion.scree; scene.yaml; bodies.pvd "
+        "with frame-*.vtp (surfaces; body, shape and speeds by triangle) for ParaView; series.csv "
+        "with energies, contacts and overlaps over time; scene.png. The same options give the "
+        "same bits for any number of threads. Ctrl-C stops: what was written stays, the report "
+        "shows it, and --resume goes on from checkpoint.scree with the same bits, as after a "
+        "crash. A drop that leaves the range of the contact law stops with step, body and cause, "
+        "and leaves the state shortly before in stopped.scree.",
     .examples =
         "scree drop phone.stl=50\n"
         "scree drop sample:fp-1=20 sample:dc-2=20 -n 100 --container box --width 300mm -o mixed\n"

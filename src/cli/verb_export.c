@@ -64,11 +64,11 @@ static const cli_option options[] = {
     {"force", CLI_FLAG, AT(overwrite), NULL, "Overwrite existing files.", 0, 0, NULL},
 };
 
-typedef enum input_kind { WORLD, RUN, SCENE, POUR, SURFACE } input_kind;
+typedef enum input_kind { WORLD, SCENE, SURFACE } input_kind;
 
 /* By content. */
 static input_kind kind_of(const char *word) {
-  static const char magics[][9] = {"screeWLD", "screeRUN", "screeSCN", "screePOU"};
+  static const char magics[][9] = {"screeWLD", "screeSCN"};
   char magic[8] = "";
   int kind = WORLD;
   if (!strcmp(word, "-") || cli_is_sample(word, NULL)) return SURFACE;
@@ -231,38 +231,29 @@ static scree_status export_clump(const cli_call *call, scree_error *error) {
 
 /* ---- Checkpoints ---- */
 
-/* A world, and what it belongs to: at most one of these. */
+/* A world, and the scene that it belongs to; NULL: none. */
 typedef struct checkpoint {
-  scree_run *run;
   scree_scene *scene;
-  scree_pour *pour;
   scree_world *world;
 } checkpoint;
 
 static scree_status load_checkpoint(const char *word, checkpoint *c, scree_error *error) {
-  input_kind kind = kind_of(word);
   *c = (checkpoint){0};
-  scree_status status = kind == WORLD   ? scree_world_load(word, &c->world, error)
-                        : kind == SCENE ? scree_scene_load(word, &c->scene, error)
-                        : kind == POUR  ? scree_pour_load(word, &c->pour, error)
-                                        : scree_run_load(word, &c->run, error);
-  if (c->run) c->world = scree_run_world(c->run);
-  if (c->scene) c->world = scree_scene_world(c->scene);
-  if (c->pour) c->world = scree_pour_world(c->pour);
+  if (kind_of(word) == WORLD) return scree_world_load(word, &c->world, error);
+  scree_status status = scree_scene_load(word, &c->scene, error);
+  if (status == SCREE_OK) c->world = scree_scene_world(c->scene);
   return status;
 }
 
 static void free_checkpoint(checkpoint *c) {
-  if (!c->run && !c->scene && !c->pour) scree_world_free(c->world);
-  scree_run_free(c->run);
+  if (!c->scene) scree_world_free(c->world);
   scree_scene_free(c->scene);
-  scree_pour_free(c->pour);
 }
 
 static scree_status write_view(const cli_call *call, const checkpoint *c, const char *word,
                                const char *path, scree_error *error) {
   const export_arguments *a = call->options;
-  if (a->view != SCREE_VIEW_CONTACTS || !c->run || !scree_run_is_frame(c->run))
+  if (a->view != SCREE_VIEW_CONTACTS || !c->scene || !scree_scene_is_frame(c->scene))
     return scree_world_vtp_write(c->world, (scree_world_view)a->view, path, a->overwrite, error);
   return cli_refuse(error, SCREE_UNSUPPORTED, word, "a frame holds no contacts; a checkpoint does");
 }

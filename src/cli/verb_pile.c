@@ -1,8 +1,9 @@
 /* scree pile: a frame or a checkpoint, measured again. */
 #include "base/platform.h"
-#include "cli/heap.h"
 #include "cli/output.h"
+#include "cli/scene_run.h"
 
+#include <math.h>
 #include <string.h>
 
 typedef struct pile_arguments {
@@ -22,27 +23,32 @@ static const pile_arguments defaults = {.size = "1200x900",
                                         .vtp_view = SCREE_VIEW_SURFACES};
 
 static const struct {
-  const char *option, *field;
+  const char *option;
   cli_kind kind;
-  size_t offset;
+  size_t offset, field; /* of the arguments, of scree_pile_settings */
+  double least, most;
+  bool whole;
 } settings[] = {
-    {"cell", "measure.cell", CLI_LENGTH_TEXT, offsetof(pile_arguments, cell)},
-    {"sectors", "measure.sectors", CLI_TEXT, offsetof(pile_arguments, sectors)},
-    {"band-low", "measure.band_low", CLI_SHARE_TEXT, offsetof(pile_arguments, band_low)},
-    {"band-high", "measure.band_high", CLI_SHARE_TEXT, offsetof(pile_arguments, band_high)},
+    {"cell", CLI_LENGTH_TEXT, offsetof(pile_arguments, cell), offsetof(scree_pile_settings, cell),
+     0, 1000, false},
+    {"sectors", CLI_TEXT, offsetof(pile_arguments, sectors), 0, 1, 3600, true},
+    {"band-low", CLI_SHARE_TEXT, offsetof(pile_arguments, band_low),
+     offsetof(scree_pile_settings, band_low), 0, 1, false},
+    {"band-high", CLI_SHARE_TEXT, offsetof(pile_arguments, band_high),
+     offsetof(scree_pile_settings, band_high), 0, 1, false},
 };
 enum { SETTING_COUNT = sizeof settings / sizeof *settings };
 
 #define AT(field) offsetof(pile_arguments, field)
 static const cli_option options[] = {
     {"cell", CLI_LENGTH_TEXT, AT(cell), "LENGTH",
-     "Side of the height field's cells; 0: a tenth of the particle size. Default: the run's.", 0, 0,
-     NULL},
-    {"sectors", CLI_TEXT, AT(sectors), "N", "Azimuth sectors. Default: the run's.", 0, 0, NULL},
+     "Side of the height field's cells; 0: a tenth of the particle size. Default: the scene's.", 0,
+     0, NULL},
+    {"sectors", CLI_TEXT, AT(sectors), "N", "Azimuth sectors. Default: the scene's.", 0, 0, NULL},
     {"band-low", CLI_SHARE_TEXT, AT(band_low), "SHARE",
-     "The flank begins at this share of the heap's height. Default: the run's.", 0, 0, NULL},
+     "The flank begins at this share of the heap's height. Default: the scene's.", 0, 0, NULL},
     {"band-high", CLI_SHARE_TEXT, AT(band_high), "SHARE",
-     "And ends at this one. Default: the run's.", 0, 0, NULL},
+     "And ends at this one. Default: the scene's.", 0, 0, NULL},
     {"json", CLI_FLAG, AT(json), NULL, "Print JSON instead of text: as result.json of repose.", 0,
      0, NULL},
     {"csv", CLI_FLAG, AT(csv), NULL, "Print the series up to the frame as CSV instead of text.", 0,
@@ -66,37 +72,49 @@ static const cli_option options[] = {
 };
 #undef AT
 
-/* The run's settings with those that were given; 0, or the exit code. */
-static int read_settings(const cli_call *call, const scree_run *run, scree_experiment *measure,
-                         scree_error *error) {
-  if (scree_experiment_copy(scree_run_experiment(run), measure, error) != SCREE_OK)
-    return cli_fail(error);
+/* The scene's settings with those that were given; 0, or the exit code. */
+static int read_settings(const cli_call *call, const scree_scene *scene,
+                         scree_pile_settings *measure) {
+  *measure = scree_scene_pile_settings(scene, 0);
   for (int i = 0; i < SETTING_COUNT; i++) {
     const char *text;
     char number[CLI_NUMBER_BYTES];
+    double value;
     memcpy(&text, (const char *)call->options + settings[i].offset, sizeof text);
-    if (text) text = cli_si_text(settings[i].kind, text, number);
-    if (text && scree_experiment_set(measure, settings[i].field, text, error) != SCREE_OK)
-      return cli_misuse(call->verb, "--%s: %s", settings[i].option, error->message);
+    if (!text) continue;
+    text = cli_si_text(settings[i].kind, text, number);
+    bool good = cli_real_from_text(text, &value) && value >= settings[i].least &&
+                value <= settings[i].most && (!settings[i].whole || value == floor(value));
+    if (!good)
+      return cli_misuse(call->verb, "--%s %s: must be a %snumber from %g to %g", settings[i].option,
+                        text, settings[i].whole ? "whole " : "", settings[i].least,
+                        settings[i].most);
+    if (settings[i].whole)
+      measure->sectors = (size_t)value;
+    else
+      memcpy((char *)measure + settings[i].field, &value, sizeof value);
   }
-  return scree_experiment_check(measure, error) == SCREE_OK ? 0 : cli_fail(error);
+  return 0;
 }
 
-static int write_picture(const cli_call *call, const scree_run *run, const scree_run_result *result,
+static int write_picture(const cli_call *call, const scree_scene *scene, const scree_pile *pile,
                          scree_render_options render, scree_error *error) {
   const pile_arguments *a = call->options;
+  scree_image image;
   render.azimuth_deg = a->azimuth_deg;
   render.elevation_deg = a->elevation_deg;
   render.samples = a->rays;
   if (a->picture_width > 0) {
     render.focus_radius = 0.5 * a->picture_width;
-    render.focus[0] = result->repose.axis[0];
-    render.focus[1] = result->repose.axis[1];
-    render.focus[2] = 0.35 * result->repose.peak;
+    render.focus[0] = pile->repose.axis[0];
+    render.focus[1] = pile->repose.axis[1];
+    render.focus[2] = 0.35 * pile->repose.peak;
   }
-  return cli_write_picture(run, &render, a->picture, a->force, call->progress, error) == SCREE_OK
-             ? 0
-             : cli_fail(error);
+  scree_status status = scree_scene_pile_picture(scene, &render, call->progress, &image, error);
+  if (status != SCREE_OK) return cli_fail(error);
+  status = scree_image_write_png(&image, a->picture, a->force, error);
+  scree_image_free(&image);
+  return status == SCREE_OK ? 0 : cli_fail(error);
 }
 
 /* Also by another name, as /dev/stdout, or a file that the shell has it write to. */
@@ -126,33 +144,39 @@ static int check_apart(const cli_call *call) {
 }
 
 /* The text; on stderr where something else is on stdout. */
-static void print_text(const cli_call *call, const scree_run *run, const scree_run_result *result) {
+static void print_text(const cli_call *call, const scree_scene *scene, const scree_pile *pile) {
   const pile_arguments *a = call->options;
   bool beside = is_stdout(a->vtp) || is_stdout(a->picture);
   if (a->json || a->csv || (beside && call->quiet)) return;
-  cli_print_heap(beside ? stderr : stdout, run, result);
+  FILE *stream = beside ? stderr : stdout;
+  const char *phase = scree_scene_phase(scene);
+  fprintf(stream, "%s after %.2f s of simulated time\n", phase ? phase : "done",
+          scree_world_time(scree_scene_view(scene)));
+  cli_print_pile(stream, pile);
 }
 
-static int measure(const cli_call *call, scree_run *run, const scree_render_options *render,
+static int measure(const cli_call *call, scree_scene *scene, const scree_render_options *render,
                    scree_error *error) {
   const pile_arguments *a = call->options;
-  scree_experiment settings_used = {0};
-  scree_run_result result;
-  int code = read_settings(call, run, &settings_used, error);
-  if (code == 0 && scree_run_measure_with(run, &settings_used, &result, error) != SCREE_OK)
+  scree_pile_settings used;
+  scree_pile pile;
+  int code = read_settings(call, scene, &used);
+  if (code == 0 && scree_scene_measure_pile(scene, 0, &used, &pile, error) != SCREE_OK)
     code = cli_fail(error);
-  scree_heap_entry entry = {run, &result, call->inputs[0], &settings_used, call->command_line};
-  if (code == 0 && a->json && scree_heap_json_write(&entry, "-", true, error) != SCREE_OK)
+  const scree_scene_entry entry = {.scene = scene,
+                                   .file = call->inputs[0],
+                                   .command_line = call->command_line,
+                                   .measure = &used};
+  if (code == 0 && a->json && scree_scene_json_write(&entry, "-", true, error) != SCREE_OK)
     code = cli_fail(error);
-  if (code == 0) print_text(call, run, &result);
-  if (code == 0 && a->csv && scree_series_csv_write(run, "-", true, error) != SCREE_OK)
+  if (code == 0) print_text(call, scene, &pile);
+  if (code == 0 && a->csv && scree_scene_csv_write(scene, "-", true, error) != SCREE_OK)
     code = cli_fail(error);
   if (code == 0 && a->vtp &&
-      scree_world_vtp_write(scree_run_view(run), (scree_world_view)a->vtp_view, a->vtp, a->force,
-                            error) != SCREE_OK)
+      scree_world_vtp_write(scree_scene_view(scene), (scree_world_view)a->vtp_view, a->vtp,
+                            a->force, error) != SCREE_OK)
     code = cli_fail(error);
-  if (code == 0 && a->picture) code = write_picture(call, run, &result, *render, error);
-  scree_experiment_free(&settings_used);
+  if (code == 0 && a->picture) code = write_picture(call, scene, &pile, *render, error);
   return code;
 }
 
@@ -168,7 +192,7 @@ static scree_status check_outputs(const cli_call *call, scree_error *error) {
 static int run(const cli_call *call) {
   const pile_arguments *a = call->options;
   scree_render_options render = scree_default_render_options();
-  scree_run *loaded;
+  scree_scene *loaded;
   scree_error error;
   int code = check_apart(call);
   if (code == 0) code = cli_parse_size(call->verb, a->size, &render.width, &render.height);
@@ -176,29 +200,34 @@ static int run(const cli_call *call) {
   if (code == 0 && a->picture) code = cli_check_ending(call->verb, a->picture, CLI_PICTURE);
   if (code) return code;
   if (check_outputs(call, &error) != SCREE_OK) return cli_fail(&error);
-  if (scree_run_load(call->inputs[0], &loaded, &error) != SCREE_OK) return cli_fail(&error);
-  if (a->vtp && a->vtp_view == SCREE_VIEW_CONTACTS && scree_run_is_frame(loaded)) {
+  if (scree_scene_load(call->inputs[0], &loaded, &error) != SCREE_OK) return cli_fail(&error);
+  if (a->vtp && a->vtp_view == SCREE_VIEW_CONTACTS && scree_scene_is_frame(loaded)) {
     cli_refuse(&error, SCREE_UNSUPPORTED, call->inputs[0],
                "a frame holds no contacts; a checkpoint does");
+    code = cli_fail(&error);
+  } else if (!scree_scene_pile_name(loaded, 0)) {
+    cli_refuse(&error, SCREE_UNSUPPORTED, call->inputs[0],
+               "its scene has no sensor of a pile: sensors: {heap: {pile: {}}}");
     code = cli_fail(&error);
   } else {
     code = measure(call, loaded, &render, &error);
   }
-  scree_run_free(loaded);
+  scree_scene_free(loaded);
   return code;
 }
 
 const cli_verb cli_verb_pile = {
     .name = "pile",
-    .summary = "measure a heap of `scree repose` again, draw it",
+    .summary = "measure the heap of a scene again, draw it",
     .inputs = "FRAME",
     .description =
-        "Measures a frame or a checkpoint that `scree repose` wrote, with the run's settings or "
+        "Measures a frame or a checkpoint that `scree repose` or `scree run` wrote, with the "
+        "settings of its pile sensor or "
         "with others: angle of repose three ways with its spread, height, base radius, run-out, "
         "packing fraction and coordination number. - is stdin.",
     .examples = "scree pile heap/last.scree\n"
                 "scree pile heap/last.scree --band-low 0.1 --band-high 0.9 --json\n"
-                "scree pile heap/frame-0012.scree -o frame.png --elevation 5\n",
+                "scree pile heap/frame-000012.scree -o frame.png --elevation 5\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .defaults = &defaults,

@@ -1,17 +1,14 @@
-/* scree repose: the angle-of-repose experiment. */
-#include "base/file.h"
+/* scree repose: the scene of the template of that name, with shapes of the call. */
 #include "base/platform.h"
-#include "cli/grains.h"
-#include "cli/heap.h"
 #include "cli/output.h"
+#include "cli/scene_run.h"
 #include "cli/terminal.h"
-#include "report/provenance.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Every field of the experiment as an option: X(option, field, kind, VALUE, help). */
+/* Options and the template's parameters that they set: X(option, parameter, kind, VALUE, help).
+ * What has no option is set by its field, with --set. */
 #define SETTINGS(X)                                                                                \
   X(PARTICLES, "particles", "particles", CLI_TEXT, "N",                                            \
     "How many particles, in equal shares of the shapes.")                                          \
@@ -80,32 +77,34 @@ static const struct {
 #undef NAMES
 };
 
-enum { VTP_UNSET = -1, VTP_NONE, VTP_ALL = SCREE_VIEW_COUNT + 1 };
+enum { VIEW_UNSET = -1, VIEW_NONE, VIEW_ALL = CLI_FRAME_KINDS + 1 };
 
 typedef struct repose_arguments {
   const char *config, *preset, *output, *rp;
   const char *settings[SETTING_COUNT];
   cli_source source;
+  cli_texts set;
   int method, view;
   bool samples, spheres, no_repair, resume, force, print, json, no_picture;
 } repose_arguments;
 
 static const repose_arguments defaults = {
-    .preset = "demo", .source = CLI_SOURCE_DEFAULTS, .view = VTP_UNSET};
+    .preset = "demo", .source = CLI_SOURCE_DEFAULTS, .view = VIEW_UNSET};
 
 #define AT(field) offsetof(repose_arguments, field)
 static const cli_option options[] = {
     {"config", CLI_FILE, AT(config), "FILE",
-     "An experiment in YAML, as --print writes it; - is stdin.", 0, 0, NULL},
+     "A scene in YAML, as --print writes it, or values of its parameters; - is stdin.", 0, 0, NULL},
+    {"set", CLI_TEXTS, AT(set), "FIELD=VALUE",
+     "Change any field of the scene, as gravity.0=1; may be given several times.", 0, 0, NULL},
     {"preset", CLI_TEXT, AT(preset), "NAME",
      "What the file and the options change: paper, small or demo (the default).", 0, 0, NULL},
     {"output", CLI_TEXT, AT(output), "DIR",
-     "A folder, made if need be, for checkpoints, frames, result.json, series.csv, "
-     "experiment.yaml, heap.png and report.html; with several runs, a folder in it for each, and "
-     "one report.html.",
+     "A folder, made if need be, for checkpoints, frames, result.json, series.csv, scene.yaml, "
+     "scene.png and report.html; with several runs, a folder in it for each, and one report.html.",
      0, 0, NULL},
     {"print", CLI_FLAG, AT(print), NULL,
-     "Print the experiment as it would be run, with units and comments, and stop.", 0, 0, NULL},
+     "Print the scene as it would be run, with units and comments, and stop.", 0, 0, NULL},
     {"samples", CLI_FLAG, AT(samples), NULL, "The nine built-in devices as shapes.", 0, 0, NULL},
     {"rp", CLI_TEXT, AT(rp), "LIST",
      "Decimate the scans first, as 1e-3, or 1e-5,recommended,1e-3 for a run at each; clump:20 is a "
@@ -127,7 +126,7 @@ static const cli_option options[] = {
      "What of each frame becomes a .vtp file for ParaView. Default: surfaces.", 0, 0,
      "none|surfaces|points|contacts|walls|all"},
     {"json", CLI_FLAG, AT(json), NULL, "Print result.json instead of text.", 0, 0, NULL},
-    {"no-picture", CLI_FLAG, AT(no_picture), NULL, "Do not write heap.png.", 0, 0, NULL},
+    {"no-picture", CLI_FLAG, AT(no_picture), NULL, "Do not write scene.png.", 0, 0, NULL},
     {"unit", CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0, 0,
      NULL},
     CLI_SAMPLE_OPTIONS(repose_arguments, source),
@@ -138,279 +137,69 @@ static const cli_option options[] = {
 };
 #undef AT
 
-/* One call: its experiment and its runs. */
+/* What came of one level. */
+typedef struct level_result {
+  scree_pile pile;
+  double triangles, coordination, seconds;
+} level_result;
+
+enum { MOST_LEVELS = 40, LEVEL_BYTES = 40 };
+
+/* One call: its scene and its levels. */
 typedef struct repose {
   const cli_call *call;
   const repose_arguments *arguments;
   scree_work_start start;
-  scree_experiment experiment;
-  cli_grain_options grain_options;
-  cli_grains grains;
-  scree_run **runs; /* of each level, once done */
-  scree_run_result *results;
+  scree_scene_file *file;
+  scree_shape_store *store;
+  cli_poured poured;
+  char levels[MOST_LEVELS + 1][LEVEL_BYTES]; /* "": as given */
+  size_t level_count;
+  level_result results[MOST_LEVELS + 1];
   scree_error error;
 } repose;
 
-/* ---- the experiment ---- */
+/* ---- levels ---- */
 
-/* What the file and the options change: a preset; where a call without shapes names none, what is
- * in the checkpoint. 0, or the exit code after saying why. */
-static int read_base(repose *r, bool alone) {
-  const repose_arguments *a = r->arguments;
-  char path[4200];
-  scree_run *run;
-  snprintf(path, sizeof path, "%.4100s/checkpoint.scree", alone ? a->output : "");
-  if (!alone || a->preset != defaults.preset || !scree_path_exists(path)) {
-    if (scree_experiment_preset(a->preset, &r->experiment, &r->error) == SCREE_OK) return 0;
-    return cli_misuse(r->call->verb, "--preset %s: must be paper, small or demo", a->preset);
+/* A word of --rp as a level of shapes; false where it is none, or there already. */
+static bool add_level(repose *r, const char *word) {
+  double value;
+  char *level = r->levels[r->level_count];
+  snprintf(level, LEVEL_BYTES, "%s", word);
+  if (cli_fraction_from_text(word, &value)) snprintf(level, LEVEL_BYTES, "%.17g", value);
+  bool good = !strcmp(level, "recommended") || !strncmp(level, "clump:", 6) ||
+              cli_real_from_text(level, &value);
+  for (size_t i = 0; i < r->level_count; i++) good = good && strcmp(r->levels[i], level) != 0;
+  if (!good || scree_shape_level_error(level)) return false;
+  r->level_count++;
+  return true;
+}
+
+static bool parse_levels(repose *r, const char *text) {
+  while (*text) {
+    char word[LEVEL_BYTES];
+    size_t length = strcspn(text, ",");
+    if (length == 0 || length >= sizeof word || r->level_count == MOST_LEVELS) return false;
+    snprintf(word, sizeof word, "%.*s", (int)length, text);
+    if (!add_level(r, word)) return false;
+    text += length;
+    if (*text == ',' && !*++text) return false;
   }
-  if (scree_run_load(path, &run, &r->error) != SCREE_OK) return cli_fail(&r->error);
-  scree_status status = scree_experiment_copy(scree_run_experiment(run), &r->experiment, &r->error);
-  scree_run_free(run);
-  return status == SCREE_OK ? 0 : cli_fail(&r->error);
+  return r->level_count > 0;
 }
 
-static int read_experiment(repose *r, bool alone) {
-  const repose_arguments *a = r->arguments;
-  int code = read_base(r, alone);
-  if (code) return code;
-  if (a->config && scree_experiment_read(a->config, &r->experiment, &r->error) != SCREE_OK)
-    return cli_fail(&r->error);
-  for (int i = 0; i < SETTING_COUNT; i++) {
-    char number[CLI_NUMBER_BYTES];
-    if (!a->settings[i]) continue;
-    const char *text = cli_si_text(settings[i].kind, a->settings[i], number);
-    if (scree_experiment_set(&r->experiment, settings[i].field, text, &r->error) != SCREE_OK)
-      return cli_misuse(r->call->verb, "--%s: %s", settings[i].option, r->error.message);
-  }
-  return scree_experiment_check(&r->experiment, &r->error) == SCREE_OK ? 0 : cli_fail(&r->error);
-}
-
-/* ---- one run ---- */
-
-typedef struct one_run {
-  repose *all;
-  bool alone; /* no shapes were given: the checkpoint has them */
-  char name[32], folder[4096];
-} one_run;
-
-static bool watch(void *context, const scree_run_state *state) {
-  (void)context;
-  char left[32], line[160];
-  cli_terminal_seconds(left, sizeof left, state->seconds_left);
-  snprintf(line, sizeof line, "%s %.2f s  %.0f %%  %zu in  %.0f steps/s  %.2g J  %s left",
-           scree_phase_name(state->now.phase), state->now.time, 100 * state->fraction,
-           state->now.body_count, isnan(state->steps_per_second) ? 0 : state->steps_per_second,
-           state->now.kinetic, left);
-  cli_terminal_line(line);
-  return !cli_interrupted();
-}
-
-static scree_status write_views(const one_run *o, scree_run *run, const char *stem,
-                                scree_error *error) {
-  int vtp =
-      o->all->arguments->view == VTP_UNSET ? 1 + SCREE_VIEW_SURFACES : o->all->arguments->view;
-  for (int view = 0; view < SCREE_VIEW_COUNT; view++) {
-    char path[4200];
-    if (vtp != VTP_ALL && vtp != view + 1) continue;
-    snprintf(path, sizeof path, "%s/%s-%s.vtp", o->folder, stem,
-             scree_world_view_name((scree_world_view)view));
-    scree_status status =
-        scree_world_vtp_write(scree_run_world(run), (scree_world_view)view, path, true, error);
-    if (status != SCREE_OK) return status;
-  }
-  return SCREE_OK;
-}
-
-static scree_status on_frame(void *context, scree_run *run, size_t index, scree_error *error) {
-  one_run *o = context;
-  char stem[32];
-  if (!o->folder[0]) return SCREE_OK;
-  snprintf(stem, sizeof stem, "frame-%04zu", index);
-  return write_views(o, run, stem, error);
-}
-
-/* experiment.yaml: what is run. */
-static scree_status write_experiment(const one_run *o, scree_error *error) {
-  const repose_arguments *a = o->all->arguments;
-  char path[4200], checkpoint[4200];
-  scree_output output;
-  snprintf(path, sizeof path, "%s/experiment.yaml", o->folder);
-  snprintf(checkpoint, sizeof checkpoint, "%s/checkpoint.scree", o->folder);
-  /* a run that goes on, or is refused as another one's, keeps the text it began with */
-  if (a->resume && scree_path_exists(path) && scree_path_exists(checkpoint)) return SCREE_OK;
-  scree_status status = scree_output_open(path, a->force || a->resume, &output, error);
-  if (status != SCREE_OK) return status;
-  scree_experiment_print(&o->all->experiment, output.stream);
-  return scree_output_commit(&output, error);
-}
-
-/* The collection of the frames, for each view that was written. */
-static scree_status write_collections(const one_run *o, const scree_run *run, scree_error *error) {
-  double interval = scree_run_experiment(run)->frame_interval;
-  scree_run_costs costs;
-  scree_run_get_costs(run, &costs);
-  size_t count = 0;
-  scree_status status = SCREE_OK;
-  int vtp =
-      o->all->arguments->view == VTP_UNSET ? 1 + SCREE_VIEW_SURFACES : o->all->arguments->view;
-  if (!(interval > 0) || vtp == VTP_NONE) return SCREE_OK;
-  while ((double)count * interval <= scree_world_time(scree_run_view(run))) count++;
-  if (count == 0) return SCREE_OK;
-  double *times = malloc(count * sizeof *times);
-  const char **files = malloc(count * sizeof *files);
-  char(*names)[48] = malloc(count * sizeof *names);
-  if (!times || !files || !names) {
-    *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the list of frames"};
-    status = error->status;
-  }
-  for (int view = 0; status == SCREE_OK && view < SCREE_VIEW_COUNT; view++) {
-    char path[4200];
-    if (vtp != VTP_ALL && vtp != view + 1) continue;
-    const char *kind = scree_world_view_name((scree_world_view)view);
-    for (size_t i = 0; i < count; i++) {
-      times[i] = (double)i * interval;
-      snprintf(names[i], sizeof *names, "frame-%04zu-%s.vtp", i, kind);
-      files[i] = names[i];
-    }
-    snprintf(path, sizeof path, "%s/%s.vtp.series", o->folder, kind);
-    status = scree_pvd_write(files, times, count, path, true, error);
-  }
-  free(times);
-  free(files);
-  free(names);
-  return status;
-}
-
-static scree_status write_picture(const one_run *o, const scree_run *run, scree_error *error) {
-  scree_render_options render = scree_default_render_options();
-  char path[4200];
-  if (o->all->arguments->no_picture) return SCREE_OK;
-  render.elevation_deg = 18;
-  snprintf(path, sizeof path, "%s/heap.png", o->folder);
-  scree_status status = cli_write_picture(run, &render, path, true, o->all->call->progress, error);
-  return status == SCREE_UNSUPPORTED ? SCREE_OK : status; /* a build without a ray tracer */
-}
-
-static void print_result(FILE *stream, const one_run *o, const scree_run *run,
-                         const scree_run_result *result) {
-  const scree_experiment *e = scree_run_experiment(run);
-  size_t shapes = scree_run_shape_count(run);
-  fprintf(stream, "%s%s%zu particle%s of %zu shape%s, seed %llu, preset %s\n",
-          o->all->grains.level_count > 1 ? o->name : "", o->all->grains.level_count > 1 ? ": " : "",
-          e->particle_count, cli_plural(e->particle_count), shapes, cli_plural(shapes),
-          (unsigned long long)e->seed, e->preset);
-  cli_print_heap(stream, run, result);
-  cli_print_costs(stream, run);
-}
-
-/* result.txt: what is printed. */
-static scree_status write_text_result(const one_run *o, const scree_run *run,
-                                      const scree_run_result *result, scree_error *error) {
-  char path[4200];
-  scree_output output;
-  snprintf(path, sizeof path, "%s/result.txt", o->folder);
-  scree_status status = scree_output_open(path, true, &output, error);
-  if (status != SCREE_OK) return status;
-  print_result(output.stream, o, run, result);
-  return scree_output_commit(&output, error);
-}
-
-/* What is made of the other files, so the last. */
-static scree_status write_page(const one_run *o, scree_error *error) {
-  char path[4200];
-  const char *folder = o->folder;
-  snprintf(path, sizeof path, "%s/provenance.json", folder);
-  scree_status status =
-      scree_provenance_write(&o->all->start, o->all->call->command_line, path, true, error);
-  snprintf(path, sizeof path, "%s/report.html", folder);
-  bool common = o->all->grains.level_count > 1; /* one page of all levels, at the end */
-  return status == SCREE_OK && !common ? scree_page_write(&folder, 1, path, true, error) : status;
-}
-
-static scree_status write_results(const one_run *o, scree_run *run, const scree_run_result *result,
-                                  scree_error *error) {
-  scree_heap_entry entry = {
-      .run = run, .result = result, .command_line = o->all->call->command_line};
-  char path[4200];
-  if (o->all->arguments->json) {
-    scree_status status = scree_heap_json_write(&entry, "-", true, error);
-    if (status != SCREE_OK) return status;
-  }
-  if (!o->folder[0]) return SCREE_OK;
-  snprintf(path, sizeof path, "%s/result.json", o->folder);
-  scree_status status = scree_heap_json_write(&entry, path, true, error);
-  snprintf(path, sizeof path, "%s/series.csv", o->folder);
-  if (status == SCREE_OK) status = scree_series_csv_write(run, path, true, error);
-  if (status == SCREE_OK) status = write_collections(o, run, error);
-  if (status == SCREE_OK && o->all->arguments->view > VTP_NONE)
-    status = write_views(o, run, "last", error);
-  if (status == SCREE_OK) status = write_picture(o, run, error);
-  if (status == SCREE_OK) status = write_text_result(o, run, result, error);
-  return status == SCREE_OK ? write_page(o, error) : status;
-}
-
-/* The run of a level: its name and folder. */
-static one_run level_run(repose *r, size_t level) {
-  one_run o = {.all = r};
-  const char *output = r->arguments->output;
-  cli_level_name(&r->grain_options, level, o.name, sizeof o.name);
-  if (output && cli_level_count(&r->grain_options) > 1)
-    snprintf(o.folder, sizeof o.folder, "%s/%s", output, o.name);
-  else if (output)
-    snprintf(o.folder, sizeof o.folder, "%s", output);
-  return o;
-}
-
-static const char *const file_names[] = {
-    "experiment.yaml",      "checkpoint.scree",   "last.scree",
-    "stopped.scree",        "motion.scree",       "result.json",
-    "result.txt",           "series.csv",         "heap.png",
-    "provenance.json",      "report.html",        "frame-#.scree",
-#define VIEW_NAMES(view) "frame-#-" view ".vtp", "last-" view ".vtp", view ".vtp.series"
-    VIEW_NAMES("surfaces"), VIEW_NAMES("points"), VIEW_NAMES("contacts"),
-    VIEW_NAMES("walls")
-#undef VIEW_NAMES
-};
-static const cli_run_files run_files = {file_names, sizeof file_names / sizeof *file_names};
-
-static scree_status check_folder(repose *r, const char *folder) {
-  const repose_arguments *a = r->arguments;
-  scree_status status = cli_make_folder(folder, &r->error);
-  if (status == SCREE_OK && !a->resume)
-    status = cli_check_run_output(r->call, folder, &run_files, a->force, &r->error);
-  return status;
-}
-
-/* Whether the folders can be written to, before scans are read and decimated. */
-static scree_status check_folders(repose *r) {
-  const repose_arguments *a = r->arguments;
-  size_t levels = cli_level_count(&r->grain_options);
-  char path[4200];
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < levels; i++) {
-    one_run o = level_run(r, i);
-    status = check_folder(r, o.folder);
-  }
-  if (status != SCREE_OK || levels < 2 || a->resume) return status;
-  snprintf(path, sizeof path, "%.4100s/report.html", a->output);
-  return cli_check_output(r->call, path, a->force, &r->error);
-}
-
-/* Refuses what a run that begins would refuse, before anything is written. */
-static scree_status check_runs(repose *r) {
-  char checkpoint[4200];
-  scree_status status = SCREE_OK;
-  for (size_t level = 0; level < r->grains.level_count && status == SCREE_OK; level++) {
-    one_run o = level_run(r, level);
-    scree_run *run;
-    snprintf(checkpoint, sizeof checkpoint, "%s/checkpoint.scree", o.folder);
-    if (r->arguments->resume && scree_path_exists(checkpoint)) continue;
-    status = scree_run_create(&r->experiment, r->grains.shapes + level * r->grains.shape_count,
-                              r->grains.shape_count, &run, &r->error);
-    if (status == SCREE_OK) scree_run_free(run);
-  }
-  return status;
+/* For folders and tables. */
+static void name_level(const repose *r, size_t index, char *name, size_t size) {
+  const char *level = r->levels[index];
+  double value;
+  if (!*level)
+    snprintf(name, size, "as-given");
+  else if (cli_real_from_text(level, &value))
+    snprintf(name, size, "rp-%g", value);
+  else
+    snprintf(name, size, "%s", level);
+  for (char *c = name; *c; c++)
+    if (*c == ':') *c = '-';
 }
 
 /* Whether runs of several levels have folders called so. */
@@ -421,119 +210,245 @@ static bool is_level_name(const char *name) {
          (!strncmp(name, "clump-", 6) && cli_real_from_text(name + 6, &rp));
 }
 
-/* What an earlier run left, of one level or of several: a page of the folder would show it. */
+/* ---- the scene ---- */
+
+/* That of the checkpoint which a call without shapes goes on from. */
+static scree_status read_checkpoint(repose *r) {
+  char path[4200];
+  scree_scene *scene;
+  snprintf(path, sizeof path, "%.4100s/checkpoint.scree", r->arguments->output);
+  scree_status status = scree_scene_load(path, &scene, &r->error);
+  if (status != SCREE_OK) return status;
+  const char *text = scree_scene_text(scene);
+  status = scree_scene_file_parse(text, strlen(text), path, &r->file, &r->error);
+  scree_scene_free(scene);
+  return status;
+}
+
+static int read_base(repose *r, bool alone) {
+  const repose_arguments *a = r->arguments;
+  char path[4200];
+  snprintf(path, sizeof path, "%.4100s/checkpoint.scree", alone ? a->output : "");
+  bool found = alone && !a->config && a->preset == defaults.preset && scree_path_exists(path);
+  scree_status status = SCREE_OK;
+  if (found)
+    status = read_checkpoint(r);
+  else if (a->config)
+    status = scree_scene_file_read_over(a->config, "repose", a->preset, &r->file, &r->error);
+  else
+    status = scree_scene_file_template("repose", &r->file, &r->error);
+  if (status == SCREE_OK && !found && !a->config &&
+      scree_scene_file_set(r->file, "preset", a->preset, &r->error) != SCREE_OK)
+    return cli_misuse(r->call->verb, "--preset %s: must be paper, small or demo", a->preset);
+  return status == SCREE_OK ? 0 : cli_fail(&r->error);
+}
+
+/* The options, of which the first that cannot be is told where all together cannot. */
+static int set_options(repose *r) {
+  const repose_arguments *a = r->arguments;
+  char first[1200] = "";
+  for (size_t i = 0; i < SETTING_COUNT + a->set.count; i++) {
+    char number[CLI_NUMBER_BYTES], field[200];
+    bool other = i >= SETTING_COUNT;
+    const char *value = other ? a->set.items[i - SETTING_COUNT] : a->settings[i];
+    if (!value) continue;
+    if (other) {
+      size_t length = strcspn(value, "=");
+      if (length == 0 || !value[length] || length >= sizeof field)
+        return cli_misuse(r->call->verb, "--set %s: must be FIELD=VALUE, as in gravity.0=1", value);
+      snprintf(field, sizeof field, "%.*s", (int)length, value);
+      value += length + 1;
+    } else {
+      snprintf(field, sizeof field, "%s", settings[i].field);
+      value = cli_si_text(settings[i].kind, value, number);
+    }
+    scree_status status = scree_scene_file_try(r->file, field, value, &r->error);
+    bool hard = status != SCREE_OK && status != SCREE_BAD_FILE;
+    if (status != SCREE_OK && (!*first || hard))
+      snprintf(first, sizeof first, "--%s: %.1000s", other ? "set" : settings[i].option,
+               r->error.message);
+    if (hard) return cli_misuse(r->call->verb, "%s", first);
+  }
+  if (!*first || scree_scene_file_check(r->file, NULL) == SCREE_OK) return 0;
+  return cli_misuse(r->call->verb, "%s", first);
+}
+
+static int make_file(repose *r, bool alone) {
+  const repose_arguments *a = r->arguments;
+  int code = read_base(r, alone);
+  if (code) return code;
+  if (r->poured.count) {
+    scree_status status = cli_pour(r->file, &r->poured, &a->source, a->no_repair, &r->error);
+    if (status == SCREE_OK && a->method == SCREE_METHOD_QECD)
+      status = cli_set_scans(r->file, &r->poured, "method", "qecd", &r->error);
+    if (status != SCREE_OK) return cli_fail(&r->error);
+  }
+  return set_options(r);
+}
+
+/* The scene of a level; of clumps in tables only spheres are another. */
+static scree_status set_level(repose *r, size_t index) {
+  const char *level = r->levels[index];
+  scree_status status = SCREE_OK;
+  if (!*level || !r->poured.count) return SCREE_OK;
+  status = cli_set_scans(r->file, &r->poured, "rp", level, &r->error);
+  for (size_t i = 0; status == SCREE_OK && i < r->poured.count; i++) {
+    char field[200];
+    if (strcmp(r->poured.shapes[i].kind, "clump") != 0) continue;
+    snprintf(field, sizeof field, "shapes.%s.rp", r->poured.shapes[i].name);
+    status =
+        scree_scene_file_set(r->file, field, strcmp(level, "spheres") ? "scan" : level, &r->error);
+  }
+  return status;
+}
+
+/* ---- one level ---- */
+
+static unsigned views_of(int view) {
+  switch (view) {
+  case VIEW_UNSET:
+    return CLI_BODIES;
+  case VIEW_NONE:
+    return 0;
+  case VIEW_ALL:
+    return CLI_BODIES | CLI_POINTS | CLI_CONTACTS | CLI_GEOMETRY;
+  default:
+    return 1u << (view - 1);
+  }
+}
+
+static cli_scene_run run_of(repose *r, size_t level, char folder[4096]) {
+  const repose_arguments *a = r->arguments;
+  bool several = r->level_count > 1;
+  static char names[MOST_LEVELS + 1][LEVEL_BYTES];
+  name_level(r, level, names[level], LEVEL_BYTES);
+  snprintf(folder, 4096, "%.4000s%s%s", a->output ? a->output : "", several ? "/" : "",
+           several ? names[level] : "");
+  return (cli_scene_run){.call = r->call,
+                         .start = r->start,
+                         .file = r->file,
+                         .output = a->output ? folder : NULL,
+                         .store = r->store,
+                         .rays = 24,
+                         .views = views_of(a->view),
+                         .resume = a->resume,
+                         .overwrite = a->force,
+                         .json = a->json,
+                         .no_picture = a->no_picture,
+                         .states = true,
+                         .common_page = several,
+                         .name = several ? names[level] : NULL};
+}
+
+/* Refuses what a run that begins would refuse, before anything is written. */
+static scree_status check_level(repose *r, size_t level) {
+  char folder[4096], checkpoint[4200];
+  const cli_scene_run run = run_of(r, level, folder);
+  scree_scene *scene;
+  snprintf(checkpoint, sizeof checkpoint, "%s/checkpoint.scree", folder);
+  if (run.resume && run.output && scree_path_exists(checkpoint)) return SCREE_OK;
+  scree_status status = set_level(r, level);
+  if (status == SCREE_OK)
+    status = scree_scene_create_from(r->file, r->store, r->call->progress, &scene, &r->error);
+  if (status == SCREE_OK) scree_scene_free(scene);
+  return status;
+}
+
+static double mean_triangles(const scree_scene *scene) {
+  double sum = 0;
+  size_t count = 0;
+  for (; scree_scene_shape_name(scene, count); count++) {
+    scree_particle_measures m;
+    scree_particle_measure(scree_scene_shape_particle(scene, count), &m);
+    sum += (double)m.triangle_count;
+  }
+  return sum / (double)count;
+}
+
+static scree_status run_level(repose *r, size_t level) {
+  char folder[4096], shown[2][CLI_PRINTABLE_BYTES];
+  cli_scene_run run = run_of(r, level, folder);
+  level_result *result = &r->results[level];
+  scree_observation o;
+  scree_status status = set_level(r, level);
+  if (status == SCREE_OK) status = cli_run_scene(&run, &r->error);
+  if (status == SCREE_OK && r->level_count > 1) {
+    scree_world_observe(scree_scene_view(run.scene), &o);
+    result->coordination = o.coordination;
+    result->seconds = scree_scene_get_costs(run.scene).wall_seconds;
+    result->triangles = mean_triangles(run.scene);
+    status = scree_scene_measure_pile(run.scene, 0, NULL, &result->pile, &r->error);
+  }
+  if (status == SCREE_OK && !run.json && run.output)
+    printf("  look at           %s/report.html; result.json and series.csv lie in %s\n",
+           cli_printable(r->arguments->output, shown[0]), cli_printable(folder, shown[1]));
+  cli_flush();
+  cli_scene_run_free(&run);
+  return status;
+}
+
+/* ---- all levels ---- */
+
+static void print_table(const repose *r) {
+  printf("\n%-12s %10s %8s %8s %8s %8s %8s %8s\n", "run", "triangles", "sectors", "cone", "outline",
+         "height", "neighb.", "time");
+  for (size_t level = 0; level < r->level_count; level++) {
+    const level_result *result = &r->results[level];
+    const scree_repose *h = &result->pile.repose;
+    char name[LEVEL_BYTES];
+    name_level(r, level, name, sizeof name);
+    printf("%-12s %10.0f", name, result->triangles);
+    if (h->heap)
+      printf(" %4.1f deg %4.1f deg %4.1f deg", h->sector_deg, h->cone_deg, h->silhouette_deg);
+    else
+      printf(" %26s", "no heap");
+    printf(" %5.0f mm %8.2f %6.0f s\n", 1e3 * h->height, result->coordination, result->seconds);
+  }
+}
+
+/* What an earlier call left, of one level or of several: a page of the folder would show it. */
 static scree_status clear_folders(repose *r) {
   const char *output = r->arguments->output;
   char path[4200];
-  scree_status status = cli_clear_run_output(r->call, output, &run_files, &r->error);
+  scree_status status = cli_clear_scene_output(r->call, output, &r->error);
   scree_folder *entries = status == SCREE_OK ? scree_folder_open(output) : NULL;
   for (const char *name; status == SCREE_OK && entries && (name = scree_folder_next(entries));) {
     scree_path_info info;
     snprintf(path, sizeof path, "%.3900s/%.255s", output, name);
     if (is_level_name(name) && scree_path_look(path, &info) && info.kind == SCREE_PATH_FOLDER)
-      status = cli_clear_run_output(r->call, path, &run_files, &r->error);
+      status = cli_clear_scene_output(r->call, path, &r->error);
   }
   if (entries) scree_folder_close(entries);
   return status;
 }
 
-static scree_status run_level(repose *r, size_t level, bool alone) {
-  one_run o = level_run(r, level);
+/* Whether the folders can be written to, before scans are read and decimated. */
+static scree_status check_folders(repose *r) {
   const repose_arguments *a = r->arguments;
-  o.alone = alone;
-  scree_run_job job = {.experiment = &r->experiment,
-                       .shapes = alone ? NULL : r->grains.shapes + level * r->grains.shape_count,
-                       .shape_count = r->grains.shape_count,
-                       .folder = a->output ? o.folder : NULL,
-                       .motion = true,
-                       .resume = a->resume,
-                       .overwrite = a->force,
-                       .watch = watch,
-                       .frame = on_frame,
-                       .context = &o};
+  char path[4200], folder[4096];
   scree_status status = SCREE_OK;
-  if (a->output && !alone) status = write_experiment(&o, &r->error);
-  if (status == SCREE_OK) status = scree_run_complete(&job, &r->runs[level], &r->error);
-  cli_terminal_end();
-  if (status != SCREE_OK) return status;
-  status = scree_run_measure(r->runs[level], &r->results[level], &r->error);
-  if (status == SCREE_OK) status = write_results(&o, r->runs[level], &r->results[level], &r->error);
-  cli_terminal_end();
-  if (status == SCREE_OK && !a->json) {
-    char shown[2][CLI_PRINTABLE_BYTES];
-    print_result(stdout, &o, r->runs[level], &r->results[level]);
-    if (o.folder[0])
-      printf("  look at           %s/report.html; result.json and series.csv lie in %s\n",
-             cli_printable(a->output, shown[0]), cli_printable(o.folder, shown[1]));
-    cli_flush();
+  for (size_t i = 0; status == SCREE_OK && i < r->level_count; i++) {
+    const cli_scene_run run = run_of(r, i, folder);
+    status = cli_check_scene_output(&run, &r->error);
   }
-  return status;
+  if (status != SCREE_OK || r->level_count < 2 || a->resume) return status;
+  snprintf(path, sizeof path, "%.4100s/report.html", a->output);
+  return cli_check_output(r->call, path, a->force, &r->error);
 }
 
-/* ---- all runs ---- */
-
-static void print_table(const repose *r) {
-  printf("\n%-12s %10s %8s %8s %8s %8s %8s %8s\n", "run", "triangles", "sectors", "cone", "outline",
-         "height", "neighb.", "time");
-  for (size_t level = 0; level < r->grains.level_count; level++) {
-    const scree_repose *h = &r->results[level].repose;
-    char name[32];
-    double triangles = 0;
-    scree_run_costs costs;
-    cli_level_name(&r->grain_options, level, name, sizeof name);
-    for (size_t i = 0; i < r->grains.shape_count; i++)
-      triangles += (double)r->grains.grains[level * r->grains.shape_count + i].triangle_count;
-    scree_run_get_costs(r->runs[level], &costs);
-    printf("%-12s %10.0f", name, triangles / (double)r->grains.shape_count);
-    if (h->heap)
-      printf(" %4.1f deg %4.1f deg %4.1f deg", h->sector_deg, h->cone_deg, h->silhouette_deg);
-    else
-      printf(" %26s", "no heap");
-    printf(" %5.0f mm %8.2f %6.0f s\n", 1e3 * h->height, r->results[level].coordination,
-           costs.wall_seconds);
-  }
-}
-
-/* Of all levels, the one report. */
-static scree_status write_common_page(repose *r) {
-  const char *folder = r->arguments->output;
-  char path[4200];
-  snprintf(path, sizeof path, "%.4100s/report.html", folder);
-  return scree_page_write(&folder, 1, path, true, &r->error);
-}
-
-/* All that can be refused, before anything is written; then the folders are as a run begins. */
-static scree_status prepare(repose *r, const char *const *words, size_t word_count) {
+static scree_status run_all(repose *r) {
   const repose_arguments *a = r->arguments;
-  scree_status status = a->output ? check_folders(r) : SCREE_OK;
-  if (status == SCREE_OK)
-    status = cli_make_grains(words, word_count, &r->grain_options, r->call->progress, &r->grains,
-                             &r->error);
+  scree_status status = scree_shape_store_create(&r->store, &r->error);
+  if (status == SCREE_OK && a->output) status = check_folders(r);
+  for (size_t i = 0; status == SCREE_OK && i < r->level_count; i++) status = check_level(r, i);
   cli_terminal_end();
-  if (status == SCREE_OK && a->output) status = check_runs(r);
   if (status == SCREE_OK && a->output && a->force && !a->resume) status = clear_folders(r);
-  return status;
-}
-
-static scree_status run_all(repose *r, const char *const *words, size_t word_count) {
-  bool alone = word_count == 0;
-  scree_status status = SCREE_OK;
-  if (alone)
-    r->grains.level_count = 1;
-  else
-    status = prepare(r, words, word_count);
-  size_t levels = r->grains.level_count;
-  if (status != SCREE_OK) return status;
-  r->runs = calloc(levels, sizeof *r->runs);
-  r->results = calloc(levels, sizeof *r->results);
-  if (!r->runs || !r->results) {
-    r->error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory"};
-    return SCREE_OUT_OF_MEMORY;
-  }
-  for (size_t level = 0; status == SCREE_OK && level < levels; level++)
-    status = run_level(r, level, alone);
-  if (status == SCREE_OK && levels > 1 && !r->arguments->json) print_table(r);
-  return status == SCREE_OK && levels > 1 && r->arguments->output ? write_common_page(r) : status;
+  for (size_t i = 0; status == SCREE_OK && i < r->level_count; i++) status = run_level(r, i);
+  if (status != SCREE_OK || r->level_count < 2) return status;
+  if (!a->json) print_table(r);
+  char path[4200];
+  snprintf(path, sizeof path, "%.4100s/report.html", a->output ? a->output : "");
+  return a->output ? scree_page_write(&a->output, 1, path, true, &r->error) : SCREE_OK;
 }
 
 /* An option that says how shapes are made, with another value than its default; NULL if none. */
@@ -547,57 +462,55 @@ static const char *shape_option(const repose_arguments *a) {
 
 static int check_words(repose *r, size_t word_count) {
   const repose_arguments *a = r->arguments;
-  if (word_count == 0 && !(a->resume && a->output))
+  if (word_count == 0 && !(a->resume && a->output) && !a->print)
     return cli_misuse(r->call->verb, "needs a SHAPE, or --samples, or --resume with -o DIR");
   if (word_count == 0 && shape_option(a))
     return cli_misuse(r->call->verb, "--%s does nothing without a SHAPE", shape_option(a));
   if (a->resume && !a->output) return cli_misuse(r->call->verb, "--resume needs -o DIR");
-  if (a->rp && !cli_parse_levels(a->rp, &r->grain_options))
+  if (a->rp && !parse_levels(r, a->rp))
     return cli_misuse(
         r->call->verb,
         "--rp %s: must be up to %d different numbers in (0, 1], recommended, or clumps of 1 to "
         "300 spheres, as 1e-4,recommended,clump:20",
-        a->rp, CLI_MOST_LEVELS);
+        a->rp, MOST_LEVELS);
+  if (a->spheres) snprintf(r->levels[r->level_count++], LEVEL_BYTES, "spheres");
+  if (r->level_count == 0) r->level_count = 1;
   return 0;
+}
+
+static int run_words(repose *r, const char *const *words, size_t count) {
+  const repose_arguments *a = r->arguments;
+  int code = check_words(r, count);
+  if (code) return code;
+  if (count && cli_make_poured(words, NULL, count, &r->poured, &r->error) != SCREE_OK)
+    return cli_fail(&r->error);
+  code = make_file(r, count == 0 && a->resume && a->output);
+  if (code) return code;
+  scree_status status = a->print ? set_level(r, 0) : run_all(r);
+  if (status == SCREE_OK && a->print) status = scree_scene_file_print(r->file, stdout, &r->error);
+  if (status == SCREE_OK) return 0;
+  code = cli_fail(&r->error);
+  if (r->error.status == SCREE_CANCELLED && a->output)
+    fputs("scree: the same call with --resume goes on from there\n", stderr);
+  return code;
 }
 
 static int run(const cli_call *call) {
   const repose_arguments *a = call->options;
   static char sample_words[SCREE_SAMPLE_DEVICES][32];
-  repose r = {.call = call,
-              .arguments = a,
-              .start = scree_work_started(),
-              .grain_options = {.source = a->source,
-                                .method = a->method,
-                                .no_repair = a->no_repair,
-                                .quiet = call->quiet,
-                                .spheres = a->spheres}};
+  static repose r;
+  r = (repose){.call = call, .arguments = a, .start = scree_work_started()};
   size_t samples = a->samples ? SCREE_SAMPLE_DEVICES : 0, count = samples + call->input_count;
   const char **words = malloc((count + 1) * sizeof *words);
-  int code = words ? read_experiment(&r, count == 0 && a->resume && a->output) : 1;
-  if (code == 0 && a->print) {
-    scree_experiment_print(&r.experiment, stdout);
-    goto done;
-  }
-  if (code == 0) code = check_words(&r, count);
-  if (code) goto done;
-  for (size_t i = 0; i < samples; i++) {
+  for (size_t i = 0; words && i < samples; i++) {
     snprintf(sample_words[i], sizeof sample_words[i], "sample:%s", scree_sample_name(i));
     words[i] = sample_words[i];
   }
-  for (size_t i = 0; i < call->input_count; i++) words[samples + i] = call->inputs[i];
-  r.grain_options.mass_rule = r.experiment.mass_rule;
-  if (run_all(&r, words, count) != SCREE_OK) {
-    code = cli_fail(&r.error);
-    if (r.error.status == SCREE_CANCELLED && a->output)
-      fputs("scree: the same call with --resume goes on from there\n", stderr);
-  }
-done:
-  for (size_t i = 0; r.runs && i < r.grains.level_count; i++) scree_run_free(r.runs[i]);
-  free(r.runs);
-  free(r.results);
-  cli_grains_free(&r.grains);
-  scree_experiment_free(&r.experiment);
+  for (size_t i = 0; words && i < call->input_count; i++) words[samples + i] = call->inputs[i];
+  int code = words ? run_words(&r, words, count) : 1;
+  scree_shape_store_free(r.store);
+  cli_poured_free(&r.poured);
+  scree_scene_file_free(r.file);
   free(words);
   return code;
 }
@@ -614,15 +527,17 @@ const cli_verb cli_verb_repose = {
         "recommends, which is said. The preset paper is the paper's protocol (1197 particles: "
         "hours); small has 360 "
         "particles and softer contacts (its heap scatters more); demo, the default, shows a heap "
-        "in about a minute and no number should be taken from it. Everything can be changed by a "
-        "YAML file and by options, which have the last word. With -o the run writes checkpoints: "
+        "in about a minute and no number should be taken from it. It is a scene, the template "
+        "repose "
+        "of `scree run`: everything can be changed by a YAML file and by options, which have the "
+        "last word. With -o the run writes checkpoints: "
         "after Ctrl-C, or a crash, --resume goes on with the same bits. The same seed gives the "
         "same heap on any number of threads. \"No heap\" is a result: spheres give it.",
     .examples = "scree repose phone_762.stl -o heap\n"
                 "scree repose --samples --rp 1e-4,1e-3 --spheres -p small -o levels\n"
                 "scree repose --resume -o heap\n"
-                "scree repose -p paper --friction 0.4 --print > experiment.yaml\n"
-                "scree repose -c experiment.yaml --samples --rp 1e-3 -o night\n",
+                "scree repose -p paper --friction 0.4 --print > mine.yaml\n"
+                "scree repose -c mine.yaml --samples --rp 1e-3 -o night\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .defaults = &defaults,

@@ -29,17 +29,15 @@ static const char ending[] = ".levels";
 
 /* What a folder may hold: the file, the page's name for it, what says it to readers without
  * JavaScript, and the picture that stands in for the 3D view (NULL: none). */
-enum { CHOICE, STUDY, CLUMP, HEAP, POUR, SCENE, CALIBRATION, RESULT_COUNT };
+enum { CHOICE, STUDY, CLUMP, SCENE, CALIBRATION, RESULT_COUNT };
 static const struct {
   const char *file, *key, *text, *picture;
 } results[RESULT_COUNT] = {{"choice.json", "choice", "choice.txt", NULL},
                            {"study.json", "study", NULL, NULL},
                            {"clump.json", "clump", "clump.txt", NULL},
-                           {"result.json", "heap", "result.txt", "heap.png"},
-                           {"drop.json", "pour", "drop.txt", "drop.png"},
                            {"result.json", "scene", "result.txt", "scene.png"},
                            {"calibration.json", "calibration", "calibration.txt", "corner.png"}};
-static const char scene_file[] = "scene.yaml"; /* beside a scene's result.json, not a heap's */
+static const char scene_file[] = "scene.yaml"; /* beside a scene's result.json */
 
 typedef struct page {
   FILE *stream;
@@ -98,8 +96,7 @@ static bool has_file(const char *folder, const char *name) {
 
 /* Whether the folder has that result. */
 static bool is_there(const char *folder, size_t result) {
-  bool scene = has_file(folder, scene_file);
-  if ((result == HEAP && scene) || (result == SCENE && !scene)) return false;
+  if (result == SCENE && !has_file(folder, scene_file)) return false;
   return has_file(folder, results[result].file);
 }
 
@@ -234,10 +231,10 @@ static scree_status put_pile(page *p, const char *folder, const char *file, cons
   return status;
 }
 
-/* Piles to look at: [run, id] of a study's points; [key, id] of a heap, of a pour, of a scene. */
+/* Piles to look at: [run, id] of a study's points; [key, id] of a scene. */
 static scree_status put_piles(page *p, const char *folder, char *const *found) {
   const char *study = found[STUDY];
-  const bool heap = found[HEAP], pour = found[POUR], scene = found[SCENE];
+  const bool scene = found[SCENE];
   char key[64], run[PATH_BYTES];
   scree_status status = SCREE_OK;
   fputs(",\n\"piles\": ", p->stream);
@@ -247,10 +244,6 @@ static scree_status put_piles(page *p, const char *folder, char *const *found) {
     snprintf(run, sizeof run, "%.4000s/runs/%s", folder, key);
     status = put_pile(p, run, "last.scree", key, &json);
   }
-  if (status == SCREE_OK && heap)
-    status = put_pile(p, folder, "last.scree", results[HEAP].key, &json);
-  if (status == SCREE_OK && pour)
-    status = put_pile(p, folder, "last.world", results[POUR].key, &json);
   if (status == SCREE_OK && scene)
     status = put_pile(p, folder, "checkpoint.scree", results[SCENE].key, &json);
   scree_json_end(&json);
@@ -278,9 +271,8 @@ static scree_status put_folder(page *p, const char *folder) {
       status = put_member(p, folder, results[i].file, results[i].key, &found[i]);
   if (status == SCREE_OK) status = put_member(p, folder, "provenance.json", "provenance", NULL);
   if (status == SCREE_OK && found[CHOICE]) status = put_levels(p, folder, found[CHOICE]);
-  if (status == SCREE_OK && (found[STUDY] || found[HEAP] || found[POUR] || found[SCENE]))
-    status = put_piles(p, folder, found);
-  for (int i = HEAP; i < RESULT_COUNT && status == SCREE_OK; i++)
+  if (status == SCREE_OK && (found[STUDY] || found[SCENE])) status = put_piles(p, folder, found);
+  for (int i = SCENE; i < RESULT_COUNT && status == SCREE_OK; i++)
     if (found[i]) status = put_picture(p, folder, i);
   fputs("}", p->stream);
   for (size_t i = 0; i < RESULT_COUNT; i++) scree_free(found[i]);
@@ -320,9 +312,9 @@ static scree_status find_results(page *p, const char *folder, name_list *found) 
   free_names(&names);
   if (status == SCREE_OK && found->count == before)
     status = scree_fail(p->error, SCREE_BAD_FILE,
-                        "%s: holds no results: no choice.json (scree choose), result.json (run, "
-                        "repose), drop.json, "
-                        "study.json, clump.json or calibration.json",
+                        "%s: holds no results: no choice.json (scree choose), result.json with "
+                        "scene.yaml (run, repose, drop), study.json, clump.json or "
+                        "calibration.json",
                         folder);
   return status;
 }

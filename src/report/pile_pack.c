@@ -24,13 +24,10 @@ static const double one = 32767; /* of a quaternion's component */
 
 typedef struct pile {
   scree_packing pack;
-  scree_run *run;           /* NULL: a pour's, and */
-  scree_world *poured;      /* its world */
-  scree_scene *scene;       /* NULL but of a scene */
-  const scree_world *world; /* of any of them */
-  scree_shapes shapes;      /* of a pour */
+  scree_scene *scene;
+  const scree_world *world; /* its */
   scree_motion motion;      /* at least one frame */
-  size_t wall_count;        /* of a scene: in the motion they stand before the bodies */
+  size_t wall_count;        /* in the motion they stand before the bodies */
 } pile;
 
 /* position on the grid, whether it is there, quaternion */
@@ -48,12 +45,10 @@ static scree_status still(pile *p) {
   scree_motion *m = &p->motion;
   *m = (scree_motion){.frame_count = 1, .body_count = all};
   m->time = scree_alloc(1, sizeof *m->time);
-  m->cylinder_height = scree_alloc(1, sizeof *m->cylinder_height);
   m->poses = scree_alloc(all, 7 * sizeof *m->poses);
-  if (!m->time || !m->cylinder_height || !m->poses)
+  if (!m->time || !m->poses)
     return scree_fail_memory(p->pack.error, all * 7 * sizeof *m->poses, "a pile");
   m->time[0] = scree_world_time(world);
-  m->cylinder_height[0] = p->run ? scree_run_cylinder_height(p->run) : 0;
   for (size_t w = 0; w < p->wall_count; w++) {
     scree_wall wall;
     double turn[4];
@@ -91,40 +86,13 @@ static bool ends_with(const pile *p) {
   return true;
 }
 
-/* Whether it is a scene's checkpoint, by how it begins. */
-static bool is_scene(const char *path) {
-  char magic[8] = "";
-  FILE *stream = fopen(path, "rb");
-  if (!stream) return false;
-  size_t got = fread(magic, 1, sizeof magic, stream);
-  fclose(stream);
-  return got == sizeof magic && !memcmp(magic, "screeSCN", sizeof magic);
-}
-
-static scree_status load_state(pile *p, const char *path) {
-  if (is_scene(path)) {
-    scree_status status = scree_scene_load(path, &p->scene, p->pack.error);
-    if (status != SCREE_OK) return status;
-    p->world = scree_scene_view(p->scene);
-    p->wall_count = scree_world_wall_count(p->world);
-    return SCREE_OK;
-  }
-  const char *dot = strrchr(path, '.');
-  if (dot && !strcmp(dot, ".world")) {
-    scree_status status = scree_world_load(path, &p->poured, p->pack.error);
-    p->world = p->poured;
-    return status == SCREE_OK ? scree_shapes_find(p->world, &p->shapes, p->pack.error) : status;
-  }
-  scree_status status = scree_run_load(path, &p->run, p->pack.error);
-  if (status == SCREE_OK) p->world = scree_run_view(p->run);
-  return status;
-}
-
 static scree_status load(pile *p, const char *path) {
   const char *slash = strrchr(path, '/');
   char beside[PATH_BYTES];
-  scree_status status = load_state(p, path);
+  scree_status status = scree_scene_load(path, &p->scene, p->pack.error);
   if (status != SCREE_OK) return status;
+  p->world = scree_scene_view(p->scene);
+  p->wall_count = scree_world_wall_count(p->world);
   int length = snprintf(beside, sizeof beside, "%.*smotion.scree",
                         (int)(slash ? slash + 1 - path : 0), path);
   if (length < PATH_BYTES && scree_path_exists(beside)) {
@@ -133,21 +101,6 @@ static scree_status load(pile *p, const char *path) {
     scree_motion_free(&p->motion);
   }
   return still(p);
-}
-
-/* ---- the container ---- */
-
-/* Radii of disc and cylinder, sides of a box along x and y; 0 where there is none. */
-static void find_container(const scree_world *world, double sizes[4]) {
-  memset(sizes, 0, 4 * sizeof *sizes);
-  for (size_t w = 0; w < scree_world_wall_count(world); w++) {
-    scree_wall wall;
-    scree_world_get_wall(world, w, &wall);
-    if (wall.kind == SCREE_WALL_DISC) sizes[0] = wall.radius;
-    if (wall.kind == SCREE_WALL_CYLINDER) sizes[1] = wall.radius;
-    for (int k = 0; wall.kind == SCREE_WALL_PLANE && k < 2; k++)
-      if (fabs(wall.axis[k]) > 0.5) sizes[2 + k] = 2 * fabs(wall.position[k]);
-  }
 }
 
 /* ---- shapes ---- */
@@ -185,27 +138,6 @@ static void put_grid(scree_packing *p) {
   scree_code_real(&p->out, &p->step);
 }
 
-/* A pour's have no names here: drop.json has them. */
-static scree_run_shape shape_of(const pile *p, size_t index) {
-  scree_run_shape shape = {0};
-  if (p->run)
-    scree_run_get_shape(p->run, index, &shape);
-  else if (p->scene)
-    shape = (scree_run_shape){.particle = scree_scene_shape_particle(p->scene, index),
-                              .name = scree_scene_shape_name(p->scene, index)};
-  else
-    shape.particle = p->shapes.particles[index];
-  return shape;
-}
-
-static size_t count_shapes(const pile *p) {
-  size_t count = 0;
-  if (p->run) return scree_run_shape_count(p->run);
-  if (!p->scene) return p->shapes.count;
-  while (scree_scene_shape_name(p->scene, count)) count++;
-  return count;
-}
-
 /* A surface with the grid that its vertices lie on. */
 static scree_status put_surface(pile *p, const char *name, size_t triangle_count,
                                 const scree_mesh *mesh) {
@@ -219,7 +151,19 @@ static scree_status put_surface(pile *p, const char *name, size_t triangle_count
   return scree_pack_mesh(&p->pack, mesh, NULL);
 }
 
-/* Of a scene its walls: those that are drawn smaller than the whole, then planes, are told apart by
+/* What of a cylinder stands above all bodies ever is not drawn: it may be very long. */
+static void cut_off(const pile *p, const scree_wall *wall, scree_mesh *mesh) {
+  const scree_motion *m = &p->motion;
+  double high = 2 * wall->radius;
+  if (!(wall->length > 0) || fabs(wall->axis[2]) < 1) return;
+  for (size_t i = 0; i < m->frame_count * m->body_count; i++)
+    if (i % m->body_count >= p->wall_count && (double)m->poses[7 * i + 2] > high)
+      high = (double)m->poses[7 * i + 2];
+  for (size_t v = 0; v < mesh->vertex_count; v++)
+    mesh->positions[3 * v + 2] = fmin(mesh->positions[3 * v + 2], high);
+}
+
+/* The walls: those that are drawn smaller than the whole, then planes, are told apart by
  * whether they count where the view is fitted. */
 static scree_status put_walls(pile *p) {
   scree_status status = SCREE_OK;
@@ -228,11 +172,12 @@ static scree_status put_walls(pile *p) {
     scree_wall wall;
     scree_mesh mesh = {0};
     scree_world_get_wall(p->world, w, &wall);
-    bool endless =
-        wall.kind == SCREE_WALL_PLANE || (wall.kind == SCREE_WALL_CYLINDER && !(wall.length > 0));
+    bool endless = wall.kind == SCREE_WALL_PLANE || wall.kind == SCREE_WALL_DISC ||
+                   (wall.kind == SCREE_WALL_CYLINDER && !(wall.length > 0));
     const char *name = scree_scene_geometry_name(p->scene, scree_scene_wall_geometry(p->scene, w));
     scree_pack_u32(&p->pack, endless);
     status = scree_wall_mesh(p->world, w, &mesh, p->pack.error);
+    if (wall.kind == SCREE_WALL_CYLINDER && status == SCREE_OK) cut_off(p, &wall, &mesh);
     if (status == SCREE_OK) status = put_surface(p, name, mesh.triangle_count, &mesh);
     scree_mesh_free(&mesh);
   }
@@ -240,34 +185,30 @@ static scree_status put_walls(pile *p) {
 }
 
 static scree_status put_shapes(pile *p) {
-  size_t shapes = count_shapes(p), bodies = p->motion.body_count - p->wall_count;
+  size_t shapes = 0, bodies = p->motion.body_count - p->wall_count;
   size_t target = MOST_DRAWN / (bodies ? bodies : 1);
   target = target < LEAST_SHAPE ? LEAST_SHAPE : target > MOST_SHAPE ? MOST_SHAPE : target;
+  while (scree_scene_shape_name(p->scene, shapes)) shapes++;
   scree_pack_u32(&p->pack, shapes);
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < shapes; i++) {
-    scree_run_shape shape = shape_of(p, i);
+    scree_particle *particle = scree_scene_shape_particle(p->scene, i);
     scree_particle_measures m;
     scree_mesh mesh = {0};
-    scree_particle_measure(shape.particle, &m);
-    status = drawn_surface(p, shape.particle, target, &mesh);
-    if (status == SCREE_OK) status = put_surface(p, shape.name, m.triangle_count, &mesh);
+    scree_particle_measure(particle, &m);
+    status = drawn_surface(p, particle, target, &mesh);
+    if (status == SCREE_OK)
+      status = put_surface(p, scree_scene_shape_name(p->scene, i), m.triangle_count, &mesh);
     scree_mesh_free(&mesh);
   }
   return status;
-}
-
-static size_t shape_of_body(const pile *p, size_t body) {
-  return p->run     ? scree_run_body_shape(p->run, body)
-         : p->scene ? scree_scene_body_shape(p->scene, body)
-                    : p->shapes.of_body[body];
 }
 
 static scree_status put_bodies(pile *p) {
   size_t bodies = p->motion.body_count - p->wall_count;
   uint32_t *shape = scree_alloc(bodies, sizeof *shape);
   if (!shape) return scree_fail_memory(p->pack.error, bodies * sizeof *shape, "a pile");
-  for (size_t b = 0; b < bodies; b++) shape[b] = (uint32_t)shape_of_body(p, b);
+  for (size_t b = 0; b < bodies; b++) shape[b] = (uint32_t)scree_scene_body_shape(p->scene, b);
   scree_pack_u32(&p->pack, bodies);
   scree_status status = scree_pack_vertices(&p->pack, shape, bodies, sizeof *shape);
   scree_free(shape);
@@ -326,8 +267,6 @@ static scree_status put_motion(pile *p, size_t stride) {
   scree_pack_u32(&p->pack, count);
   for (size_t k = 0; k < count; k++)
     scree_code_real(&p->pack.out, &m->time[frame_at(m, stride, k)]);
-  for (size_t k = 0; k < count; k++)
-    scree_code_real(&p->pack.out, &m->cylinder_height[frame_at(m, stride, k)]);
   for (size_t w = 0; w < p->wall_count; w++)
     for (size_t k = 0; k < count; k++)
       for (int i = 0; i < 7; i++) {
@@ -345,9 +284,6 @@ static scree_status put_motion(pile *p, size_t stride) {
 }
 
 static scree_status pack(pile *p, size_t byte_limit) {
-  double sizes[4] = {0};
-  if (!p->scene) find_container(p->world, sizes);
-  scree_code_reals(&p->pack.out, sizes, 4);
   scree_status status = put_walls(p);
   if (status == SCREE_OK) status = put_shapes(p);
   if (status == SCREE_OK) status = put_bodies(p);
@@ -374,10 +310,7 @@ scree_status scree_pile_pack(const char *path, size_t byte_limit, unsigned char 
   scree_status status = load(&p, path);
   if (status == SCREE_OK) status = pack(&p, byte_limit);
   scree_motion_free(&p.motion);
-  scree_run_free(p.run);
-  scree_world_free(p.poured);
   scree_scene_free(p.scene);
-  scree_shapes_free(&p.shapes);
   if (status == SCREE_OK) {
     *bytes = p.pack.out.bytes;
     *byte_count = p.pack.out.count;

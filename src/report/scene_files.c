@@ -1,6 +1,7 @@
 /* A scene as JSON: result.json of `scree run` (docs/reference/formats.md). */
 #include "base/alloc.h"
 #include "base/file.h"
+#include "report/csv.h"
 #include "report/shapes.h"
 
 #include <math.h>
@@ -20,6 +21,66 @@ static void json_book(scree_json *json, const scree_scene *scene) {
   scree_json_number(json, "entered_energy", b.entered_energy);
   scree_json_number(json, "left_energy", b.left_energy);
   scree_json_number(json, "ledger", b.ledger);
+  scree_json_end(json);
+}
+
+static void json_way(scree_json *json, const char *key, double deg, double sd_deg, size_t count) {
+  scree_json_row_object(json, key);
+  scree_json_number(json, "angle_deg", deg);
+  scree_json_number(json, "sd_deg", sd_deg);
+  scree_json_count(json, "count", count);
+}
+
+static void json_pile(scree_json *json, const char *name, const scree_pile_settings *settings,
+                      const scree_pile *pile) {
+  const scree_repose *h = &pile->repose;
+  scree_json_object(json, NULL);
+  scree_json_text(json, "name", name);
+  scree_json_bool(json, "heap", h->heap);
+  scree_json_text(json, "no_heap_because", h->heap ? NULL : h->reason);
+  json_way(json, "sectors", h->sector_deg, h->sector_sd_deg, h->sector_count);
+  scree_json_count(json, "total", h->sector_total);
+  scree_json_end(json);
+  scree_json_row_object(json, "cone");
+  scree_json_number(json, "angle_deg", h->cone_deg);
+  scree_json_number(json, "rms", h->cone_rms);
+  scree_json_end(json);
+  json_way(json, "silhouettes", h->silhouette_deg, h->silhouette_sd_deg, h->flank_count);
+  scree_json_end(json);
+  scree_json_number(json, "spread_deg", h->spread_deg);
+  scree_json_number(json, "volume_deg", h->volume_deg);
+  scree_json_number(json, "height", h->height);
+  scree_json_number(json, "peak", h->peak);
+  scree_json_number(json, "base_radius", h->base_radius);
+  scree_json_number(json, "run_out", h->run_out);
+  scree_json_number(json, "envelope_volume", h->envelope_volume);
+  scree_json_number(json, "packing_fraction", pile->packing_fraction);
+  scree_json_count(json, "body_count", pile->body_count);
+  scree_json_number(json, "particle_size", pile->size);
+  scree_json_number(json, "cell", settings->cell);
+  scree_json_count(json, "sectors_asked", settings->sectors);
+  scree_json_number(json, "band_low", settings->band_low);
+  scree_json_number(json, "band_high", settings->band_high);
+  scree_json_end(json);
+}
+
+static void json_piles(scree_json *json, const scree_scene_entry *entry, const scree_pile *piles) {
+  scree_json_array(json, "piles");
+  for (size_t i = 0; scree_scene_pile_name(entry->scene, i); i++) {
+    scree_pile_settings own = scree_scene_pile_settings(entry->scene, i);
+    json_pile(json, scree_scene_pile_name(entry->scene, i), entry->measure ? entry->measure : &own,
+              &piles[i]);
+  }
+  scree_json_end(json);
+}
+
+static void json_costs(scree_json *json, const scree_scene *scene) {
+  scree_scene_costs c = scree_scene_get_costs(scene);
+  scree_json_object(json, "costs");
+  scree_json_count(json, "particle_steps", c.body_steps);
+  scree_json_number(json, "wall_seconds", c.wall_seconds);
+  scree_json_number(json, "processor_seconds", c.processor_seconds);
+  scree_json_count(json, "piece_count", c.piece_count);
   scree_json_end(json);
 }
 
@@ -103,7 +164,8 @@ static void json_columns(scree_json *json, const scree_scene *scene, const doubl
   scree_json_end(json);
 }
 
-static void write_scene(FILE *stream, const scree_scene_entry *entry, const double *last) {
+static void write_scene(FILE *stream, const scree_scene_entry *entry, const double *last,
+                        const scree_pile *piles) {
   const scree_scene *scene = entry->scene;
   const scree_world *world = scree_scene_view(scene);
   scree_json json = scree_json_start(stream);
@@ -118,23 +180,63 @@ static void write_scene(FILE *stream, const scree_scene_entry *entry, const doub
   scree_json_number(&json, "time_step", scree_world_time_step(world, NULL));
   scree_json_count(&json, "step_count", scree_world_step_count(world));
   scree_json_number(&json, "wall_seconds", entry->seconds);
+  json_costs(&json, scene);
   json_book(&json, scene);
+  json_piles(&json, entry, piles);
   json_parts(&json, scene);
   json_columns(&json, scene, last);
   scree_json_end(&json);
 }
 
+static scree_status measure_piles(const scree_scene_entry *entry, scree_pile **piles,
+                                  scree_error *error) {
+  size_t count = 0;
+  while (scree_scene_pile_name(entry->scene, count)) count++;
+  *piles = scree_alloc_zero(count, sizeof **piles);
+  if (!*piles) return scree_fail_memory(error, count * sizeof **piles, "a scene's piles");
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < count; i++)
+    status = scree_scene_measure_pile(entry->scene, i, entry->measure, &(*piles)[i], error);
+  return status;
+}
+
 scree_status scree_scene_json_write(const scree_scene_entry *entry, const char *path,
                                     bool overwrite, scree_error *error) {
   double *last = scree_alloc(scree_scene_column_count(entry->scene), sizeof *last);
-  if (!last) return scree_fail_memory(error, 0, "a scene's numbers");
+  scree_pile *piles = NULL;
   scree_output output;
-  scree_status status = scree_scene_measure(entry->scene, last, error);
+  scree_status status = last ? scree_scene_measure(entry->scene, last, error)
+                             : scree_fail_memory(error, 0, "a scene's numbers");
+  if (status == SCREE_OK) status = measure_piles(entry, &piles, error);
   if (status == SCREE_OK) status = scree_output_open(path, overwrite, &output, error);
   if (status == SCREE_OK) {
-    write_scene(output.stream, entry, last);
+    write_scene(output.stream, entry, last, piles);
     status = scree_output_commit(&output, error);
   }
+  scree_free(piles);
   scree_free(last);
   return status;
+}
+
+/* ---- CSV ---- */
+
+scree_status scree_scene_csv_write(const scree_scene *scene, const char *path, bool overwrite,
+                                   scree_error *error) {
+  size_t rows, columns = scree_scene_column_count(scene);
+  const double *series = scree_scene_series(scene, &rows);
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  for (size_t k = 0; k < columns; k++) {
+    const char *unit = scree_scene_column_unit(scene, k);
+    fprintf(output.stream, "%s%s%s%s%s", k ? "," : "", scree_scene_column_name(scene, k),
+            *unit ? " [" : "", unit, *unit ? "]" : "");
+  }
+  for (size_t i = 0; i < rows; i++)
+    for (size_t k = 0; k < columns; k++) {
+      fputc(k ? ',' : '\n', output.stream);
+      scree_csv_number(output.stream, series[i * columns + k]);
+    }
+  fputc('\n', output.stream);
+  return scree_output_commit(&output, error);
 }

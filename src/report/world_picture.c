@@ -34,9 +34,8 @@ static scree_status make_spheres(drawing *s, scree_error *error) {
   return status;
 }
 
-/* run, scene: where not NULL, the shapes are numbered as it has them. */
-static void add_bodies(const scree_world *world, const scree_run *run, const scree_scene *of,
-                       drawing *s) {
+/* of: where not NULL, the shapes are numbered as it has them. */
+static void add_bodies(const scree_world *world, const scree_scene *of, drawing *s) {
   for (size_t i = 0; i < scree_world_body_count(world); i++) {
     if (scree_world_body_removed(world, i)) continue;
     size_t shape = s->shapes.of_body[i];
@@ -48,12 +47,12 @@ static void add_bodies(const scree_world *world, const scree_run *run, const scr
                                             : scree_particle_mesh(s->shapes.particles[shape])};
     memcpy(item->position, body.position, sizeof item->position);
     memcpy(item->quaternion, body.orientation, sizeof item->quaternion);
-    shape = run ? scree_run_body_shape(run, i) : of ? scree_scene_body_shape(of, i) : shape;
+    shape = of ? scree_scene_body_shape(of, i) : shape;
     scree_shape_color_linear(shape, item->color);
   }
 }
 
-static scree_status draw(const scree_world *world, const scree_run *run,
+static scree_status draw(const scree_world *world, const scree_scene *scene,
                          const scree_render_options *options, const scree_progress *progress,
                          scree_image *image, scree_error *error) {
   size_t bodies = scree_world_body_count(world);
@@ -68,7 +67,7 @@ static scree_status draw(const scree_world *world, const scree_run *run,
   }
   status = make_spheres(&s, error);
   if (status != SCREE_OK) goto done;
-  add_bodies(world, run, NULL, &s);
+  add_bodies(world, scene, &s);
   scree_render_cell cell = {s.items, s.item_count, NULL};
   status = scree_render(&cell, 1, options, progress, image, error);
 done:
@@ -200,7 +199,7 @@ scree_status scree_scene_picture(const scree_scene *scene, const scree_render_op
     status = scree_fail_memory(error, bodies * sizeof *s.items, "a picture's bodies");
   if (status == SCREE_OK) status = make_spheres(&s, error);
   if (status == SCREE_OK) {
-    add_bodies(world, NULL, scene, &s);
+    add_bodies(world, scene, &s);
     status = add_walls(world, &o, &all, &s, meshes, error);
   }
   if (status == SCREE_OK) {
@@ -216,26 +215,26 @@ scree_status scree_scene_picture(const scree_scene *scene, const scree_render_op
 /* ---- heaps ---- */
 
 /* The heap in the middle: as wide as its base, or as most of the bodies lie where there is none. */
-static scree_status focus_on_heap(const scree_run *run, scree_render_options *o,
-                                  scree_error *error) {
-  scree_run_result result;
-  scree_status status = scree_run_measure(run, &result, error);
-  if (status != SCREE_OK) return status;
-  const scree_repose *r = &result.repose;
+static void focus_on(const scree_repose *r, scree_render_options *o) {
   double radius =
       r->heap && isfinite(r->base_radius) ? fmin(r->base_radius, r->run_out) : 0.6 * r->run_out;
   o->focus[0] = r->axis[0];
   o->focus[1] = r->axis[1];
   o->focus[2] = 0.35 * r->peak;
   o->focus_radius = room * fmax(radius, 0.6 * r->peak);
-  return SCREE_OK;
 }
 
-scree_status scree_run_picture(const scree_run *run, const scree_render_options *options,
-                               const scree_progress *progress, scree_image *image,
-                               scree_error *error) {
+scree_status scree_scene_pile_picture(const scree_scene *scene, const scree_render_options *options,
+                                      const scree_progress *progress, scree_image *image,
+                                      scree_error *error) {
   scree_render_options o = options ? *options : scree_default_render_options();
-  scree_status status = o.focus_radius > 0 ? SCREE_OK : focus_on_heap(run, &o, error);
-  if (status != SCREE_OK) return status;
-  return draw(scree_run_view(run), run, &o, progress, image, error);
+  scree_pile pile;
+  if (!scree_scene_pile_name(scene, 0))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "the scene has no sensor of a pile");
+  if (!(o.focus_radius > 0)) {
+    scree_status status = scree_scene_measure_pile(scene, 0, NULL, &pile, error);
+    if (status != SCREE_OK) return status;
+    focus_on(&pile.repose, &o);
+  }
+  return draw(scree_scene_view(scene), scene, &o, progress, image, error);
 }

@@ -20,7 +20,6 @@ enum { MOTION_FRAMES = 240 }; /* enough to be played */
 static const char checkpoint_name[] = "checkpoint.scree", stopped_name[] = "stopped.scree";
 
 typedef struct work {
-  const scree_scene_drive *drive;
   const scree_scene_job *job;
   scree_scene *scene;
   scree_motion_file motion;
@@ -101,10 +100,22 @@ static double next_frame(const work *w) {
   return interval > 0 ? (double)w->frame_count * interval : INFINITY;
 }
 
+static scree_status save_state(work *w, const char *name, scree_error *error) {
+  if (!w->job->folder || !w->job->states) return SCREE_OK;
+  char *path = path_in(w, name, error);
+  if (!path) return SCREE_OUT_OF_MEMORY;
+  scree_status status = scree_scene_save_frame(w->scene, path, true, error);
+  scree_free(path);
+  return status;
+}
+
 static scree_status put_frames(work *w, bool last, scree_error *error) {
   scree_status status = SCREE_OK;
-  bool due = now_of(w) >= next_frame(w) || (last && w->drive->closing && isfinite(next_frame(w)));
-  if (due && w->job->frame)
+  char name[48];
+  snprintf(name, sizeof name, "frame-%06zu.scree", w->frame_count);
+  bool due = now_of(w) >= next_frame(w) || (last && isfinite(next_frame(w)));
+  if (due) status = save_state(w, name, error);
+  if (status == SCREE_OK && due && w->job->frame)
     status = w->job->frame(w->job->context, w->scene, w->frame_count, error);
   if (due) w->frame_count++;
   while (now_of(w) >= next_frame(w)) w->frame_count++; /* an interval shorter than a step */
@@ -119,15 +130,13 @@ static scree_status open_motion(work *w, bool go_on, scree_error *error) {
   if (!path) return SCREE_OUT_OF_MEMORY;
   interval = fmax(interval, w->scene->time_step); /* one may end at its beginning */
   scree_status status = scree_motion_open(&w->motion, path, interval, go_on, now_of(w), error);
-  w->motion.walls = w->drive->walls;
   scree_free(path);
   return status;
 }
 
 static scree_status put_motion(work *w, bool last, scree_error *error) {
   if (now_of(w) < scree_motion_next(&w->motion) && !last) return SCREE_OK;
-  double height = w->drive->cylinder_height ? w->drive->cylinder_height(w->scene) : 0;
-  return scree_motion_put(&w->motion, w->scene->world, height, error);
+  return scree_motion_put(&w->motion, w->scene->world, error);
 }
 
 /* As many steps as stay before the next frame of either kind, or one. */
@@ -207,6 +216,7 @@ static scree_status go_on(work *w, scree_error *error) {
   scree_status status = put_frames(w, true, error);
   if (status == SCREE_OK) status = put_motion(w, true, error);
   if (status == SCREE_OK) status = checkpoint(w, error);
+  if (status == SCREE_OK) status = save_state(w, "last.scree", error);
   watch(w, true);
   return status;
 }
@@ -239,14 +249,14 @@ static int shown(const char *line, size_t length) {
 }
 
 static scree_status compare_texts(const char *here, const char *there, const char *path,
-                                  const char *whose, scree_error *error) {
+                                  scree_error *error) {
   for (;;) {
     size_t m = 0, n = 0;
     const char *a = next_line(&here, &m), *b = next_line(&there, &n);
     if (!a && !b) return SCREE_OK;
     if (a && b && m == n && !strncmp(a, b, m)) continue;
     return scree_fail(error, SCREE_BAD_ARGUMENT,
-                      "%s: is of another %s: '%.*s' there and '%.*s' here", path, whose,
+                      "%s: is of another scene: '%.*s' there and '%.*s' here", path,
                       b ? shown(b, n) : 7, b ? b + strspn(b, " ") : "nothing", a ? shown(a, m) : 7,
                       a ? a + strspn(a, " ") : "nothing");
   }
@@ -259,9 +269,9 @@ static scree_status compare_intervals(const scree_scene *scene, const scree_plan
   bool series = now->series != was->series;
   if (!series && now->frames == was->frames) return SCREE_OK;
   return scree_fail(error, SCREE_BAD_ARGUMENT,
-                    "%s: is of another %s: output.%s is %g there and %g here", path,
-                    scene->seal->whose, series ? "series" : "frames",
-                    series ? was->series : was->frames, series ? now->series : now->frames);
+                    "%s: is of another scene: output.%s is %g there and %g here", path,
+                    series ? "series" : "frames", series ? was->series : was->frames,
+                    series ? now->series : now->frames);
 }
 
 scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *file,
@@ -270,7 +280,7 @@ scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *f
   char *text;
   scree_status status = scree_scene_file_text(file, &text, error);
   if (status != SCREE_OK) return status;
-  status = compare_texts(text, scene->text, path, scene->seal->whose, error);
+  status = compare_texts(text, scene->text, path, error);
   if (status == SCREE_OK) status = scree_scene_file_plan(file, &scene->arena, &plan, error);
   if (status == SCREE_OK) status = compare_intervals(scene, plan.output, path, error);
   if (status != SCREE_OK) {
@@ -293,9 +303,9 @@ static scree_status check_found(work *w, const char *path, scree_error *error) {
     return scree_fail(error, SCREE_BAD_FILE, "%s: is a frame, not a checkpoint", path);
   if (scene->world->diverged)
     return scree_fail(error, SCREE_BAD_FILE,
-                      "%s: was saved after its %s had failed, and cannot go on: %.700s", path,
-                      scene->seal->whose, scene->world->failure.message);
-  return w->drive->check(w->drive->context, w->scene, path, error);
+                      "%s: was saved after its scene had failed, and cannot go on: %.700s", path,
+                      scene->world->failure.message);
+  return w->job->file ? scree_scene_take_over(w->scene, w->job->file, path, error) : SCREE_OK;
 }
 
 /* Loads the checkpoint into w->scene, which stays NULL where there is none. */
@@ -306,11 +316,10 @@ static scree_status find_checkpoint(work *w, scree_error *error) {
   if (!scree_path_exists(path)) goto done;
   if (!w->job->resume) {
     if (!w->job->overwrite)
-      status = scree_fail(error, SCREE_EXISTS, "%s: exists already: a %s was begun here", path,
-                          w->drive->seal->whose);
+      status = scree_fail(error, SCREE_EXISTS, "%s: exists already: a scene was begun here", path);
     goto done;
   }
-  status = scree_scene_load_as(w->drive->seal, path, &w->scene, error);
+  status = scree_scene_load(path, &w->scene, error);
   if (status == SCREE_OK) status = check_found(w, path, error);
   if (status != SCREE_OK) goto done;
   w->scene->costs.piece_count++;
@@ -321,25 +330,31 @@ done:
   return status;
 }
 
+static scree_status make_scene(work *w, scree_error *error) {
+  const scree_scene_job *job = w->job;
+  if (job->file)
+    return scree_scene_create_from(job->file, job->store, job->progress, &w->scene, error);
+  return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: no checkpoint to go on from",
+                    job->folder ? job->folder : "no folder");
+}
+
 static scree_status prepare(work *w, scree_error *error) {
   const scree_scene_job *job = w->job;
   scree_status status = SCREE_OK;
   if (job->folder) status = scree_folder_create(job->folder, error);
   if (job->folder && status == SCREE_OK) status = find_checkpoint(w, error);
   bool resumed = w->scene != NULL;
-  if (status == SCREE_OK && !resumed) status = w->drive->make(w->drive->context, &w->scene, error);
-  if (status == SCREE_OK && job->folder && w->drive->series) status = open_series(w, error);
-  if (status == SCREE_OK && job->folder && w->drive->motion)
-    status = open_motion(w, resumed, error);
+  if (status == SCREE_OK && !resumed) status = make_scene(w, error);
+  if (status == SCREE_OK && job->folder) status = open_series(w, error);
+  if (status == SCREE_OK && job->folder && !job->no_motion) status = open_motion(w, resumed, error);
   if (status == SCREE_OK && job->begun) status = job->begun(job->context, w->scene, resumed, error);
   return status == SCREE_OK ? keep_state(w, error) : status;
 }
 
-scree_status scree_scene_drive_on(const scree_scene_drive *drive, scree_scene **scene,
+scree_status scree_scene_complete(const scree_scene_job *job, scree_scene **scene,
                                   scree_error *error) {
   double now = scree_now();
-  work w = {.drive = drive,
-            .job = drive->job,
+  work w = {.job = job,
             .chunk = FIRST_CHUNK,
             .last_checkpoint = now,
             .last_watch = -INFINITY,
@@ -352,8 +367,8 @@ scree_status scree_scene_drive_on(const scree_scene_drive *drive, scree_scene **
     status = go_on(&w, error);
   }
   bool stopped = status == SCREE_CANCELLED || status == SCREE_DIVERGED;
-  bool stands = status == SCREE_OK || (stopped && drive->closing);
-  if (stopped && stands && w.scene) put_motion(&w, true, NULL);
+  bool stands = status == SCREE_OK || stopped;
+  if (stopped && w.scene) put_motion(&w, true, NULL);
   scree_motion_close(&w.motion);
   if (w.series && fclose(w.series) != 0 && status == SCREE_OK) {
     status = fail_series(error);
@@ -362,34 +377,4 @@ scree_status scree_scene_drive_on(const scree_scene_drive *drive, scree_scene **
   if (!stands) scree_scene_free(w.scene);
   *scene = stands ? w.scene : NULL;
   return status;
-}
-
-/* ---- of a scene's file ---- */
-
-static scree_status make_scene(void *context, scree_scene **scene, scree_error *error) {
-  const scree_scene_job *job = context;
-  if (job->file) return scree_scene_create(job->file, job->progress, scene, error);
-  return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: no checkpoint to go on from",
-                    job->folder ? job->folder : "no folder");
-}
-
-static scree_status check_scene(void *context, scree_scene *scene, const char *path,
-                                scree_error *error) {
-  const scree_scene_job *job = context;
-  return job->file ? scree_scene_take_over(scene, job->file, path, error) : SCREE_OK;
-}
-
-scree_status scree_scene_complete(const scree_scene_job *job, scree_scene **scene,
-                                  scree_error *error) {
-  scree_scene_job own = *job;
-  const scree_scene_drive drive = {.job = &own,
-                                   .seal = &scree_scene_seal,
-                                   .motion = true,
-                                   .walls = true,
-                                   .series = true,
-                                   .closing = true,
-                                   .make = make_scene,
-                                   .check = check_scene,
-                                   .context = &own};
-  return scree_scene_drive_on(&drive, scene, error);
 }

@@ -72,6 +72,10 @@ scree_scene_reach scree_scene_reach_of(const scree_scene *scene) {
   for (size_t w = 0; w < scree_world_wall_count(scene->world); w++) take_in_wall(scene, w, &reach);
   for (size_t i = 0; i < plan->inlets.count; i++) {
     const scree_plan_inlet *inlet = SCREE_PLAN_AT(plan, inlets, scree_plan_inlet, i);
+    if (inlet->layers && inlet->layers->in) { /* that geometry is taken in already */
+      reach.high[2] = INFINITY;
+      continue;
+    }
     scree_scene_region_of(inlet, low, high);
     if (inlet->layers) high[2] = INFINITY;
     take_in(&reach, low, high);

@@ -48,46 +48,6 @@ void scree_scene_file_free(scree_scene_file *file) {
   scree_free(file);
 }
 
-/* The group of things with names of the user's that a field lies in; NULL: in none. */
-static const scree_field *named_group(const char *field) {
-  size_t length = strcspn(field, ".");
-  for (size_t i = 0; i < scree_plan_record.field_count; i++) {
-    const scree_field *f = &scree_plan_record.fields[i];
-    if (f->kind == SCREE_FIELD_NAMED && !strncmp(f->key, field, length) && !f->key[length])
-      return f;
-  }
-  return NULL;
-}
-
-/* A name that is not there, on the way to a field of it, is a slip: a thing would be made of it
- * that nothing uses. */
-static scree_status need_named(const scree_scene_file *file, const char *field,
-                               scree_error *error) {
-  const scree_field *f = named_group(field);
-  const char *name = strchr(field, '.'), *end = name ? strchr(++name, '.') : NULL;
-  if (!f || !end) return SCREE_OK;
-  const scree_yaml *group = scree_yaml_find(&file->root, f->key);
-  const char *names[64] = {NULL}, *blank = strchr(f->record->what, ' ');
-  size_t count = 0;
-  for (size_t i = 0; group && i < group->item_count && group->items[i].key; i++) {
-    const char *key = group->items[i].key;
-    if (strlen(key) == (size_t)(end - name) && !strncmp(key, name, strlen(key))) return SCREE_OK;
-    if (count < 64) names[count++] = key;
-  }
-  char word[64];
-  snprintf(word, sizeof word, "%.*s", (int)(end - name), name);
-  scree_reader reader = {file->name, NULL, error, ""};
-  scree_place place = {.path = f->key};
-  return scree_fail_name(&reader, &place, blank ? blank + 1 : f->record->what, word, names, count);
-}
-
-scree_status scree_scene_file_set(scree_scene_file *file, const char *field, const char *value,
-                                  scree_error *error) {
-  if (file->root.kind != SCREE_YAML_MAPPING) return scree_scene_file_check(file, error);
-  scree_status status = need_named(file, field, error);
-  return status == SCREE_OK ? scree_yaml_set(&file->root, field, value, error) : status;
-}
-
 scree_status scree_scene_file_plan(const scree_scene_file *file, scree_arena *arena,
                                    scree_plan *plan, scree_error *error) {
   scree_reader reader = {file->name, arena, error, ""};
@@ -112,19 +72,6 @@ scree_status scree_scene_file_print(const scree_scene_file *file, FILE *stream,
   return status;
 }
 
-scree_status scree_scene_file_make(scree_scene_writer *write, const void *context,
-                                   scree_scene_file **file, scree_error *error) {
-  char *text = NULL;
-  size_t length;
-  FILE *stream = scree_memory_open(&text, &length);
-  if (stream) write(context, stream);
-  bool good = stream && scree_memory_close(stream);
-  scree_status status = good ? scree_scene_file_parse(text, length, "", file, error)
-                             : scree_fail_memory(error, 0, "a scene's text");
-  free(text);
-  return status;
-}
-
 scree_status scree_scene_file_text(const scree_scene_file *file, char **text, scree_error *error) {
   char *printed = NULL;
   size_t size;
@@ -138,16 +85,6 @@ scree_status scree_scene_file_text(const scree_scene_file *file, char **text, sc
   }
   free(printed);
   return status;
-}
-
-scree_status scree_scene_matches(const scree_scene *scene, const scree_scene_file *file, bool *same,
-                                 scree_error *error) {
-  char *text;
-  scree_status status = scree_scene_file_text(file, &text, error);
-  if (status != SCREE_OK) return status;
-  *same = !strcmp(text, scene->text);
-  scree_free(text);
-  return SCREE_OK;
 }
 
 /* The name of file `index` of the plan; NULL: there are no more. */

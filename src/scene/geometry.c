@@ -3,6 +3,7 @@
 #include "scene/walls.h"
 
 #include "particle/closest.h"
+#include "particle/shape.h"
 
 #include <string.h>
 
@@ -89,13 +90,31 @@ static scree_status add_file(scree_scene *scene, size_t index, const char *folde
   return status == SCREE_OK ? add_mesh(scene, index, name, world, &scan.mesh, error) : status;
 }
 
+static scree_status add_shaft(const scree_scene *scene, const scree_plan_geometry *g,
+                              scree_world *world, scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (int side = 0; status == SCREE_OK && side < 4; side++) {
+    int k = side / 2;
+    double half = 0.5 * (k ? g->shaft->depth : g->shaft->width), inwards = side % 2 ? -1 : 1;
+    scree_plan_geometry one = *g;
+    scree_wall wall = {.kind = SCREE_WALL_PLANE};
+    double normal[3] = {0, 0, 0};
+    normal[k] = inwards;
+    one.at[k] -= inwards * half;
+    turn_vector(g, normal, wall.axis);
+    status = add_wall(scene, &one, world, &wall, error);
+  }
+  return status;
+}
+
 static scree_status add_solid(scree_scene *scene, size_t index, scree_world *world,
                               scree_error *error) {
   const scree_plan_geometry *g = plan_of(scene, index);
   scree_wall wall = {.kind = SCREE_WALL_PLANE};
+  if (g->shaft) return add_shaft(scene, g, world, error);
   if (!isnan(g->box[0])) {
     scree_mesh mesh;
-    scree_status status = scree_scene_box_mesh(g->box, &mesh, error);
+    scree_status status = scree_box_mesh(g->box, &mesh, error);
     return status == SCREE_OK ? add_mesh(scene, index, NULL, world, &mesh, error) : status;
   }
   if (g->disc) {

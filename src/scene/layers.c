@@ -11,29 +11,11 @@
 #include "base/array.h"
 #include "base/rng.h"
 
-static const double layer_thickness = 1.5;   /* of the longest body */
-static const double layer_spacing = 1.05;    /* of a layer's height, travelled before the next */
-static const double fastest = 8;             /* m/s: faster hits leave the contact law's range */
-static const double cell_share = 1.02;       /* of the largest body's diameter: a grid's pitch */
-static const double clearance_share = 0.005; /* of a body's size, on each side */
+static const double layer_thickness = 1.5; /* of the longest body */
+static const double layer_spacing = 1.05;  /* of a layer's height, travelled before the next */
+static const double fastest = 8;           /* m/s: faster hits leave the contact law's range */
+static const double cell_share = 1.02;     /* of the largest body's diameter: a grid's pitch */
 enum { GRID_STREAM = 16 };
-
-/* ---- what it covers ---- */
-
-typedef struct region {
-  vec3 middle; /* of the bottom */
-  double radius, half_x, half_y;
-} region;
-
-static region region_of(const scree_plan_inlet *plan) {
-  const scree_plan_cylinder *c = plan->cylinder;
-  const scree_plan_box *b = plan->box;
-  if (c) return (region){vec3_load(c->at), c->radius, 0, 0};
-  return (region){{0.5 * (b->min[0] + b->max[0]), 0.5 * (b->min[1] + b->max[1]), b->min[2]},
-                  0,
-                  0.5 * (b->max[0] - b->min[0]),
-                  0.5 * (b->max[1] - b->min[1])};
-}
 
 static double box_length(const scree_placement *p) {
   return 2 * fmin(p->radius, vec3_norm(p->half));
@@ -47,34 +29,25 @@ static uint64_t seed_of(const scree_scene *scene, const scree_scene_inlet *inlet
 
 static scree_status allocate(scree_scene *scene, scree_scene_inlet *inlet, scree_error *error) {
   scree_scene_layers *l = &inlet->layers;
-  size_t shapes = SCREE_SCENE_SHAPES(scene), count = inlet->plan->count;
-  l->order = scree_arena_take(&scene->arena, count, sizeof *l->order);
+  size_t shapes = SCREE_SCENE_SHAPES(scene);
   l->extents = scree_arena_take(&scene->arena, shapes, sizeof *l->extents);
-  if (!l->order || !l->extents) return scree_fail_memory(error, count * sizeof *l->order, "layers");
-  scree_status status = scree_fill_order(seed_of(scene, inlet), inlet->plan->shapes.values,
-                                         inlet->plan->shapes.count, l->order, count, error);
-  if (status != SCREE_OK) return status;
-  for (size_t i = 0; i < shapes; i++) {
-    double given = inlet->plan->layers->clearance;
-    scree_particle_measures m;
-    scree_particle_measure(scene->shapes[i].particle, &m);
-    if (isnan(given)) given = clearance_share * m.size;
-    l->extents[i] =
-        scree_placement_of(scene->shapes[i].particle, inlet->plan->layers->packed ? 0 : given);
-  }
+  if (!l->extents) return scree_fail_memory(error, shapes * sizeof *l->extents, "layers");
+  for (size_t i = 0; i < shapes; i++)
+    l->extents[i] = scree_placement_of(scene->shapes[i].particle,
+                                       inlet->plan->layers->packed ? 0 : l->clearance);
   return SCREE_OK;
 }
 
 static scree_fill_layer layer_at(const scree_scene *scene, const scree_scene_inlet *inlet,
                                  double bottom) {
-  region r = region_of(inlet->plan);
+  const scree_scene_layers *l = &inlet->layers;
   return (scree_fill_layer){.seed = seed_of(scene, inlet),
-                            .layer_index = inlet->layers.count,
-                            .cylinder_radius = r.radius,
+                            .layer_index = l->count,
+                            .cylinder_radius = l->radius,
                             .bottom = bottom,
-                            .height = inlet->layers.height,
-                            .half = {r.half_x, r.half_y},
-                            .centre = {r.middle.x, r.middle.y}};
+                            .height = l->height,
+                            .half = {l->half[0], l->half[1]},
+                            .centre = {l->middle.x, l->middle.y}};
 }
 
 /* The extents of all bodies but those that have entered, in their order; to be freed. */
@@ -100,7 +73,7 @@ static bool is_clear(const void *scene, const scree_placement *placement) {
  * stands in the way. The first is placed among the walls, too. */
 static scree_status count_layers(const scree_scene *scene, scree_scene_inlet *inlet,
                                  scree_error *error) {
-  region r = region_of(inlet->plan);
+  const scree_scene_layers *l = &inlet->layers;
   size_t count, placed = 0, layers = 0;
   scree_placement *waiting = list_waiting(inlet, 0, &count, error);
   if (!waiting) return SCREE_OUT_OF_MEMORY;
@@ -113,18 +86,18 @@ static scree_status count_layers(const scree_scene *scene, scree_scene_inlet *in
       status =
           scree_scene_fail(scene, &inlet->plan->place, error,
                            "a particle %.4g mm across does not fit into the %s of %.4g mm",
-                           1e3 * box_length(&waiting[placed]), r.radius > 0 ? "cylinder" : "box",
-                           2e3 * (r.radius > 0 ? r.radius : fmin(r.half_x, r.half_y)));
+                           1e3 * box_length(&waiting[placed]), l->radius > 0 ? "cylinder" : "box",
+                           2e3 * (l->radius > 0 ? l->radius : fmin(l->half[0], l->half[1])));
     placed += more;
   }
   if (status == SCREE_OK && inlet->layers.count == 0) {
-    scree_fill_layer layer = layer_at(scene, inlet, r.middle.z);
+    scree_fill_layer layer = layer_at(scene, inlet, l->middle.z);
     layer.is_clear = is_clear, layer.context = scene;
     if (scree_fill_place(&layer, waiting, 1) == 0)
       status = scree_scene_fail(scene, &inlet->plan->place, error,
                                 "nowhere at %.4g m, where its layers begin, is there room for a "
                                 "particle %.4g mm across clear of the walls",
-                                r.middle.z, 1e3 * box_length(&waiting[0]));
+                                l->middle.z, 1e3 * box_length(&waiting[0]));
   }
   scree_free(waiting);
   inlet->layers.planned = layers;
@@ -158,20 +131,19 @@ static scree_status plan_random(const scree_scene *scene, scree_scene_inlet *inl
   return scree_scene_fail(
       scene, &inlet->plan->place, error,
       "%zu particles make %zu layers of %.4g mm, which would have to enter at %.3g m/s; at "
-      "most %g m/s: set %s to %.3g s or more, or a wider cylinder",
+      "most %g m/s: set pack_time to %.3g s or more, or a wider cylinder",
       inlet->plan->count, l->planned, 1e3 * l->height, l->speed, fastest,
-      *scene->name ? "pack_time" : "phases.pack_time", travel * (double)l->planned / fastest);
+      travel * (double)l->planned / fastest);
 }
 
 /* ---- a grid ---- */
 
 /* Cells along a side; in a circle the grid may have a cell or a corner in the middle. */
-static size_t fill_grid(const scree_scene_layers *l, const region *r, size_t nx, size_t ny,
-                        vec3 *cells) {
-  bool round = r->radius > 0;
-  double dx = round ? l->pitch : 2 * r->half_x / (double)nx,
-         dy = round ? l->pitch : 2 * r->half_y / (double)ny,
-         most = 0.5 * (2 * r->radius - l->pitch);
+static size_t fill_grid(const scree_scene_layers *l, size_t nx, size_t ny, vec3 *cells) {
+  bool round = l->radius > 0;
+  double dx = round ? l->pitch : 2 * l->half[0] / (double)nx,
+         dy = round ? l->pitch : 2 * l->half[1] / (double)ny,
+         most = 0.5 * (2 * l->radius - l->pitch);
   size_t count = 0;
   for (size_t j = 0; j < ny; j++)
     for (size_t i = 0; i < nx; i++) {
@@ -186,10 +158,9 @@ static size_t fill_grid(const scree_scene_layers *l, const region *r, size_t nx,
 
 static scree_status make_cells(scree_scene *scene, scree_scene_inlet *inlet, scree_error *error) {
   scree_scene_layers *l = &inlet->layers;
-  region r = region_of(inlet->plan);
-  bool round = r.radius > 0;
-  double count = (double)inlet->plan->count, width = 2 * (round ? r.radius : r.half_x),
-         depth = 2 * (round ? r.radius : r.half_y), narrow = fmin(width, depth);
+  bool round = l->radius > 0;
+  double count = (double)inlet->plan->count, width = 2 * (round ? l->radius : l->half[0]),
+         depth = 2 * (round ? l->radius : l->half[1]), narrow = fmin(width, depth);
   if (narrow < l->pitch)
     return scree_scene_fail(
         scene, &inlet->plan->place, error,
@@ -203,24 +174,20 @@ static scree_status make_cells(scree_scene *scene, scree_scene_inlet *inlet, scr
     most_y = fmin(most_y, fmax(side, ceil(count / most_x)));
   }
   size_t nx = (size_t)most_x, ny = (size_t)most_y;
-  if (round && nx > 1 && fill_grid(l, &r, nx - 1, ny - 1, NULL) > fill_grid(l, &r, nx, ny, NULL))
+  if (round && nx > 1 && fill_grid(l, nx - 1, ny - 1, NULL) > fill_grid(l, nx, ny, NULL))
     nx--, ny--;
-  size_t cells = fill_grid(l, &r, nx, ny, NULL);
+  size_t cells = fill_grid(l, nx, ny, NULL);
   if (cells == 0) nx = ny = cells = 1; /* in the middle */
   l->cells = scree_arena_take(&scene->arena, cells, sizeof *l->cells);
   l->cell_order = scree_arena_take(&scene->arena, cells, sizeof *l->cell_order);
   if (!l->cells || !l->cell_order)
     return scree_fail_memory(error, cells * sizeof *l->cells, "the cells of a layer");
-  l->cell_count = fill_grid(l, &r, nx, ny, l->cells);
+  l->cell_count = fill_grid(l, nx, ny, l->cells);
   return SCREE_OK;
 }
 
 static scree_status plan_grid(scree_scene *scene, scree_scene_inlet *inlet, scree_error *error) {
   scree_scene_layers *l = &inlet->layers;
-  double largest = 0;
-  for (size_t k = 0; k < inlet->plan->shapes.count; k++)
-    largest = fmax(largest, l->extents[inlet->shapes[k]].radius);
-  l->pitch = 2 * cell_share * largest;
   scree_status status = make_cells(scene, inlet, error);
   if (status != SCREE_OK) return status;
   l->speed = -inlet->plan->velocity[2];
@@ -286,7 +253,6 @@ static scree_status enter_grid(scree_scene *scene, scree_scene_inlet *inlet, dou
   scree_scene_layers *l = &inlet->layers;
   scree_rng rng = {.seed = seed_of(scene, inlet), .stream = GRID_STREAM + l->count};
   double velocity[3] = {0, 0, -l->speed};
-  region r = region_of(inlet->plan);
   scree_status status = SCREE_OK;
   for (size_t i = 0; i < l->cell_count; i++) l->cell_order[i] = (uint32_t)i;
   scree_rng_shuffle(&rng, l->cell_order, l->cell_count, sizeof *l->cell_order);
@@ -296,7 +262,7 @@ static scree_status enter_grid(scree_scene *scene, scree_scene_inlet *inlet, dou
     size_t which = l->order[inlet->entered];
     vec3 cell = l->cells[l->cell_order[k]];
     scree_placement p = place_in_cell(inlet, inlet->shapes[which], cell, &rng);
-    p.position.x += r.middle.x, p.position.y += r.middle.y;
+    p.position.x += l->middle.x, p.position.y += l->middle.y;
     p.position.z += bottom + 0.5 * l->pitch;
     status = scree_scene_enter(scene, inlet, which, &p, velocity, error);
   }
@@ -344,7 +310,7 @@ static scree_status enter_layer(scree_scene *scene, scree_scene_inlet *inlet, sc
   /* What is just entering in random layers does not count: it moves out of the way. */
   double slowest = plan->packed ? -INFINITY : -0.5 * inlet->layers.speed;
   double above = plan->above + (plan->packed ? (cell_share - 1) * inlet->layers.pitch : 0),
-         bottom = fmax(region_of(inlet->plan).middle.z,
+         bottom = fmax(inlet->layers.middle.z,
                        scree_scene_highest(scene, inlet->layers.extents, slowest) + above);
   scree_status status = plan->packed ? enter_grid(scene, inlet, bottom, error)
                                      : enter_random(scene, inlet, bottom, error);

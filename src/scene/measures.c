@@ -83,7 +83,7 @@ static extent take_extent(const scree_scene *scene, const scree_plan_pile *plan)
 scree_status scree_scene_measure_heap(const scree_scene *scene, const scree_plan_pile *plan,
                                       scree_scene_heap *heap, scree_error *error) {
   extent e = take_extent(scene, plan);
-  scree_scene_heap made = {.body_count = 0};
+  scree_scene_heap made = {.size = e.size};
   scree_height_field field;
   if (!(e.size > 0)) {
     *heap = made;
@@ -110,16 +110,85 @@ scree_status scree_scene_measure_heap(const scree_scene *scene, const scree_plan
   return status;
 }
 
-scree_status scree_scene_measure_pile(const scree_scene *scene, const scree_plan_pile *plan,
-                                      double *at, scree_error *error) {
+static scree_pile pile_of(const scree_scene_heap *heap, double size) {
+  const scree_repose *r = &heap->repose;
+  scree_pile p = {.repose = *r, .body_count = heap->body_count, .size = size};
+  /* plates side by side fill what is under them: there the field's own error may pass 1 */
+  p.packing_fraction = r->envelope_volume > 0 ? fmin(1, heap->solid / r->envelope_volume) : NAN;
+  if (heap->body_count) return p;
+  p.repose = (scree_repose){.sector_deg = NAN,
+                            .sector_sd_deg = NAN,
+                            .cone_deg = NAN,
+                            .cone_rms = NAN,
+                            .silhouette_deg = NAN,
+                            .silhouette_sd_deg = NAN,
+                            .spread_deg = NAN,
+                            .volume_deg = NAN,
+                            .height = NAN,
+                            .peak = NAN,
+                            .base_radius = NAN,
+                            .run_out = NAN};
+  snprintf(p.repose.reason, sizeof p.repose.reason, "there are no bodies");
+  return p;
+}
+
+scree_status scree_scene_put_pile(const scree_scene *scene, const scree_plan_pile *plan, double *at,
+                                  scree_error *error) {
   scree_scene_heap heap;
   scree_status status = scree_scene_measure_heap(scene, plan, &heap, error);
   if (status != SCREE_OK) return status;
-  const scree_repose *r = &heap.repose;
-  const double values[5] = {r->sector_deg, r->cone_deg, r->silhouette_deg, r->height,
-                            r->base_radius};
-  for (int k = 0; k < 5; k++) at[k] = heap.body_count ? values[k] : NAN;
+  scree_pile p = pile_of(&heap, plan->size);
+  const scree_repose *r = &p.repose;
+  const double values[SCREE_PILE_COLUMNS] = {
+      r->sector_deg,  r->cone_deg,        r->silhouette_deg,    r->height,
+      r->base_radius, r->sector_sd_deg,   r->silhouette_sd_deg, r->volume_deg,
+      r->run_out,     p.packing_fraction, (double)p.body_count};
+  memcpy(at, values, sizeof values);
   return SCREE_OK;
+}
+
+/* The sensor of pile `index`; NULL past the last. */
+static const scree_plan_sensor *pile_at(const scree_scene *scene, size_t index) {
+  for (size_t i = 0; i < scene->plan.sensors.count; i++)
+    if (scene->sensors[i].plan->pile && index-- == 0) return scene->sensors[i].plan;
+  return NULL;
+}
+
+const char *scree_scene_pile_name(const scree_scene *scene, size_t index) {
+  const scree_plan_sensor *sensor = pile_at(scene, index);
+  return sensor ? sensor->place.name : NULL;
+}
+
+scree_pile_settings scree_scene_pile_settings(const scree_scene *scene, size_t index) {
+  const scree_plan_pile *p = pile_at(scene, index)->pile;
+  return (scree_pile_settings){p->cell, p->sectors, p->band_low, p->band_high};
+}
+
+scree_status scree_scene_measure_pile(const scree_scene *scene, size_t index,
+                                      const scree_pile_settings *settings, scree_pile *pile,
+                                      scree_error *error) {
+  scree_plan_pile plan = *pile_at(scene, index)->pile;
+  if (settings) {
+    plan.cell = settings->cell;
+    plan.sectors = settings->sectors;
+    plan.band_low = settings->band_low;
+    plan.band_high = settings->band_high;
+  }
+  if (!(plan.band_low >= 0 && plan.band_low < plan.band_high && plan.band_high <= 1))
+    return scree_fail(error, SCREE_BAD_ARGUMENT,
+                      "a pile: the band from %g to %g: must rise within 0 to 1", plan.band_low,
+                      plan.band_high);
+  if (plan.sectors < 1 || !(plan.cell >= 0))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "a pile: %zu sectors, cells of %g m", plan.sectors,
+                      plan.cell);
+  scree_scene_heap heap;
+  scree_status status = SCREE_OK;
+  const scree_place nowhere = {.path = ""};
+  if (!isnan(plan.size))
+    status = scree_scene_check_cell(scene, &nowhere, plan.cell, plan.size, error);
+  if (status == SCREE_OK) status = scree_scene_measure_heap(scene, &plan, &heap, error);
+  if (status == SCREE_OK) *pile = pile_of(&heap, heap.size);
+  return status;
 }
 
 /* ---- the slope of a surface ---- */

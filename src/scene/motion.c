@@ -1,5 +1,5 @@
-/* Frames of a run's motion. A body takes 20 bytes: its position as three floats, and its quaternion
- * as four integers, 1 being 32767, which is within 2e-5 rad. */
+/* Frames of a scene's motion. A body takes 20 bytes: its position as three floats, and its
+ * quaternion as four integers, 1 being 32767, which is within 2e-5 rad. */
 #include "scene/motion.h"
 
 #include "base/alloc.h"
@@ -17,14 +17,14 @@ enum { VERSION = 1, BYTE_ORDER_MARK = 0x01020304, HEADER = 16, FRAME_HEADER = 40
 enum { LARGEST_GROWTH = 64 }; /* of the bytes of a file when read: no damaged one asks for more */
 
 typedef struct frame_header {
-  double time, cylinder_height;
+  double time, reserved; /* 0 */
   uint64_t body_count;
   scree_checksum sum; /* of the bodies */
 } frame_header;
 
 static void code_frame(scree_codec *c, frame_header *f) {
   scree_code_real(c, &f->time);
-  scree_code_real(c, &f->cylinder_height);
+  scree_code_real(c, &f->reserved);
   scree_code_u64(c, &f->body_count);
   scree_code_u64(c, &f->sum.high);
   scree_code_u64(c, &f->sum.low);
@@ -91,10 +91,11 @@ static scree_status fail_write(const scree_motion_file *file, scree_error *error
   return scree_fail(error, SCREE_IO, "%s: cannot write: %s", file->path, strerror(errno));
 }
 
-/* Cuts off what comes after `time`; without a stream where nothing can be kept. */
+/* Cuts off what comes after `time`, and a last moment that was none of the interval's: where it
+ * was stopped. Without a stream where nothing can be kept. */
 static scree_status keep_frames(scree_motion_file *file, double time, scree_error *error) {
   char *bytes;
-  size_t count, end = 0;
+  size_t count, end = 0, due = 0;
   walk w;
   scree_error unread;
   scree_status status = scree_file_read(file->path, 0, &bytes, &count, &unread);
@@ -103,6 +104,8 @@ static scree_status keep_frames(scree_motion_file *file, double time, scree_erro
   if (walk_start(&w, bytes, count)) {
     end = HEADER;
     while (walk_next(&w) && w.frame.time <= time) {
+      if (w.frame.time < (double)due * file->interval) continue;
+      while (w.frame.time >= (double)due * file->interval) due++;
       end = w.codec.position;
       file->last = w.frame.time;
     }
@@ -175,15 +178,14 @@ static void code_bodies(scree_codec *c, const scree_world *world, size_t count) 
 }
 
 scree_status scree_motion_put(scree_motion_file *file, const scree_world *world,
-                              double cylinder_height, scree_error *error) {
-  frame_header f = {
-      scree_world_time(world), cylinder_height, scree_world_body_count(world), {0, 0}};
+                              scree_error *error) {
+  frame_header f = {.time = scree_world_time(world), .body_count = scree_world_body_count(world)};
   while (f.time >= scree_motion_next(file)) file->count++;
   if (!file->stream || f.time <= file->last) return SCREE_OK;
   scree_codec bodies = {0}, frame = {0};
-  if (file->walls) code_walls(&bodies, world);
+  code_walls(&bodies, world);
   code_bodies(&bodies, world, (size_t)f.body_count);
-  if (file->walls) f.body_count += scree_world_wall_count(world);
+  f.body_count += scree_world_wall_count(world);
   f.sum = scree_checksum_of(bodies.bytes, bodies.count);
   code_frame(&frame, &f);
   scree_code_bytes(&frame, bodies.bytes, bodies.count);
@@ -209,7 +211,6 @@ void scree_motion_close(scree_motion_file *file) {
 
 void scree_motion_free(scree_motion *motion) {
   scree_free(motion->time);
-  scree_free(motion->cylinder_height);
   scree_free(motion->poses);
   *motion = (scree_motion){0};
 }
@@ -228,7 +229,6 @@ static scree_status fill(const char *name, const char *bytes, size_t count, scre
     return scree_fail(error, SCREE_BAD_FILE, "%s: frames of very different numbers of bodies",
                       name);
   SCREE_ALLOC_OR(m->time, frames, error, out_of_memory);
-  SCREE_ALLOC_OR(m->cylinder_height, frames, error, out_of_memory);
   m->poses = scree_alloc(frames, bodies * 7 * sizeof *m->poses);
   if (!m->poses) {
     scree_fail_memory(error, frames * bodies * 7 * sizeof *m->poses, "a motion");
@@ -239,7 +239,6 @@ static scree_status fill(const char *name, const char *bytes, size_t count, scre
     scree_codec c = {
         .source = w.bodies, .count = (size_t)w.frame.body_count * BODY_BYTES, .loading = true};
     m->time[f] = w.frame.time;
-    m->cylinder_height[f] = w.frame.cylinder_height;
     for (size_t b = 0; b < bodies; b++) {
       float *pose = m->poses + 7 * (f * bodies + b);
       for (int k = 0; k < 7; k++) pose[k] = b < w.frame.body_count ? 0 : NAN;

@@ -1,5 +1,5 @@
-/* The motion of a run or a pour on disk (docs/reference/formats.md): frames are appended while it
- * goes on, each with its own checksum, so that a run that was killed leaves whole ones. */
+/* The motion of a scene on disk (docs/reference/formats.md): frames are appended while it
+ * goes on, each with its own checksum, so that one that was killed leaves whole ones. */
 #ifndef SCREE_SCENE_MOTION_H
 #define SCREE_SCENE_MOTION_H
 
@@ -11,18 +11,17 @@ typedef struct scree_motion_file {
   double interval; /* s, of simulated time */
   size_t count;    /* frames due so far */
   double last;     /* s, time of the last frame written */
-  bool walls;      /* of a scene: the walls stand before the bodies */
 } scree_motion_file;
 
-/* Opens path for a run that stands at `time`. Frames that an earlier piece of the run wrote up to
+/* Opens path for a scene that stands at `time`. Frames that an earlier piece of it wrote up to
  * then stay; where go_on is false, or they cannot be read, the file begins anew. */
 scree_status scree_motion_open(scree_motion_file *file, const char *path, double interval,
                                bool go_on, double time, scree_error *error);
 /* s: when the next frame is due; infinity where nothing is recorded. */
 double scree_motion_next(const scree_motion_file *file);
-/* Appends the world as it stands, unless that is written already. */
+/* Appends the world as it stands, its walls first, unless that is written already. */
 scree_status scree_motion_put(scree_motion_file *file, const scree_world *world,
-                              double cylinder_height, scree_error *error);
+                              scree_error *error);
 /* Does nothing for one that was never opened. */
 void scree_motion_close(scree_motion_file *file);
 

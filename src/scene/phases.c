@@ -57,7 +57,7 @@ static bool is_above_all(const scree_scene *scene, const char *name) {
 /* Whether all has been still for a while. */
 static bool is_over_early(scree_scene *scene, const scree_plan_phase *phase) {
   scree_observation o;
-  if (isnan(phase->still)) return false;
+  if (isnan(phase->still) || !phase->early) return false;
   scree_world_observe(scene->world, &o);
   if (!scree_is_still(&o, phase->still)) {
     scene->still_since = NAN;
@@ -80,6 +80,11 @@ scree_status scree_scene_turn_phase(scree_scene *scene, bool observed, scree_err
   if (!over) return SCREE_OK;
   scene->phase++;
   return scree_scene_begin_phases(scene, error);
+}
+
+const char *scree_scene_phase(const scree_scene *scene) {
+  const scree_plan_phase *phase = phase_of(scene);
+  return phase ? phase->place.name : NULL;
 }
 
 double scree_scene_phase_end(const scree_scene *scene) {

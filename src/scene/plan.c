@@ -3,7 +3,6 @@
 
 #include "base/number.h"
 #include "base/vec.h"
-#include "choice/criterion.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -98,14 +97,23 @@ static const scree_field shape_fields[] = {
     {"clump", SCREE_FIELD_TEXT, AT(clump), 0, 0, "",
      "a table of spheres: x, y, z, radius; or so many that stand for the shape", NULL},
     {"box", SCREE_FIELD_VECTOR, AT(box), 1e-9, 1e3, "m", "three sides", NULL},
-    {"given", SCREE_FIELD_TEXT, AT(given), 0, 0, "", "by the program that makes the scene", NULL},
-    {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, SCREE_PLAN_UNITS, "of the file's lengths", NULL},
+    {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, SCREE_PLAN_UNITS,
+     "of the file's lengths; not given: as the file says, else mm", NULL},
     {"resolution", SCREE_FIELD_REAL, AT(resolution), 0.02e-3, 5e-3, "m", "of a sample's vertices",
      NULL},
+    {"noise", SCREE_FIELD_REAL, AT(noise), 0, 2e-3, "m", "of a sample's vertices", NULL},
+    {"sample_seed", SCREE_FIELD_SEED, AT(sample_seed), 0, 0, "", "of that noise", NULL},
+    {"repair", SCREE_FIELD_FLAG, AT(repair), 0, 0, "",
+     "what is no closed surface; false: it is refused", NULL},
     {"triangles", SCREE_FIELD_TEXT, AT(triangles), 0, 0, "",
      "recommended (as `scree choose` does), all, or at most so many", NULL},
     {"rp", SCREE_FIELD_TEXT, AT(rp), 0, 0, "",
-     "or this share of the triangles; recommended, or as 0.5*recommended a multiple", NULL},
+     "or its level: this share of the triangles; recommended, or as 0.5*recommended a multiple; "
+     "scan; clump:20; spheres",
+     NULL},
+    {"method", SCREE_FIELD_WORD, AT(method), 0, 0, "volume|qecd", "of decimation", NULL},
+    {"mass_from", SCREE_FIELD_WORD, AT(mass_from), 0, 0, "mesh|scan",
+     "volume that gives the mass: of the decimated mesh, or of the scan at every level", NULL},
     {"material", SCREE_FIELD_TEXT, AT(material), 0, 0, "", "", NULL},
     {"density", SCREE_FIELD_REAL, AT(density), 1e-3, 1e6, "kg/m3", "another than its material's",
      NULL},
@@ -138,12 +146,6 @@ static scree_status check_spheres(const scree_reader *r, const scree_plan_shape 
   return SCREE_OK;
 }
 
-static bool is_rp(const char *text) {
-  double rp;
-  return scree_choice_is_recommended(text, &rp) ||
-         (scree_number_read(text, &rp) && rp > 0 && rp <= 1);
-}
-
 static scree_status check_shape(const scree_reader *r, const void *record) {
   const scree_plan_shape *s = record;
   bool table = s->clump && !is_number(s->clump);
@@ -151,31 +153,29 @@ static scree_status check_shape(const scree_reader *r, const void *record) {
     return scree_fail_place(r, &s->place,
                             "clump %.20s: so many spheres stand for a file, sample or box: give it",
                             s->clump);
-  const bool there[] = {s->file != NULL, s->sample != NULL, given(&s->sphere),
-                        table,           given(s->box),     s->given != NULL};
+  const bool there[] = {s->file != NULL, s->sample != NULL, given(&s->sphere), table,
+                        given(s->box)};
   bool none = true;
-  for (int i = 0; i < 6; i++) none = none && !there[i];
+  for (int i = 0; i < 5; i++) none = none && !there[i];
   if (s->size && none) return SCREE_OK; /* spheres */
-  if (s->size && (s->given || given(&s->sphere)))
+  if (s->size && given(&s->sphere))
     return scree_fail_place(r, &s->place,
                             "size is of a file, sample, clump or box; alone, of spheres");
   scree_status status =
-      scree_plan_one_of(r, &s->place, there, 6, "file, sample, sphere (its diameter), clump, box");
+      scree_plan_one_of(r, &s->place, there, 5, "file, sample, sphere (its diameter), clump, box");
   if (status == SCREE_OK && s->clump && !table) status = check_spheres(r, s);
   if (status != SCREE_OK) return status;
-  bool scan = (s->file && !scree_is_clump_table(s->file)) || s->sample;
-  if (scree_plan_spheres(s) && s->file && !scan)
+  if (scree_plan_spheres(s) && s->file && scree_is_clump_table(s->file))
     return scree_fail_place(r, &s->place, "%.100s is a table of spheres: leave out clump: %.20s",
                             s->file, s->clump);
   if (s->triangles && s->rp)
     return scree_fail_place(r, &s->place, "triangles and rp say the same in two ways: give one");
-  if (!scan && (s->triangles || s->rp))
-    return scree_fail_place(r, &s->place, "triangles and rp are of scans: this one has none");
-  if (s->rp && !is_rp(s->rp))
-    return scree_fail_place(r, &s->place,
-                            "rp '%.60s': must be above 0 and at most 1, recommended, or a multiple "
-                            "as 0.5*recommended",
-                            s->rp);
+  if (s->triangles && !s->file && !s->sample)
+    return scree_fail_place(r, &s->place, "triangles are of scans: this one has none");
+  if (s->rp && given(&s->sphere))
+    return scree_fail_place(r, &s->place, "rp is of scans: a sphere has none");
+  const char *wrong = s->rp ? scree_shape_level_error(s->rp) : NULL;
+  if (wrong) return scree_fail_place(r, &s->place, "rp '%.60s': %s", s->rp, wrong);
   if (s->triangles && strcmp(s->triangles, "recommended") != 0 &&
       strcmp(s->triangles, "all") != 0 && !is_count(s->triangles))
     return scree_fail_place(r, &s->place,
@@ -183,8 +183,15 @@ static scree_status check_shape(const scree_reader *r, const void *record) {
                             s->triangles);
   return SCREE_OK;
 }
-static const scree_plan_shape shape_defaults = {
-    .sphere = NAN, .box = NONE, .resolution = NAN, .density = NAN, .scaled = NAN, .unit = 2};
+static const scree_plan_shape shape_defaults = {.sphere = NAN,
+                                                .box = NONE,
+                                                .resolution = NAN,
+                                                .noise = NAN,
+                                                .density = NAN,
+                                                .scaled = NAN,
+                                                .sample_seed = 1,
+                                                .unit = -1,
+                                                .repair = true};
 static const scree_record shape_record = {"a shape", FIELDS(shape_fields), sizeof(scree_plan_shape),
                                           &shape_defaults, check_shape};
 
@@ -222,7 +229,9 @@ static const scree_record disc_record = {"a disc", FIELDS(disc_fields), sizeof(s
 
 #define AT(member) offsetof(scree_plan_cylinder, member)
 static const scree_field cylinder_fields[] = {
-    {"radius", SCREE_FIELD_REAL, AT(radius), 1e-9, 1e6, "m", "inside", NULL},
+    {"radius", SCREE_FIELD_REAL, AT(radius), 1e-9, 1e6, "m",
+     "inside; of geometry with layers in it not given: as wide as what they pour will be high",
+     NULL},
     {"length", SCREE_FIELD_REAL, AT(length), 0, 1e6, "m", "along the axis; of geometry 0: endless",
      NULL},
     {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "", NULL},
@@ -232,7 +241,6 @@ static const scree_field cylinder_fields[] = {
 #undef AT
 static scree_status check_cylinder(const scree_reader *r, const void *record) {
   const scree_plan_cylinder *c = record;
-  if (!given(&c->radius)) return scree_fail_place(r, &c->place, "needs a radius");
   return scree_plan_check_direction(r, &c->place, "axis", c->axis);
 }
 static const scree_plan_cylinder cylinder_defaults = {{0}, NONE, {0, 0, 1}, NAN, 0};
@@ -263,6 +271,17 @@ static scree_status check_box(const scree_reader *r, const void *record) {
 static const scree_plan_box box_defaults = {{0}, NONE, NONE};
 const scree_record scree_plan_box_record = {"a box", FIELDS(box_fields), sizeof(scree_plan_box),
                                             &box_defaults, check_box};
+
+#define AT(member) offsetof(scree_plan_shaft, member)
+static const scree_field shaft_fields[] = {
+    {"width", SCREE_FIELD_REAL, AT(width), 1e-9, 1e6, "m",
+     "inside, along x; with layers in it not given: as wide as what they pour will be high", NULL},
+    {"depth", SCREE_FIELD_REAL, AT(depth), 1e-9, 1e6, "m", "along y; not given: the width", NULL},
+};
+#undef AT
+static const scree_plan_shaft shaft_defaults = {{0}, NAN, NAN};
+static const scree_record shaft_record = {"a shaft", FIELDS(shaft_fields), sizeof(scree_plan_shaft),
+                                          &shaft_defaults, NULL};
 
 /* ---- motions ---- */
 
@@ -372,6 +391,7 @@ static const scree_field geometry_fields[] = {
     {"disc", SCREE_FIELD_RECORD, AT(disc), 0, 0, "", "", &disc_record},
     {"cylinder", SCREE_FIELD_RECORD, AT(cylinder), 0, 0, "", "a sheet from `at` along its axis",
      &scree_plan_cylinder_record},
+    {"shaft", SCREE_FIELD_RECORD, AT(shaft), 0, 0, "", "four endless walls about z", &shaft_record},
     {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, SCREE_PLAN_UNITS, "of the file's lengths", NULL},
     {"at", SCREE_FIELD_VECTOR, AT(at), -1e6, 1e6, "m", "where its origin goes", NULL},
     {"turn", SCREE_FIELD_RECORD, AT(turn), 0, 0, "", "about its origin, before it goes there",
@@ -390,10 +410,10 @@ static const scree_field geometry_fields[] = {
 #undef AT
 static scree_status check_geometry(const scree_reader *r, const void *record) {
   const scree_plan_geometry *g = record;
-  const bool there[] = {g->file.count > 0, given(g->box), given(g->plane), g->disc != NULL,
-                        g->cylinder != NULL};
+  const bool there[] = {g->file.count > 0, given(g->box),       given(g->plane),
+                        g->disc != NULL,   g->cylinder != NULL, g->shaft != NULL};
   scree_status status =
-      scree_plan_one_of(r, &g->place, there, 5, "file, box, plane, disc, cylinder");
+      scree_plan_one_of(r, &g->place, there, 6, "file, box, plane, disc, cylinder, shaft");
   if (status == SCREE_OK) status = scree_plan_check_direction(r, &g->place, "plane", g->plane);
   if (status == SCREE_OK && g->cylinder && given(g->cylinder->at))
     status = scree_fail_place(r, &g->cylinder->place,
@@ -427,9 +447,15 @@ static const scree_field layers_fields[] = {
      "as many as random places hold, or one in every cell of a square grid", NULL},
     {"pack_time", SCREE_FIELD_REAL, AT(pack_time), 0, 1e6, "s",
      "in which all enter; not given: each layer as the one before has made room by falling", NULL},
+    {"in", SCREE_FIELD_TEXT, AT(in), 0, 0, "",
+     "a cylinder or shaft that they fill, in place of a box or cylinder of their own", NULL},
+    {"begin", SCREE_FIELD_WORD, AT(begin), 0, 0, "heap|top",
+     "in it: from near its bottom, or above where all will lie loosely", NULL},
+    {"bottom", SCREE_FIELD_REAL, AT(bottom), 0, 1e6, "m",
+     "from near its bottom: height of the first; not given: as `above`", NULL},
     {"above", SCREE_FIELD_REAL, AT(above), 0, 1e3, "m", "the highest body, at least", NULL},
     {"clearance", SCREE_FIELD_REAL, AT(clearance), 0, 1e3, "m",
-     "kept free around a body; not given: half a hundredth of its size", NULL},
+     "kept free around a body; not given: half a hundredth of the mean size", NULL},
 };
 #undef AT
 static scree_status check_layers(const scree_reader *r, const void *record) {
@@ -442,7 +468,8 @@ static scree_status check_layers(const scree_reader *r, const void *record) {
                           "pack_time is of random layers; those of a grid follow "
                           "from the velocity");
 }
-static const scree_plan_layers layers_defaults = {{0}, 0, NAN, 0, NAN};
+static const scree_plan_layers layers_defaults = {
+    .pack_time = NAN, .bottom = NAN, .clearance = NAN};
 static const scree_record layers_record = {
     "layers", FIELDS(layers_fields), sizeof(scree_plan_layers), &layers_defaults, check_layers};
 
@@ -468,6 +495,10 @@ static const scree_field inlet_fields[] = {
 #undef AT
 static scree_status check_layered(const scree_reader *r, const scree_plan_inlet *i) {
   const scree_plan_cylinder *c = i->cylinder;
+  if (!i->layers->in && (i->layers->begin || given(&i->layers->bottom)))
+    return scree_fail_place(r, &i->layers->place,
+                            "begin and bottom are of layers in a geometry: give in: NAME");
+  if (c && !given(&c->radius)) return scree_fail_place(r, &c->place, "needs a radius");
   if (c && (!given(c->at) || c->axis[0] != 0 || c->axis[1] != 0))
     return scree_fail_place(r, &c->place, "of layers needs at: [x, y, z] and an axis along z");
   if (i->shapes.count == 0) return scree_fail_place(r, &i->place, "needs shapes: {name: share}");
@@ -485,11 +516,14 @@ static scree_status check_layered(const scree_reader *r, const scree_plan_inlet 
 
 static scree_status check_inlet(const scree_reader *r, const void *record) {
   const scree_plan_inlet *i = record;
-  const bool there[] = {i->box != NULL, i->cylinder != NULL};
+  const bool there[] = {i->box != NULL, i->cylinder != NULL, i->layers && i->layers->in};
   const bool rates[] = {given(&i->rate), given(&i->mass_rate), i->count > 0};
-  scree_status status = scree_plan_one_of(r, &i->place, there, 2, "box, cylinder");
+  scree_status status =
+      scree_plan_one_of(r, &i->place, there, 3, "box, cylinder, layers in a geometry");
   if (status != SCREE_OK) return status;
   if (i->layers) return check_layered(r, i);
+  if (i->cylinder && !given(&i->cylinder->radius))
+    return scree_fail_place(r, &i->cylinder->place, "needs a radius");
   if (i->cylinder && (!given(i->cylinder->at) || !(i->cylinder->length > 0)))
     return scree_fail_place(r, &i->cylinder->place, "needs at: [x, y, z] and a length above 0");
   if (i->shapes.count == 0) return scree_fail_place(r, &i->place, "needs shapes: {name: share}");
@@ -599,6 +633,7 @@ static const scree_field phase_fields[] = {
     {"still", SCREE_FIELD_REAL, AT(still), 0, 1e9, "J",
      "it ends early when all move with less energy a body", NULL},
     {"rest", SCREE_FIELD_REAL, AT(rest), 0, 1e9, "s", "for so long", NULL},
+    {"early", SCREE_FIELD_FLAG, AT(early), 0, 0, "", "false: `still` does not end it", NULL},
     {"clear", SCREE_FIELD_TEXT, AT(clear), 0, 0, "",
      "a geometry: it ends early only when that is above all bodies", NULL},
 };
@@ -610,7 +645,7 @@ static scree_status check_phase(const scree_reader *r, const void *record) {
     return scree_fail_place(r, &p->place, "clear says when `still` may end it: give still too");
   return SCREE_OK;
 }
-static const scree_plan_phase phase_defaults = {{0}, NAN, NAN, 0.1, false, NULL};
+static const scree_plan_phase phase_defaults = {{0}, NAN, NAN, 0.1, false, true, NULL};
 static const scree_record phase_record = {"a phase", FIELDS(phase_fields), sizeof(scree_plan_phase),
                                           &phase_defaults, check_phase};
 
@@ -631,9 +666,46 @@ static const scree_plan_output output_defaults = {{0}, 0, 0.01, 60, 0, 0};
 static const scree_record output_record = {"output", FIELDS(output_fields),
                                            sizeof(scree_plan_output), &output_defaults, NULL};
 
+/* ---- names for what is set together ---- */
+
+#define AT(member) offsetof(scree_scene_parameter, member)
+static const scree_field parameter_fields[] = {
+    {"name", SCREE_FIELD_TEXT, AT(name), 0, 0, "", "", NULL},
+    {"sets", SCREE_FIELD_TEXTS, AT(sets), 0, 0, "", "fields; * is every name of a group", NULL},
+    {"factor", SCREE_FIELD_REAL, AT(factor), -1e9, 1e9, "", "times the value", NULL},
+    {"least", SCREE_FIELD_REAL, AT(least), -1e300, 1e300, "", "of the value", NULL},
+    {"most", SCREE_FIELD_REAL, AT(most), -1e300, 1e300, "", "", NULL},
+};
+#undef AT
+static scree_status check_parameter(const scree_reader *r, const void *record) {
+  const scree_scene_parameter *p = record;
+  if (p->name && p->sets.count) return SCREE_OK;
+  return scree_fail_place(r, &p->place, "needs a name and sets: [FIELD, ...]");
+}
+static const scree_scene_parameter parameter_defaults = {.factor = NAN, .least = NAN, .most = NAN};
+static const scree_record parameter_record = {"a parameter", FIELDS(parameter_fields),
+                                              sizeof(scree_scene_parameter), &parameter_defaults,
+                                              check_parameter};
+
+#define AT(member) offsetof(scree_plan_preset, member)
+static const scree_field preset_fields[] = {
+    {"name", SCREE_FIELD_TEXT, AT(name), 0, 0, "", "", NULL},
+    {"about", SCREE_FIELD_TEXT, AT(about), 0, 0, "", "", NULL},
+    {"set", SCREE_FIELD_VALUES, AT(set), 0, 0, "", "values of parameters and fields", NULL},
+};
+#undef AT
+static scree_status check_preset(const scree_reader *r, const void *record) {
+  const scree_plan_preset *p = record;
+  return p->name ? SCREE_OK : scree_fail_place(r, &p->place, "needs a name");
+}
+static const scree_plan_preset preset_defaults = {.name = NULL};
+static const scree_record preset_record = {
+    "a preset", FIELDS(preset_fields), sizeof(scree_plan_preset), &preset_defaults, check_preset};
+
 #define AT(member) offsetof(scree_plan, member)
 static const scree_field plan_fields[] = {
     {"title", SCREE_FIELD_TEXT, AT(title), 0, 0, "", "", NULL},
+    {"preset", SCREE_FIELD_TEXT, AT(preset), 0, 0, "", "of those below, whose values it has", NULL},
     {"time", SCREE_FIELD_REAL, AT(time), 1e-9, 1e9, "s", "simulated, at most", NULL},
     {"seed", SCREE_FIELD_SEED, AT(seed), 0, 0, "", "of places, orientations and order", NULL},
     {"gravity", SCREE_FIELD_VECTOR, AT(gravity), -1e3, 1e3, "m/s2", "", NULL},
@@ -656,6 +728,9 @@ static const scree_field plan_fields[] = {
      "follow each other; after the last the scene ends", &phase_record},
     {"stop", SCREE_FIELD_RECORD, AT(stop), 0, 0, "", "what ends it before its time", &stop_record},
     {"output", SCREE_FIELD_RECORD, AT(output), 0, 0, "", "", &output_record},
+    {"parameters", SCREE_FIELD_LIST, AT(parameters), 0, 0, "", "names for fields set together",
+     &parameter_record},
+    {"presets", SCREE_FIELD_LIST, AT(presets), 0, 0, "", "values for many", &preset_record},
 };
 #undef AT
 

@@ -40,13 +40,15 @@ typedef struct scree_plan_size {
   size_t classes;
 } scree_plan_size;
 
-/* One of file, sample, sphere, clump (a table), box, given; a clump that is a count is one of the
- * others' surface. */
+/* One of file, sample, sphere, clump (a table), box; a clump that is a count is one of the others'
+ * surface. */
 typedef struct scree_plan_shape {
   scree_place place;
-  const char *file, *sample, *clump, *given, *triangles, *rp, *material;
-  double sphere, box[3], resolution, density;
-  int unit;
+  const char *file, *sample, *clump, *triangles, *rp, *material;
+  double sphere, box[3], resolution, noise, density;
+  uint64_t sample_seed;
+  int unit, method, mass_from; /* mass_from: 0 mesh, 1 scan */
+  bool repair;
   scree_plan_size *size;
   double scaled; /* m: to this size; NAN: as it is (of scree_plan_expand, as family) */
   size_t family; /* index among the families */
@@ -102,6 +104,12 @@ typedef struct scree_plan_motion {
   const char *during; /* a phase */
 } scree_plan_motion;
 
+/* Four endless planes about a vertical axis. */
+typedef struct scree_plan_shaft {
+  scree_place place;
+  double width, depth;
+} scree_plan_shaft;
+
 /* Keeps a force (N) or torque (N m) on bodies; speed: m/s or rad/s, at most. */
 typedef struct scree_plan_servo {
   scree_place place;
@@ -118,7 +126,7 @@ typedef struct scree_plan_part {
   scree_plan_servo *servo;
 } scree_plan_part;
 
-/* One of file, box, plane, disc, cylinder. */
+/* One of file, box, plane, disc, cylinder, shaft. */
 typedef struct scree_plan_geometry {
   scree_place place;
   scree_texts file;
@@ -127,6 +135,7 @@ typedef struct scree_plan_geometry {
   double box[3], plane[3], at[3], surface_velocity[3];
   scree_plan_disc *disc;
   scree_plan_cylinder *cylinder;
+  scree_plan_shaft *shaft;
   scree_plan_turn *turn;
   scree_records motion; /* of scree_plan_motion */
   scree_plan_part *slide, *hinge;
@@ -134,8 +143,9 @@ typedef struct scree_plan_geometry {
 
 typedef struct scree_plan_layers {
   scree_place place;
-  int packed; /* 0 random, 1 grid */
-  double pack_time, above, clearance;
+  const char *in;    /* a geometry: what they cover */
+  int packed, begin; /* 0 random, 1 grid; 0 at the bottom, 1 at the top */
+  double pack_time, above, bottom, clearance;
 } scree_plan_layers;
 
 typedef struct scree_plan_inlet {
@@ -231,7 +241,7 @@ typedef struct scree_plan_stop {
 typedef struct scree_plan_phase {
   scree_place place;
   double time, still, rest;
-  bool filled;
+  bool filled, early;
   const char *clear; /* a geometry */
 } scree_plan_phase;
 
@@ -252,15 +262,30 @@ typedef struct scree_plan_contact {
   double steps, stiffness_factor, tangential_ratio, time_step;
 } scree_plan_contact;
 
+/* A name for fields that are set together. */
+typedef struct scree_scene_parameter {
+  scree_place place;
+  const char *name;
+  scree_texts sets;
+  double factor, least, most;
+} scree_scene_parameter;
+
+typedef struct scree_plan_preset {
+  scree_place place;
+  const char *name, *about;
+  scree_values set;
+} scree_plan_preset;
+
 typedef struct scree_plan {
   scree_place place;
-  const char *title;
+  const char *title, *preset;
   double time, gravity[3];
   uint64_t seed;
   size_t tick;
   scree_plan_contact *contact;
   scree_records families; /* the shapes of the file (scree_plan_expand) */
   scree_records materials, pairs, shapes, geometry, inlets, outlets, sensors, phases;
+  scree_records parameters, presets;
   scree_plan_domain *domain;
   scree_plan_bodies *bodies;
   scree_plan_stop *stop;

@@ -59,7 +59,7 @@ static scree_status check_materials(const scree_reader *r, const scree_plan *pla
 static scree_status check_inside(const scree_reader *r, const scree_plan *plan,
                                  const scree_plan_inlet *inlet) {
   const scree_plan_domain *d = plan->domain;
-  if (!d) return SCREE_OK;
+  if (!d || (inlet->layers && inlet->layers->in)) return SCREE_OK;
   double low[3], high[3];
   for (int k = 0; k < 3; k++) {
     const scree_plan_cylinder *c = inlet->cylinder;
@@ -72,6 +72,36 @@ static scree_status check_inside(const scree_reader *r, const scree_plan *plan,
                               "xyz"[k]);
   }
   return SCREE_OK;
+}
+
+/* Layers in a geometry; what has no width of its own needs such. */
+static scree_status check_containers(const scree_reader *r, const scree_plan *plan) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < plan->inlets.count; i++) {
+    const scree_plan_layers *l = SCREE_PLAN_AT(plan, inlets, scree_plan_inlet, i)->layers;
+    if (!l || !l->in) continue;
+    status = NEED(geometry, scree_plan_geometry, "geometry", l->in, &l->place);
+    if (status != SCREE_OK) return status;
+    size_t index = scree_plan_find(&plan->geometry, sizeof(scree_plan_geometry), l->in);
+    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, index);
+    bool upright = g->cylinder && g->cylinder->axis[0] == 0 && g->cylinder->axis[1] == 0;
+    if ((!upright && !g->shaft) || g->turn)
+      status = scree_fail_place(r, &l->place, "in '%.60s': must be a cylinder along z or a shaft",
+                                l->in);
+  }
+  for (size_t i = 0; status == SCREE_OK && i < plan->geometry.count; i++) {
+    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
+    bool open = (g->cylinder && isnan(g->cylinder->radius)) || (g->shaft && isnan(g->shaft->width));
+    for (size_t k = 0; open && k < plan->inlets.count; k++) {
+      const scree_plan_layers *l = SCREE_PLAN_AT(plan, inlets, scree_plan_inlet, k)->layers;
+      if (l && l->in && !strcmp(l->in, g->place.name)) open = false;
+    }
+    if (open)
+      status = scree_fail_place(r, g->cylinder ? &g->cylinder->place : &g->shaft->place,
+                                "needs a %s: no inlet fills it by layers",
+                                g->cylinder ? "radius" : "width");
+  }
+  return status;
 }
 
 static scree_status check_inlets(const scree_reader *r, const scree_plan *plan) {
@@ -169,7 +199,8 @@ static scree_status check_periodic(const scree_reader *r, const scree_plan *plan
 
 scree_status scree_plan_check(const scree_reader *r, const void *record) {
   const scree_plan *plan = record;
-  if (isnan(plan->time) && plan->phases.count == 0)
+  bool ends = plan->phases.count || (plan->stop && !isnan(plan->stop->filled));
+  if (isnan(plan->time) && !ends)
     return scree_fail_place(r, &plan->place, "needs time: how many seconds to simulate");
   if (plan->materials.count > 64)
     return scree_fail_place(r, &plan->place, "%zu materials: at most 64", plan->materials.count);
@@ -179,6 +210,7 @@ scree_status scree_plan_check(const scree_reader *r, const void *record) {
     return scree_fail_place(r, &plan->place, "needs inlets or bodies: nothing would ever be in it");
   scree_status status = check_materials(r, plan);
   if (status == SCREE_OK) status = check_inlets(r, plan);
+  if (status == SCREE_OK) status = check_containers(r, plan);
   if (status == SCREE_OK) status = check_outlets(r, plan);
   if (status == SCREE_OK) status = check_phases(r, plan);
   if (status == SCREE_OK) status = check_periodic(r, plan);

@@ -1,6 +1,6 @@
 /* Checkpoints of a scene: a seal (base/seal.h); the file, printed; the shapes' sources; the gallery
  * (a packed world with one body of each shape); the world; the books, inlets, outlets, sensors and
- * bodies; the series; the notes of the program that made it. What follows from the file is made
+ * bodies; the series. What follows from the file is made
  * again. A frame's world has its bodies and walls without what contacts remember; what follows from
  * contacts is kept as a number. */
 #include "scene/grid.h"
@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-const scree_seal scree_scene_seal = {"screeSCN", "checkpoint of a scree scene", "scene", 4};
+static const scree_seal seal = {"screeSCN", "checkpoint of a scree scene", "scene", 5};
 
 /* ---- the fields, in and out alike ---- */
 
@@ -68,6 +68,8 @@ static void code_inlets(scree_codec *c, scree_scene *scene) {
     scree_code_reals(c, scene->outlets[i].first_place, 3);
   }
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
+    scree_code_real(c, &scene->shapes[i].density); /* by the scan's volume, which is not kept */
+    if (c->loading) scene->shapes[i].mass = scene->shapes[i].density * scene->shapes[i].volume;
     code_size(c, &scene->shapes[i].entered);
     code_size(c, &scene->shapes[i].left);
   }
@@ -210,9 +212,7 @@ static scree_status save(scree_codec *c, const scree_scene *scene, bool as_frame
   if (status == SCREE_OK) status = scree_world_save_block(c, scene->world, !as_frame, error);
   code_geometry(c, &state);
   code_state(c, &state);
-  scree_code_count(c, &state.notes.count, 1);
-  scree_code_bytes(c, state.notes.bytes, state.notes.count);
-  return status == SCREE_OK ? scree_seal_end(c, scene->seal, error) : status;
+  return status == SCREE_OK ? scree_seal_end(c, &seal, error) : status;
 }
 
 scree_status scree_scene_pack(const void *scene, unsigned char **bytes, size_t *byte_count,
@@ -228,8 +228,8 @@ scree_status scree_scene_pack(const void *scene, unsigned char **bytes, size_t *
   return status;
 }
 
-scree_status scree_scene_save_as(const scree_scene *scene, bool as_frame, const char *path,
-                                 bool overwrite, scree_error *error) {
+static scree_status save_as(const scree_scene *scene, bool as_frame, const char *path,
+                            bool overwrite, scree_error *error) {
   scree_codec c = {0};
   if (scene->is_frame && !as_frame)
     return scree_fail(error, SCREE_UNSUPPORTED, "%s: a frame cannot become a checkpoint", path);
@@ -241,7 +241,12 @@ scree_status scree_scene_save_as(const scree_scene *scene, bool as_frame, const 
 
 scree_status scree_scene_save(const scree_scene *scene, const char *path, bool overwrite,
                               scree_error *error) {
-  return scree_scene_save_as(scene, false, path, overwrite, error);
+  return save_as(scene, false, path, overwrite, error);
+}
+
+scree_status scree_scene_save_frame(const scree_scene *scene, const char *path, bool overwrite,
+                                    scree_error *error) {
+  return save_as(scene, true, path, overwrite, error);
 }
 
 /* ---- loading ---- */
@@ -254,7 +259,7 @@ typedef struct loader {
 } loader;
 
 static scree_status fail_here(const loader *l) {
-  return scree_seal_refuse(&l->codec, l->scene->seal, l->name, l->error);
+  return scree_seal_refuse(&l->codec, &seal, l->name, l->error);
 }
 
 static scree_status load_plan(loader *l) {
@@ -291,18 +296,6 @@ static scree_status adopt_particles(loader *l) {
   return SCREE_OK;
 }
 
-/* The last of the file. */
-static scree_status load_notes(loader *l) {
-  size_t count = 0;
-  scree_code_count(&l->codec, &count, 1);
-  if (!scree_codec_good(&l->codec)) return fail_here(l);
-  const unsigned char *notes = l->codec.source + l->codec.position;
-  l->codec.position += count;
-  if (l->codec.position != l->codec.count) l->codec.failed = true;
-  if (!scree_codec_good(&l->codec)) return fail_here(l);
-  return scree_scene_set_notes(l->scene, notes, count, l->error);
-}
-
 /* The walls that the plan has. */
 static size_t next_wall(const scree_scene *scene) {
   size_t count = scene->plan.geometry.count;
@@ -321,7 +314,6 @@ static scree_status load(loader *l) {
     status = scree_world_load_block(&l->codec, l->name, &scene->world, l->error);
   if (status != SCREE_OK) return status;
   if (scree_world_body_count(scene->gallery) != SCREE_SCENE_SHAPES(scene)) return fail_here(l);
-  scree_world_get_options(scene->gallery, &scene->base);
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
     scene->shapes[i].particle = scree_world_body_particle(scene->gallery, i);
     scree_particle_retain(scene->shapes[i].particle);
@@ -333,19 +325,19 @@ static scree_status load(loader *l) {
   status = scree_scene_plan_wear(scene, l->error);
   if (status != SCREE_OK) return status;
   code_state(&l->codec, scene);
-  status = load_notes(l);
-  if (status == SCREE_OK) status = adopt_particles(l);
+  if (l->codec.position != l->codec.count) l->codec.failed = true;
+  if (!scree_codec_good(&l->codec)) return fail_here(l);
+  status = adopt_particles(l);
+  if (status == SCREE_OK) status = scree_scene_complete_plan(scene, l->error);
   return status == SCREE_OK ? scree_scene_plan_layers(scene, l->error) : status;
 }
 
-scree_status scree_scene_load_as(const scree_seal *seal, const char *path, scree_scene **scene,
-                                 scree_error *error) {
+scree_status scree_scene_load(const char *path, scree_scene **scene, scree_error *error) {
   char *bytes;
   loader l = {.error = error};
-  scree_status status = scree_seal_read(path, seal, &bytes, &l.codec, &l.name, error);
+  scree_status status = scree_seal_read(path, &seal, &bytes, &l.codec, &l.name, error);
   if (status != SCREE_OK) return status;
   l.scene = scree_alloc_zero(1, sizeof *l.scene);
-  if (l.scene) l.scene->seal = seal;
   status = l.scene ? load(&l) : scree_fail_memory(error, sizeof *l.scene, "a scene");
   scree_free(bytes);
   if (status == SCREE_OK)
@@ -353,8 +345,4 @@ scree_status scree_scene_load_as(const scree_seal *seal, const char *path, scree
   else
     scree_scene_free(l.scene);
   return status;
-}
-
-scree_status scree_scene_load(const char *path, scree_scene **scene, scree_error *error) {
-  return scree_scene_load_as(&scree_scene_seal, path, scene, error);
 }

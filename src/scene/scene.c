@@ -25,7 +25,7 @@ enum { GOES_ON, END_TIME, END_STILL, END_EMPTY, END_PHASES, END_FILLED };
 
 static scree_world_options world_options(const scree_scene *scene, double time_step) {
   const scree_plan *plan = &scene->plan;
-  scree_world_options o = scene->base;
+  scree_world_options o = scree_default_world_options();
   memcpy(o.gravity, plan->gravity, sizeof o.gravity);
   o.law = (scree_law)plan->contact->law;
   o.steps_per_contact = plan->contact->steps;
@@ -193,6 +193,7 @@ void scree_scene_measure_shape(scree_scene *scene, size_t index) {
                : scene->plan.materials.count ? material_at(scene, s->material)->density
                                              : scree_default_material().density;
   s->family = plan->family;
+  if (plan->mass_from && s->scan_volume > 0) s->density *= s->scan_volume / m.volume;
   s->volume = m.volume;
   s->mass = s->density * m.volume;
   scene->size = index ? fmin(scene->size, m.size) : m.size;
@@ -255,7 +256,8 @@ scree_status scree_scene_prepare(scree_scene *scene, scree_error *error) {
 
 scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_error *error) {
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) scree_scene_measure_shape(scene, i);
-  scree_status status = make_gallery(scene, folder, error);
+  scree_status status = scree_scene_complete_plan(scene, error);
+  if (status == SCREE_OK) status = make_gallery(scene, folder, error);
   if (status != SCREE_OK) return status;
   scree_error why; /* a time step that is too long */
   status = scree_world_step(scene->gallery, 0, &why);
@@ -269,57 +271,19 @@ scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_er
   return status;
 }
 
-static scree_status take_given_particle(scree_scene *scene, const scree_scene_gift *gift,
-                                        size_t index, scree_error *error) {
-  const scree_plan_shape *plan = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, index);
-  scree_scene_shape *s = &scene->shapes[index];
-  if (!gift || !gift->particles)
-    return scree_scene_fail(scene, &plan->place, error,
-                            "given: '%.60s' comes from a program; here a shape needs a file, "
-                            "sample, sphere, clump or box",
-                            plan->given);
-  s->particle = gift->particles[index];
-  scree_particle_retain(s->particle);
-  s->source = scree_strdup(gift->sources && gift->sources[index] ? gift->sources[index] : "");
-  return s->source ? SCREE_OK : scree_fail_memory(error, 0, "a shape's source");
-}
-
-static scree_status make_particles(scree_scene *scene, const char *folder,
-                                   const scree_scene_gift *gift, const scree_progress *progress,
-                                   scree_error *error) {
+static scree_status make_particles(scree_scene *scene, const char *folder, scree_shape_store *store,
+                                   const scree_progress *progress, scree_error *error) {
   scree_status status = SCREE_OK;
-  scree_particle *unscaled = NULL; /* of the classes of one family */
+  scree_shape_made made = {0};
+  const scree_scene_making making = {store, progress, &made};
   for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(scene); i++) {
     const scree_plan_shape *plan = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, i);
     scree_error why;
-    scree_scene_shape *s = &scene->shapes[i];
-    if (i && plan->family != (plan - 1)->family) {
-      scree_particle_free(unscaled);
-      unscaled = NULL;
-    }
-    if (plan->given) {
-      status = take_given_particle(scene, gift, i, error);
-      continue;
-    }
-    if (isnan(plan->scaled))
-      status = scree_scene_make_particle(plan, folder, progress, &s->particle, &s->source, &why);
-    else
-      status = scree_scene_make_scaled(plan, folder, progress, &unscaled, s, &why);
+    status = scree_scene_make_shape(scene, i, folder, &making, &why);
     status = scree_scene_blame(scene, &plan->place, status, &why, error);
   }
-  scree_particle_free(unscaled);
+  scree_particle_free(made.particle);
   return status;
-}
-
-scree_status scree_scene_set_notes(scree_scene *scene, const unsigned char *bytes, size_t count,
-                                   scree_error *error) {
-  unsigned char *copy = scree_alloc(count, 1);
-  if (!copy) return scree_fail_memory(error, count, "a scene's notes");
-  if (count) memcpy(copy, bytes, count);
-  scree_free(scene->notes.bytes);
-  scene->notes.bytes = copy;
-  scene->notes.count = count;
-  return SCREE_OK;
 }
 
 /* Which materials have no density of their own. */
@@ -336,9 +300,7 @@ static scree_status note_densities(scree_scene *scene, const scree_scene_file *f
 
 /* Name, text and plan of the file. */
 static scree_status take_file(scree_scene *scene, const scree_scene_file *file,
-                              const scree_scene_gift *gift, scree_error *error) {
-  scene->seal = gift ? gift->seal : &scree_scene_seal;
-  scene->base = gift && gift->options ? *gift->options : scree_default_world_options();
+                              scree_error *error) {
   scree_status status = scree_scene_file_plan(file, &scene->arena, &scene->plan, error);
   if (status != SCREE_OK) return status;
   status = note_densities(scene, file, error);
@@ -346,18 +308,16 @@ static scree_status take_file(scree_scene *scene, const scree_scene_file *file,
   scene->name = scree_strdup(file->name);
   if (!scene->name) return scree_fail_memory(error, 0, "a scene's name");
   status = scree_scene_file_text(file, &scene->text, error);
-  if (status == SCREE_OK && gift)
-    status = scree_scene_set_notes(scene, gift->notes, gift->note_bytes, error);
   return status == SCREE_OK ? scree_scene_prepare(scene, error) : status;
 }
 
-scree_status scree_scene_make(const scree_scene_file *file, const scree_scene_gift *gift,
-                              const scree_progress *progress, scree_scene **scene,
-                              scree_error *error) {
+scree_status scree_scene_create_from(const scree_scene_file *file, scree_shape_store *store,
+                                     const scree_progress *progress, scree_scene **scene,
+                                     scree_error *error) {
   scree_scene *made = scree_alloc_zero(1, sizeof *made);
   if (!made) return scree_fail_memory(error, sizeof *made, "a scene");
-  scree_status status = take_file(made, file, gift, error);
-  if (status == SCREE_OK) status = make_particles(made, file->folder, gift, progress, error);
+  scree_status status = take_file(made, file, error);
+  if (status == SCREE_OK) status = make_particles(made, file->folder, store, progress, error);
   if (status == SCREE_OK) status = scree_scene_set_up(made, file->folder, error);
   if (status == SCREE_OK) status = scree_scene_plan_wear(made, error);
   if (status == SCREE_OK) status = scree_scene_check_inlets(made, error);
@@ -374,7 +334,25 @@ scree_status scree_scene_make(const scree_scene_file *file, const scree_scene_gi
 
 scree_status scree_scene_create(const scree_scene_file *file, const scree_progress *progress,
                                 scree_scene **scene, scree_error *error) {
-  return scree_scene_make(file, NULL, progress, scene, error);
+  return scree_scene_create_from(file, NULL, progress, scene, error);
+}
+
+scree_status scree_scene_file_largest(const scree_scene_file *file, scree_shape_store *store,
+                                      const scree_progress *progress, double *diameter,
+                                      scree_error *error) {
+  scree_scene *made = scree_alloc_zero(1, sizeof *made);
+  if (!made) return scree_fail_memory(error, sizeof *made, "a scene");
+  scree_status status = take_file(made, file, error);
+  if (status == SCREE_OK) status = make_particles(made, file->folder, store, progress, error);
+  double largest = 0;
+  for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(made); i++) {
+    scree_particle_measures m;
+    scree_particle_measure(made->shapes[i].particle, &m);
+    largest = fmax(largest, 2 * m.bounding_radius);
+  }
+  scree_scene_free(made);
+  if (status == SCREE_OK) *diameter = largest;
+  return status;
 }
 
 scree_status scree_scene_file_column(const scree_scene_file *file, size_t index, char name[96],
@@ -410,7 +388,6 @@ void scree_scene_free(scree_scene *scene) {
   scree_free(scene->present.items);
   scree_free(scene->text);
   scree_free(scene->name);
-  scree_free(scene->notes.bytes);
   scree_arena_free(&scene->arena);
   scree_free(scene);
 }
@@ -531,8 +508,7 @@ static void name_wall(const scree_scene *scene, scree_error *error) {
 scree_status scree_scene_advance(scree_scene *scene, size_t step_count, scree_error *error) {
   if (scene->is_frame)
     return scree_fail(error, SCREE_UNSUPPORTED,
-                      "a frame has no contacts: a %s goes on from a checkpoint only",
-                      scene->seal->whose);
+                      "a frame has no contacts: a scene goes on from a checkpoint only");
   double wall = scree_now(), processor = scree_processor_time();
   scree_status status = advance(scene, step_count, error);
   if (status == SCREE_DIVERGED) name_wall(scene, error);
@@ -572,6 +548,12 @@ double scree_scene_duration(const scree_scene *scene) {
   double most = scene->plan.phases.count ? scree_scene_phase_times(scene) : (double)INFINITY;
   if (!isnan(stop->filled)) most = fmin(most, scree_scene_filling_time(scene) + stop->filled);
   return fmin(time_limit(scene), most);
+}
+scree_scene_costs scree_scene_get_costs(const scree_scene *scene) {
+  return scene->costs;
+}
+bool scree_scene_is_frame(const scree_scene *scene) {
+  return scene->is_frame;
 }
 const char *scree_scene_title(const scree_scene *scene) {
   return scene->plan.title;

@@ -2,7 +2,6 @@
 #ifndef SCREE_SCENE_SCENE_H
 #define SCREE_SCENE_SCENE_H
 
-#include "base/seal.h"
 #include "scene/fill.h"
 #include "scene/motion.h"
 #include "scene/plan.h"
@@ -23,6 +22,7 @@ typedef struct scree_scene_shape {
   scree_placement extent;   /* clearance included */
   quat as_given;            /* its orientation as in its file */
   double density, mass, volume;
+  double scan_volume; /* m3, before decimation; 0: not known */
   size_t entered, left;
 } scree_scene_shape;
 
@@ -50,7 +50,10 @@ typedef struct scree_scene_layers {
   double height, speed;     /* m; m/s, downwards */
   double interval;          /* s, from one to the next; or, where not 0: */
   uint64_t steps;
-  vec3 *cells; /* of a grid: centres, z = 0 */
+  double solid, size, clearance; /* m3 of all; m, their mean; m, kept free around each */
+  vec3 middle;                   /* of the bottom of what they cover, and: */
+  double radius, half[2];        /* m: of a circle; 0: half the sides of a rectangle */
+  vec3 *cells;                   /* of a grid: centres, z = 0 */
   uint32_t *cell_order;
   size_t cell_count;
   double pitch;
@@ -108,27 +111,8 @@ typedef struct scree_scene_column {
   const char *unit;
 } scree_scene_column;
 
-/* What a scene has cost so far, all its pieces between interruptions together. */
-typedef struct scree_scene_costs {
-  uint64_t body_steps;                    /* sum over the steps of the bodies in the world */
-  double wall_seconds, processor_seconds; /* of advancing it; processor: of the process */
-  uint64_t piece_count;                   /* 1, and one more for every resume */
-} scree_scene_costs;
-
-/* What a program makes a scene of, besides its text. */
-typedef struct scree_scene_gift {
-  const scree_seal *seal;             /* of its checkpoints */
-  scree_particle *const *particles;   /* of all shapes, in the text `given`; borrowed */
-  const char *const *sources;         /* where they came from; NULL: not known */
-  const scree_world_options *options; /* of the world, what no text says; NULL: the defaults */
-  const unsigned char *notes;         /* the caller's, kept with a checkpoint; copied */
-  size_t note_bytes;
-} scree_scene_gift;
-
 struct scree_scene {
   scree_arena arena;
-  const scree_seal *seal;
-  scree_world_options base; /* what the plan does not say */
   scree_plan plan;
   char *text; /* the file, printed */
   char *name;
@@ -175,53 +159,39 @@ struct scree_scene {
   double phase_start; /* s */
   double still_since; /* s; NaN while moving */
   scree_scene_costs costs;
-  struct {
-    unsigned char *bytes;
-    size_t count;
-  } notes;
   bool is_frame;             /* loaded from a frame: no contacts, cannot go on */
   double frame_coordination; /* of a frame, as its contacts were */
 };
 
 enum { SCREE_SCENE_ENDS = 6 }; /* that a scene may have, 0: none yet */
 
-extern const scree_seal scree_scene_seal;
-
-/* scene.c: as scree_scene_create, with what a program gives. */
-scree_status scree_scene_make(const scree_scene_file *file, const scree_scene_gift *gift,
-                              const scree_progress *progress, scree_scene **scene,
-                              scree_error *error);
-/* What falls on this moment, such as a layer that enters; done once, however calls are cut.
- * scree_scene_advance begins with it. */
+/* scene.c: what falls on this moment, such as a layer that enters; done once, however calls are
+ * cut. scree_scene_advance begins with it. */
 scree_status scree_scene_decide(scree_scene *scene, scree_error *error);
 /* Of its time or its phases, by the longest schedule. */
 double scree_scene_fraction(const scree_scene *scene);
-/* Replaces the caller's notes; they are copied. */
-scree_status scree_scene_set_notes(scree_scene *scene, const unsigned char *bytes, size_t count,
-                                   scree_error *error);
 
+/* file_set.c: the settings of a tree over a file, but for some keys (NULL: none). */
+scree_status scree_scene_file_apply(scree_scene_file *file, const scree_yaml *settings,
+                                    const char *const *but, const char *name, scree_error *error);
 /* plan.c of a file: into the arena of whoever asks. */
 scree_status scree_scene_file_plan(const scree_scene_file *file, scree_arena *arena,
                                    scree_plan *plan, scree_error *error);
 /* As printed, to be freed. */
 scree_status scree_scene_file_text(const scree_scene_file *file, char **text, scree_error *error);
 
-/* Whether the scene is one of that file. */
-scree_status scree_scene_matches(const scree_scene *scene, const scree_scene_file *file, bool *same,
-                                 scree_error *error);
 
-/* particles.c: what a shape is made from. *source is to be freed. */
-scree_status scree_scene_make_particle(const scree_plan_shape *shape, const char *folder,
-                                       const scree_progress *progress, scree_particle **particle,
-                                       char **source, scree_error *error);
-
-/* One of the classes of a family, from its particle in *unscaled, made where that is NULL. */
-scree_status scree_scene_make_scaled(const scree_plan_shape *shape, const char *folder,
-                                     const scree_progress *progress, scree_particle **unscaled,
-                                     scree_scene_shape *made, scree_error *error);
-
-/* A box about the origin; free with scree_mesh_free. */
-scree_status scree_scene_box_mesh(const double sides[3], scree_mesh *mesh, scree_error *error);
+/* particles.c: what a shape is made from, whose file lies at path. */
+scree_shape_spec scree_scene_shape_spec(const scree_plan_shape *shape, const char *path);
+/* The particle of one, in its order: *made holds the last one before its sizes, of which more may
+ * be made; its particle is to be freed. */
+typedef struct scree_scene_making {
+  scree_shape_store *store; /* NULL: none */
+  const scree_progress *progress;
+  scree_shape_made *made;
+} scree_scene_making;
+scree_status scree_scene_make_shape(scree_scene *scene, size_t index, const char *folder,
+                                    const scree_scene_making *making, scree_error *error);
 /* Where a file named in a scene lies; NULL when memory is out. */
 char *scree_scene_path(const char *folder, const char *name);
 
@@ -253,6 +223,11 @@ static inline bool scree_is_still(const scree_observation *o, double still) {
   return o->kinetic + o->rotational < still * count && o->depenetrating_pairs == 0;
 }
 
+/* defaults.c: what the plan leaves out and follows from the particles; of layers order, region and
+ * measures. Then whether cells of a height field suit bodies of that size. */
+scree_status scree_scene_complete_plan(scree_scene *scene, scree_error *error);
+scree_status scree_scene_check_cell(const scree_scene *scene, const scree_place *place, double cell,
+                                    double size, scree_error *error);
 /* layers.c: plans those of an inlet, refusing what cannot be; lets in those that are due. */
 scree_status scree_scene_plan_layers(scree_scene *scene, scree_error *error);
 scree_status scree_scene_enter_layers(scree_scene *scene, scree_error *error);
@@ -335,13 +310,14 @@ scree_status scree_scene_write_tables(const scree_scene *scene, const char *fold
 typedef struct scree_scene_heap {
   scree_repose repose;
   size_t body_count;
-  double solid; /* m3, of the bodies */
+  double solid, size; /* m3, of the bodies; m, of one */
 } scree_scene_heap;
 scree_status scree_scene_measure_heap(const scree_scene *scene, const scree_plan_pile *plan,
                                       scree_scene_heap *heap, scree_error *error);
 /* Into columns from `at` on. */
-scree_status scree_scene_measure_pile(const scree_scene *scene, const scree_plan_pile *plan,
-                                      double *at, scree_error *error);
+scree_status scree_scene_put_pile(const scree_scene *scene, const scree_plan_pile *plan, double *at,
+                                  scree_error *error);
+enum { SCREE_PILE_COLUMNS = 11 };
 scree_status scree_scene_measure_slope(const scree_scene *scene, const scree_plan_slope *plan,
                                        double *at, scree_error *error);
 scree_status scree_scene_measure_mixing(const scree_scene *scene,
@@ -353,11 +329,6 @@ scree_status scree_scene_prepare(scree_scene *scene, scree_error *error);
 scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_error *error);
 /* One that ended by what is otherwise in this plan goes on, without the row of its end. */
 void scree_scene_reopen(scree_scene *scene, const scree_plan *plan);
-/* What the engine must know of a shape that has its particle. */
-/* file.c: the file of the text that a program puts out, as a user would write it. */
-typedef void scree_scene_writer(const void *context, FILE *out);
-scree_status scree_scene_file_make(scree_scene_writer *write, const void *context,
-                                   scree_scene_file **file, scree_error *error);
 /* inlets.c: into scene->present, the bodies and in a periodic domain their images that reach into
  * the box, by an extent for each shape; NULL: the shapes' own. */
 scree_status scree_scene_list_present(scree_scene *scene, const scree_placement *extents,
@@ -369,33 +340,13 @@ double scree_scene_highest(const scree_scene *scene, const scree_placement *exte
 /* At rest or as `state` says, of the shape's density. */
 scree_status scree_scene_add_body(const scree_scene_shape *shape, scree_world *world,
                                   const scree_body *state, scree_error *error);
+/* What the engine must know of a shape that has its particle. */
 void scree_scene_measure_shape(scree_scene *scene, size_t index);
 /* save.c: a checkpoint, for scree_world_keep_all. */
 scree_status scree_scene_pack(const void *scene, unsigned char **bytes, size_t *byte_count,
                               scree_error *error);
-/* Of a kind of its own. A frame has no contacts: a fraction of the size, to be looked at only. */
-scree_status scree_scene_save_as(const scree_scene *scene, bool as_frame, const char *path,
-                                 bool overwrite, scree_error *error);
-scree_status scree_scene_load_as(const scree_seal *seal, const char *path, scree_scene **scene,
-                                 scree_error *error);
-
-/* complete.c: what scree_scene_complete does, for any scene that a program makes. */
-typedef struct scree_scene_drive {
-  const scree_scene_job *job; /* but for its file */
-  const scree_seal *seal;
-  bool motion, series; /* what the folder gets besides checkpoints */
-  bool closing;        /* The end is a frame too; one that stopped is given as it stands. */
-  bool walls;          /* beside the motion of the bodies; */
-  double (*cylinder_height)(const scree_scene *scene); /* or this; NULL: 0 */
-  scree_status (*make)(void *context, scree_scene **scene, scree_error *error);
-  /* Of a checkpoint that was found at path; also takes over what may differ. */
-  scree_status (*check)(void *context, scree_scene *scene, const char *path, scree_error *error);
-  void *context; /* of these two */
-} scree_scene_drive;
-scree_status scree_scene_drive_on(const scree_scene_drive *drive, scree_scene **scene,
-                                  scree_error *error);
-/* A checkpoint's scene goes on by this file, where it says the same but for title, time, stop and
- * output, of which frames and series must be the same. */
+/* complete.c: a checkpoint's scene goes on by this file, where it says the same but for title,
+ * time, stop and output, of which frames and series must be the same. */
 scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *file,
                                    const char *path, scree_error *error);
 

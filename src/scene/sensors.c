@@ -101,9 +101,29 @@ static bool add_sensor(scree_scene *scene, const scree_scene_sensor *sensor) {
   static const char *const wall[] = {
       "force_x",  "N",   "force_y", "N", "force_z", "N", "torque_x", "N m", "torque_y", "N m",
       "torque_z", "N m", "power",   "W", "energy",  "J", "wear",     "J",   NULL};
-  static const char *const pile[] = {"sector_deg",     "deg", "cone_deg", "deg",
-                                     "silhouette_deg", "deg", "height",   "m",
-                                     "base_radius",    "m",   NULL};
+  static const char *const pile[] = {"sector_deg",
+                                     "deg",
+                                     "cone_deg",
+                                     "deg",
+                                     "silhouette_deg",
+                                     "deg",
+                                     "height",
+                                     "m",
+                                     "base_radius",
+                                     "m",
+                                     "sector_sd_deg",
+                                     "deg",
+                                     "silhouette_sd_deg",
+                                     "deg",
+                                     "volume_deg",
+                                     "deg",
+                                     "run_out",
+                                     "m",
+                                     "packing",
+                                     "",
+                                     "count",
+                                     "",
+                                     NULL};
   static const char *const slide[] = {"way", "m",    "speed", "m/s",  "force", "N", "energy",
                                       "J",   "work", "J",     "lost", "J",     NULL};
   static const char *const hinge[] = {"way", "rad",  "speed", "rad/s", "force", "N m", "energy",
@@ -411,9 +431,9 @@ static scree_status read_sensor(const scree_scene *scene, const scree_scene_sens
   else if (plan->position)
     read_position(scene, sensor->geometry, at);
   else if (plan->pile && !all && !pile_is_due(scene, plan->pile))
-    for (int k = 0; k < 5; k++) at[k] = NAN;
+    for (int k = 0; k < SCREE_PILE_COLUMNS; k++) at[k] = NAN;
   else if (plan->pile)
-    status = scree_scene_measure_pile(scene, plan->pile, at, error);
+    status = scree_scene_put_pile(scene, plan->pile, at, error);
   else if (plan->slope)
     status = scree_scene_measure_slope(scene, plan->slope, at, error);
   else if (plan->segregation)

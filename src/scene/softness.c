@@ -66,12 +66,17 @@ static double speed_of_geometry(const scree_scene *scene, size_t index) {
 
 /* m: along gravity, from the highest corner of an inlet to the lowest of the geometry; 0 where the
  * geometry has no lowest. */
-static double fall_from(const scree_scene *scene, const scree_plan_inlet *inlet) {
+static double fall_from(const scree_scene *scene, const scree_scene_inlet *inlet) {
   vec3 down = vec3_load(scene->plan.gravity);
   if (!(vec3_norm(down) > 0)) return 0;
   down = vec3_unit(down);
   scree_scene_reach all = scree_scene_reach_of(scene), region;
-  scree_scene_region_of(inlet, region.low, region.high);
+  if (inlet->plan->layers && inlet->plan->layers->in) {
+    vec3_store(region.low, inlet->layers.middle);
+    vec3_store(region.high, inlet->layers.middle);
+  } else {
+    scree_scene_region_of(inlet->plan, region.low, region.high);
+  }
   const double n[3] = {down.x, down.y, down.z};
   double from = 0, to = 0;
   for (int k = 0; k < 3; k++) {
@@ -170,8 +175,7 @@ bool scree_scene_soft(const scree_scene *scene, scree_scene_softness *softness) 
   double g = vec3_norm(vec3_load(scene->plan.gravity));
   for (size_t i = 0; i < scene->plan.inlets.count; i++) {
     double speed = speed_of_inlet(&scene->inlets[i]);
-    look_at_inlet(&s, i, sqrt(speed * speed + 2 * g * fall_from(scene, scene->inlets[i].plan)),
-                  true);
+    look_at_inlet(&s, i, sqrt(speed * speed + 2 * g * fall_from(scene, &scene->inlets[i])), true);
   }
   *softness = s.worst;
   return s.worst_share > 1;

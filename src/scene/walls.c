@@ -98,6 +98,15 @@ static vec3 place_in(const scree_scene *scene, const scree_plan_inlet *inlet, in
   double thick = 0;
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++)
     thick = fmax(thick, 2 * scene->shapes[i].extent.radius);
+  if (inlet->layers && inlet->layers->in) {
+    size_t k = 0;
+    while (scene->inlets[k].plan != inlet) k++;
+    const scree_scene_layers *l = &scene->inlets[k].layers;
+    double x = l->radius > 0 ? 0.7 * l->radius : l->half[0],
+           y = l->radius > 0 ? 0.7 * l->radius : l->half[1];
+    return vec3_add(l->middle,
+                    (vec3){(2 * share[0] - 1) * x, (2 * share[1] - 1) * y, share[2] * thick});
+  }
   if (inlet->box) {
     const scree_plan_box *b = inlet->box;
     double at[3];

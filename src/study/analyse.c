@@ -102,6 +102,13 @@ static scree_status read_rows(analysis *a) {
   return status;
 }
 
+/* Whether it is a phase before the one in which something moves. */
+static bool is_early(const scree_study *study, const char *phase) {
+  for (size_t i = 0; i < study->moving_phase && i < study->phase_count; i++)
+    if (!strcmp(study->phases[i], phase)) return true;
+  return false;
+}
+
 /* The series since the lift began; a run without one has none. */
 static scree_status read_series(analysis *a, row *r, sqlite3_stmt *s) {
   struct {
@@ -116,8 +123,7 @@ static scree_status read_series(analysis *a, row *r, sqlite3_stmt *s) {
     status = scree_database_step(&a->database, s, &more, a->error);
     if (status != SCREE_OK || !more) break;
     const unsigned char *phase = sqlite3_column_text(s, 2);
-    bool early = phase && (!strcmp((const char *)phase, "packing") ||
-                           !strcmp((const char *)phase, "settling"));
+    bool early = phase && is_early(a->study, (const char *)phase);
     if (isnan(start) && !early) start = real_of(s, 0);
     if (!SCREE_PUSH(&list, real_of(s, 0)) || !SCREE_PUSH(&list, real_of(s, 1)))
       status = no_memory(a);

@@ -3,6 +3,7 @@
 #include "base/number.h"
 #include "base/platform.h"
 #include "base/progress.h"
+#include "scene/scene.h"
 #include "study/database.h"
 #include "study/lease.h"
 #include "study/record.h"
@@ -115,22 +116,22 @@ static scree_status put_pair(writer *w, sqlite3_stmt *statement, size_t point, c
   return put(w, statement);
 }
 
-/* The values of a point: its factors, and the whole experiment that follows. */
+/* The values of a point: its factors, and the whole scene that follows, as text. */
 static scree_status put_values(writer *w, size_t point, sqlite3_stmt *factor,
                                sqlite3_stmt *parameter) {
   const scree_study *s = w->study;
-  scree_experiment e;
-  char value[64];
+  scree_scene_file *file;
+  char *text = NULL;
   scree_status status = SCREE_OK;
   for (size_t f = 0; status == SCREE_OK && f < s->factor_count; f++)
     status = put_pair(w, factor, point, s->factors[f].key, s->points[point].values[f]);
-  if (status == SCREE_OK) status = scree_study_experiment(s, point, &e, w->error);
+  if (status != SCREE_OK || s->command.count) return status;
+  status = scree_study_scene(s, &s->points[point], &file, w->error);
   if (status != SCREE_OK) return status;
-  const char *key;
-  for (size_t i = 0; status == SCREE_OK && (key = scree_experiment_key(i)); i++)
-    if (strcmp(key, "seed") != 0 && scree_experiment_get(&e, key, value, sizeof value))
-      status = put_pair(w, parameter, point, key, value);
-  scree_experiment_free(&e);
+  status = scree_scene_file_text(file, &text, w->error);
+  scree_scene_file_free(file);
+  if (status == SCREE_OK) status = put_pair(w, parameter, point, "scene", text);
+  scree_free(text);
   return status;
 }
 
@@ -218,13 +219,13 @@ static scree_status put_series(writer *w, const char *key, const scree_study_rec
                              &s);
   if (status != SCREE_OK) return status;
   for (size_t i = 0; status == SCREE_OK && i < r->series_count; i++) {
-    const scree_run_point *p = &r->series[i];
+    const scree_record_point *p = &r->series[i];
     const double reals[] = {
         p->mean_rotation,   p->kinetic,    p->highest_speed, p->largest_overlap, p->coordination,
         p->cylinder_height, p->sector_deg, p->cone_deg,      p->silhouette_deg,  p->height};
     bind_text(s, 1, key);
     bind_real(s, 2, p->time);
-    bind_text(s, 3, scree_phase_name(p->phase));
+    bind_text(s, 3, p->phase < w->study->phase_count ? w->study->phases[p->phase] : "done");
     bind_whole(s, 4, p->body_count);
     for (int k = 0; k < 10; k++) bind_real(s, 5 + k, reals[k]);
     status = put(w, s);

@@ -10,8 +10,47 @@
 #include <math.h>
 #include <string.h>
 
-enum { LONGEST_WORD = 1024, LARGEST_OUTPUT = 64 << 20 };
+enum { LONGEST_WORD = 1024, MOST_WORDS = 60, LARGEST_OUTPUT = 64 << 20 };
 static const double first_look_s = 0.002, longest_look_s = 0.2;
+
+static scree_status add_word(scree_study *study, const char *text, size_t length,
+                             scree_error *error) {
+  char word[LONGEST_WORD];
+  if (length >= sizeof word)
+    return scree_fail(error, SCREE_LIMIT, "command: a word of more than %zu bytes", sizeof word);
+  snprintf(word, sizeof word, "%.*s", (int)length, text);
+  const char *kept = scree_arena_text(&study->arena, word);
+  study->command.items[study->command.count++] = kept;
+  return kept ? SCREE_OK : scree_fail_memory(error, length, "a command");
+}
+
+scree_status scree_study_read_command(scree_study *study, const scree_yaml *command,
+                                      scree_error *error) {
+  bool list = command->kind == SCREE_YAML_SEQUENCE;
+  size_t most = list ? command->item_count : command->text ? strlen(command->text) : 0;
+  scree_status status = SCREE_OK;
+  study->command.items = scree_arena_take(&study->arena, most, sizeof *study->command.items);
+  if (!study->command.items) return scree_fail_memory(error, most, "a command");
+  for (size_t i = 0; list && status == SCREE_OK && i < most; i++) {
+    const char *text = command->items[i].text;
+    status = command->items[i].kind == SCREE_YAML_SCALAR
+                 ? add_word(study, text, strlen(text), error)
+                 : scree_fail(error, SCREE_BAD_FILE, "command: its words must be single values");
+  }
+  for (const char *rest = list || !most ? "" : command->text; status == SCREE_OK;) {
+    rest += strspn(rest, " \t\n");
+    size_t length = strcspn(rest, " \t\n");
+    if (length == 0) break;
+    status = add_word(study, rest, length, error);
+    rest += length;
+  }
+  if (status == SCREE_OK && study->command.count == 0)
+    status = scree_fail(error, SCREE_BAD_FILE, "command: must be a program and its words");
+  if (status == SCREE_OK && study->command.count > MOST_WORDS)
+    status = scree_fail(error, SCREE_BAD_FILE, "command: %zu words, at most %d",
+                        study->command.count, MOST_WORDS);
+  return status;
+}
 
 bool scree_study_command_has(const scree_study *study, const char *key) {
   char braces[140];

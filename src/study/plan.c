@@ -1,6 +1,6 @@
 /* The study's file, strictly: every key is known, every value in its range, every error has line
- * and column. Values of the experiment are tried on a copy at once, so that no run meets one that
- * cannot be. */
+ * and column. Values of the scene are tried on a copy at once, so that no run meets one that cannot
+ * be. */
 #include "scene/plan.h"
 #include "base/file.h"
 #include "base/number.h"
@@ -165,7 +165,13 @@ static scree_status need_scalar(const reader *r, const scree_yaml *node) {
 
 /* ---- base ---- */
 
-/* An error of the experiment, which knows no place, with the node's. */
+static size_t count_items(const scree_yaml *node) {
+  size_t count = 1;
+  for (size_t i = 0; i < node->item_count; i++) count += count_items(&node->items[i]);
+  return count;
+}
+
+/* An error of the scene's, which knows no place, with the node's. */
 static scree_status place_error(const reader *r, const scree_yaml *node, scree_status status,
                                 const scree_error *error) {
   if (status == SCREE_OK || status == SCREE_OUT_OF_MEMORY) {
@@ -175,46 +181,89 @@ static scree_status place_error(const reader *r, const scree_yaml *node, scree_s
   return fail_at(r, node, "%.400s", error->message);
 }
 
-static scree_status set_base(const reader *r, const char *key, const scree_yaml *node) {
-  scree_error error;
-  scree_status status = need_scalar(r, node);
-  if (status != SCREE_OK) return status;
-  return place_error(r, node, scree_study_set(&r->study->base, key, node->text, &error), &error);
+/* Settings of the base, each tried where it stands; what one alone cannot be, all together may. */
+typedef struct settings {
+  const reader *r;
+  scree_scene_file *file;
+  scree_error first;
+  scree_status status;
+} settings;
+
+static void add_setting(settings *s, const scree_yaml *node, const char *key) {
+  const reader kept = {s->r->study, s->r->name, &s->first};
+  scree_error why;
+  if (s->status == SCREE_OUT_OF_MEMORY) return;
+  if (node->kind == SCREE_YAML_MAPPING) {
+    for (size_t i = 0; i < node->item_count; i++) {
+      char inner[256];
+      snprintf(inner, sizeof inner, "%.120s.%.120s", key, node->items[i].key);
+      add_setting(s, &node->items[i], inner);
+    }
+    return;
+  }
+  scree_status status = need_scalar(&kept, node);
+  if (status != SCREE_OK) {
+    s->status = SCREE_BAD_ARGUMENT;
+    return;
+  }
+  status = scree_scene_file_try(s->file, key, node->text, &why);
+  if (status != SCREE_OK && s->status == SCREE_OK) {
+    (void)place_error(&kept, node, status, &why);
+    s->status = status;
+  }
+  status = scree_study_add_setting(s->r->study, key, node->text, &why);
+  if (status != SCREE_OK) s->status = place_error(&kept, node, status, &why);
 }
 
-/* {scene: FILE, FIELD: VALUE, ...} */
-static scree_status read_scene_base(const reader *r, const scree_yaml *base,
-                                    const scree_yaml *scene) {
+static scree_status read_settings(const reader *r, const scree_yaml *base, const scree_yaml *but) {
+  scree_study *study = r->study;
+  settings s = {.r = r};
+  scree_error error;
+  size_t most = count_items(base);
+  study->settings = scree_arena_take(&study->arena, most, sizeof *study->settings);
+  if (!study->settings) return fail_memory(r);
+  scree_status status = scree_study_scene(study, NULL, &s.file, &error);
+  if (status != SCREE_OK) return place_error(r, base, status, &error);
+  const scree_yaml *preset = scree_yaml_find(base, "preset");
+  if (preset) add_setting(&s, preset, "preset");
+  for (size_t i = 0; i < base->item_count; i++) {
+    const scree_yaml *item = &base->items[i];
+    if (item != but && item != preset) add_setting(&s, item, item->key);
+  }
+  status = scree_scene_file_check(s.file, &error);
+  bool forgiven = status == SCREE_OK && s.status == SCREE_BAD_FILE;
+  scree_scene_file_free(s.file);
+  if (s.status != SCREE_OK && !forgiven) {
+    if (r->error) *r->error = s.first;
+    return s.first.status;
+  }
+  return place_error(r, base, status, &error);
+}
+
+/* {scene: FILE, FIELD: VALUE, ...}, or {template: NAME, ...}: repose where none is named; or
+ * {command: [PROGRAM, WORD, ...]}. */
+static scree_status read_base(const reader *r, const scree_yaml *base) {
   scree_study *study = r->study;
   scree_error error;
-  scree_status status = need_scalar(r, scene);
-  if (status == SCREE_OK) {
-    status = scree_study_read_scene(study, scene->text, &error);
-    if (status != SCREE_OK) return place_error(r, scene, status, &error);
-  }
-  study->settings = scree_arena_take(&study->arena, base->item_count, sizeof *study->settings);
-  study->sets[0] = (scree_shape_set){"", NULL, 0};
-  study->set_count = 1;
-  if (!study->settings) return fail_memory(r);
-  for (size_t i = 0; status == SCREE_OK && i < base->item_count; i++) {
-    const scree_yaml *item = &base->items[i];
-    if (item == scene) continue;
-    status = need_scalar(r, item);
-    if (status == SCREE_OK)
-      status =
-          place_error(r, item, scree_study_try_scene(study, item->key, item->text, &error), &error);
-    if (status != SCREE_OK) return status;
-    const char **setting = study->settings[study->setting_count++];
-    setting[0] = scree_arena_text(&study->arena, item->key);
-    setting[1] = scree_arena_text(&study->arena, item->text);
-    if (!setting[0] || !setting[1]) return fail_memory(r);
-  }
-  scree_scene_file *file;
-  if (status == SCREE_OK) status = scree_study_scene(study, NULL, &file, &error);
-  if (status != SCREE_OK) return place_error(r, scene, status, &error);
-  status = place_error(r, scene, scree_scene_file_check(file, &error), &error);
-  scree_scene_file_free(file);
-  return status;
+  if (base->kind != SCREE_YAML_MAPPING)
+    return fail_at(r, base, "base: must be `key: value` lines of a scene");
+  const scree_yaml *command = scree_yaml_find(base, "command");
+  if (command && base->item_count > 1)
+    return fail_at(r, base, "command: stands alone; its values are factors");
+  study->seed = 1;
+  if (command)
+    return place_error(r, command, scree_study_read_command(study, command, &error), &error);
+  const scree_yaml *scene = scree_yaml_find(base, "scene"),
+                   *template = scree_yaml_find(base, "template"), *of = scene ? scene : template;
+  scree_status status = of ? need_scalar(r, of) : SCREE_OK;
+  if (status != SCREE_OK) return status;
+  if (scene && template) return fail_at(r, template, "template: the base is a scene already");
+  status = scene ? scree_study_read_scene(study, scene->text, &error)
+                 : scree_study_take_template(study, template ? template->text : "repose", &error);
+  if (status != SCREE_OK) return place_error(r, of ? of : base, status, &error);
+  status = read_settings(r, base, of);
+  if (status != SCREE_OK) return status;
+  return place_error(r, base, scree_study_look(study, &error), &error);
 }
 
 /* What an answer is called in tables. */
@@ -270,8 +319,6 @@ static scree_status read_answers(const reader *r, const scree_yaml *node) {
   scree_study *study = r->study;
   if (node->kind != SCREE_YAML_SEQUENCE || node->item_count == 0)
     return fail_at(r, node, "answers: must be a list of columns, as in [torque.power]");
-  if (!scree_study_has_answers(study))
-    return fail_at(r, node, "answers are of scenes: base: {scene: FILE}");
   study->answers = scree_arena_take(&study->arena, node->item_count, sizeof *study->answers);
   if (!study->answers) return fail_memory(r);
   scree_status status = SCREE_OK;
@@ -286,74 +333,6 @@ static scree_status read_answers(const reader *r, const scree_yaml *node) {
   return status;
 }
 
-/* {command: [PROGRAM, WORD, ...]}, or all in one text, parted at blanks. */
-static scree_status read_command(const reader *r, const scree_yaml *base,
-                                 const scree_yaml *command) {
-  scree_study *study = r->study;
-  bool list = command->kind == SCREE_YAML_SEQUENCE;
-  size_t most = list ? command->item_count : command->text ? strlen(command->text) : 0;
-  if (base->item_count > 1)
-    return fail_at(r, base, "command: stands alone; its values are factors");
-  if (most == 0) return fail_at(r, command, "command: must be a program and its words");
-  study->command.items = scree_arena_take(&study->arena, most, sizeof *study->command.items);
-  study->sets[0] = (scree_shape_set){"", NULL, 0};
-  study->set_count = 1;
-  if (!study->command.items) return fail_memory(r);
-  for (size_t i = 0; list && i < command->item_count; i++) {
-    scree_status status = need_scalar(r, &command->items[i]);
-    if (status != SCREE_OK) return status;
-  }
-  const char *rest = list ? "" : command->text;
-  for (size_t i = 0; list ? i < most : *(rest += strspn(rest, " \t\n")) != 0; i++) {
-    char word[1024];
-    const char *text = list ? command->items[i].text : rest;
-    size_t length = list ? strlen(text) : strcspn(rest, " \t\n");
-    if (length >= sizeof word) return fail_at(r, command, "command: a word is too long");
-    snprintf(word, sizeof word, "%.*s", (int)length, text);
-    rest += list ? 0 : length;
-    if (!(study->command.items[study->command.count++] = scree_arena_text(&study->arena, word)))
-      return fail_memory(r);
-  }
-  enum { MOST_WORDS = 60 };
-  if (study->command.count == 0) return fail_at(r, command, "command: must be a program");
-  if (study->command.count > MOST_WORDS)
-    return fail_at(r, command, "command: %zu words, at most %d", study->command.count, MOST_WORDS);
-  return SCREE_OK;
-}
-
-static scree_status read_base(const reader *r, const scree_yaml *base) {
-  if (base->kind != SCREE_YAML_MAPPING)
-    return fail_at(r, base, "base: must be `key: value` lines of an experiment");
-  const scree_yaml *scene = scree_yaml_find(base, "scene");
-  if (scene) return read_scene_base(r, base, scene);
-  const scree_yaml *command = scree_yaml_find(base, "command");
-  if (command) return read_command(r, base, command);
-  const scree_yaml *preset = scree_yaml_find(base, "preset");
-  scree_error error;
-  if (preset) {
-    scree_experiment made;
-    scree_status status = need_scalar(r, preset);
-    if (status == SCREE_OK)
-      status = place_error(r, preset, scree_experiment_preset(preset->text, &made, &error), &error);
-    if (status != SCREE_OK) return status;
-    scree_experiment_free(&r->study->base);
-    r->study->base = made;
-  }
-  for (size_t i = 0; i < base->item_count; i++) {
-    const scree_yaml *item = &base->items[i];
-    scree_status status = SCREE_OK;
-    if (item == preset) continue;
-    if (item->kind != SCREE_YAML_MAPPING) status = set_base(r, item->key, item);
-    for (size_t k = 0; status == SCREE_OK && k < item->item_count; k++) {
-      char key[128];
-      snprintf(key, sizeof key, "%s.%s", item->key, item->items[k].key);
-      status = set_base(r, key, &item->items[k]);
-    }
-    if (status != SCREE_OK) return status;
-  }
-  return place_error(r, base, scree_experiment_check(&r->study->base, &error), &error);
-}
-
 /* ---- shapes ---- */
 
 static void short_name(const char *word, char *buffer, size_t size) {
@@ -362,7 +341,7 @@ static void short_name(const char *word, char *buffer, size_t size) {
   char *dot = strrchr(buffer, '.');
   if (dot && dot != buffer) *dot = 0;
   for (char *c = buffer; *c; c++)
-    if ((unsigned char)*c <= ' ' || strchr("'\"/\\+,", *c)) *c = '_';
+    if ((unsigned char)*c <= ' ' || strchr("'\"/\\+,.*", *c)) *c = '_';
 }
 
 static bool name_taken(const scree_study *study, const char *name) {
@@ -440,41 +419,24 @@ static scree_status read_set(const reader *r, const scree_yaml *node, size_t *in
 
 /* ---- factors ---- */
 
-static bool is_rp(const char *text) {
-  double rp;
-  if (scree_study_spheres(text)) return true;
-  if (!strcmp(text, "spheres") || !strcmp(text, "scan")) return true;
-  if (scree_choice_is_recommended(text, &rp)) return true;
-  return scree_number_read(text, &rp) && rp > 0 && rp <= 1;
-}
-
-/* Tries a value on a copy of the base. */
+/* Tries a value on the base. */
 static scree_status try_value(const reader *r, const scree_yaml *node, const char *key,
                               const char *text) {
-  scree_error wrong;
-  if (r->study->scene_text)
-    return place_error(r, node, scree_study_try_scene(r->study, key, text, &wrong), &wrong);
   if (r->study->command.count)
     return !strcmp(key, "seed") || scree_study_command_has(r->study, key) /* or it has no scatter */
                ? SCREE_OK
                : fail_at(r, node, "%s: the command has no word with {%s}", key, key);
-  if (!strcmp(key, "rp")) {
-    if (is_rp(text)) return SCREE_OK;
-    return fail_at(r, node,
-                   "rp: '%s': must be a number above 0 and at most 1, recommended, a multiple as "
-                   "0.5*recommended, scan, spheres, "
-                   "or clump:N with N from 1 to 300",
-                   text);
-  }
   scree_error error;
-  scree_experiment copy = r->study->base;
-  return place_error(r, node, scree_study_set(&copy, key, text, &error), &error);
+  const char *wrong = scree_study_is_own(r->study, key) ? scree_shape_level_error(text) : NULL;
+  if (wrong) return fail_at(r, node, "%s: '%s': %s", key, text, wrong);
+  if (scree_study_is_own(r->study, key)) return SCREE_OK;
+  return place_error(r, node, scree_study_try(r->study, key, text, &error), &error);
 }
 
 static scree_status read_levels(const reader *r, const scree_yaml *node, scree_factor *f) {
   scree_arena *arena = &r->study->arena;
   f->levels = scree_arena_take(arena, node->item_count, sizeof *f->levels);
-  bool sets = !strcmp(f->key, "shapes");
+  bool sets = !strcmp(f->key, "shapes") && scree_study_is_own(r->study, f->key);
   if (sets) f->sets = scree_arena_take(arena, node->item_count, sizeof *f->sets);
   if (!f->levels || (sets && !f->sets)) return fail_memory(r);
   if (node->item_count == 0) return fail_at(r, node, "%s: needs at least one level", f->key);
@@ -516,7 +478,8 @@ static double at_fraction(const scree_factor *f, double u) {
 static scree_status check_range(const reader *r, const scree_yaml *node, scree_factor *f,
                                 size_t levels) {
   const char *text;
-  if (!strcmp(f->key, "shapes")) return fail_at(r, node, "shapes: must be a list, not a range");
+  if (!strcmp(f->key, "shapes") && scree_study_is_own(r->study, f->key))
+    return fail_at(r, node, "shapes: must be a list, not a range");
   if (r->study->design == SCREE_DESIGN_LIST)
     return fail_at(r, node, "%s: design list needs a list of levels, one for each point", f->key);
   if (!(f->from < f->to)) return fail_at(r, node, "%s: from must be below to", f->key);
@@ -571,7 +534,7 @@ static bool is_range(const scree_yaml *node) {
          (scree_yaml_find(node, "from") || scree_yaml_find(node, "to"));
 }
 
-/* A mapping that is no range is a group of keys, as in an experiment. */
+/* A mapping that is no range is a group of keys, as in a scene. */
 static scree_status read_factors(const reader *r, const scree_yaml *node) {
   if (node->kind != SCREE_YAML_MAPPING)
     return fail_at(r, node, "factors: must be `key: [levels]` lines");
@@ -579,10 +542,6 @@ static scree_status read_factors(const reader *r, const scree_yaml *node) {
   for (size_t i = 0; status == SCREE_OK && i < node->item_count; i++) {
     const scree_yaml *item = &node->items[i];
     if (item->kind != SCREE_YAML_MAPPING || is_range(item)) {
-      if (scree_study_has_answers(r->study) &&
-          (!strcmp(item->key, "rp") || !strcmp(item->key, "shapes")))
-        return fail_at(r, item, "%s: a scene's shapes are varied by fields such as shapes.NAME.rp",
-                       item->key);
       status = add_factor(r, item->key, item);
       continue;
     }
@@ -620,18 +579,18 @@ static scree_status check_whole(const reader *r, const scree_yaml *root) {
   double points = 1;
   bool varied = false;
   for (size_t i = 0; i < study->factor_count; i++) {
-    varied = varied || !strcmp(study->factors[i].key, "shapes");
+    varied = varied || (study->factors[i].sets != NULL);
     points *= (double)study->factors[i].level_count;
   }
-  bool answers = scree_study_has_answers(study);
-  if (answers && scree_yaml_find(root, "shapes"))
-    return fail_at(r, scree_yaml_find(root, "shapes"), "shapes stand in the scene");
-  if (answers && !study->answer_count)
-    return fail_at(r, root, "a study of a scene or a command needs answers: [NAME, ...]");
-  if (!answers && varied == (scree_yaml_find(root, "shapes") != NULL))
+  if (!study->has_pile && !study->answer_count)
     return fail_at(r, root,
-                   varied ? "shapes stands both by itself and as a factor"
-                          : "needs shapes: [FILE or sample:NAME, ...]");
+                   "a study of a command, or of a scene without a pile, needs answers: [NAME, "
+                   "...]");
+  if (varied && scree_yaml_find(root, "shapes"))
+    return fail_at(r, root, "shapes stands both by itself and as a factor");
+  bool named = study->scene_is_file || study->command.count;
+  if (!named && !varied && !scree_yaml_find(root, "shapes"))
+    return fail_at(r, root, "needs shapes: [FILE or sample:NAME, ...]");
   if (study->design == SCREE_DESIGN_LIST) return check_list(r, root);
   if (study->design == SCREE_DESIGN_GRID && study->wanted_points)
     return fail_at(r, scree_yaml_find(root, "points"),
@@ -649,17 +608,10 @@ static scree_status check_whole(const reader *r, const scree_yaml *root) {
   return SCREE_OK;
 }
 
-static size_t count_items(const scree_yaml *node) {
-  size_t count = 1;
-  for (size_t i = 0; i < node->item_count; i++) count += count_items(&node->items[i]);
-  return count;
-}
-
 static void take_fields(scree_study *study, const study_fields *f) {
   static const char *const angles[] = {"sector", "cone", "silhouette"};
   const analysis_fields *analysis = f->analysis ? f->analysis : &analysis_defaults;
   if (f->name) study->name = f->name;
-  study->seed = f->seed;
   study->replicate_count = f->replicates;
   study->attempt_limit = f->attempts;
   study->wanted_points = f->points;
@@ -688,17 +640,23 @@ static scree_status read_root(const reader *r, const scree_yaml *root) {
   scree_status status = read_record(r, root, "", &study_record, &f);
   if (status != SCREE_OK) return status;
   take_fields(study, &f);
-  if (f.base) status = read_base(r, f.base);
-  if (status == SCREE_OK && !scree_yaml_find(root, "seed")) study->seed = study->base.seed;
+  const scree_yaml none = {.kind = SCREE_YAML_MAPPING, .line = root->line, .column = root->column};
+  status = read_base(r, f.base ? f.base : &none);
+  if (status == SCREE_OK && f.shapes && study->command.count)
+    return fail_at(r, f.shapes, "shapes: what a command needs stands in its words");
+  bool varied = f.factors && f.factors->kind == SCREE_YAML_MAPPING &&
+                scree_yaml_find(f.factors, "shapes");
+  study->own_shapes = !study->command.count && (f.shapes || varied);
+  if (status == SCREE_OK && scree_yaml_find(root, "seed")) study->seed = f.seed;
   if (status == SCREE_OK && f.shapes) status = read_set(r, f.shapes, &set);
   if (status == SCREE_OK && f.answers) status = read_answers(r, f.answers);
   if (status == SCREE_OK && f.factors) status = read_factors(r, f.factors);
+  if (status == SCREE_OK && study->set_count == 0)
+    study->sets[study->set_count++] = (scree_shape_set){"", NULL, 0};
   return status == SCREE_OK ? check_whole(r, root) : status;
 }
 
 static scree_status start(scree_study *study, const char *path, scree_error *error) {
-  scree_status status = scree_experiment_preset("paper", &study->base, error);
-  if (status != SCREE_OK) return status;
   study->path = scree_arena_text(&study->arena, path);
   const char *slash = strrchr(path, '/');
   char name[96];
@@ -745,7 +703,6 @@ scree_status scree_study_read(const char *path, scree_study **study, scree_error
 
 void scree_study_free(scree_study *study) {
   if (!study) return;
-  scree_experiment_free(&study->base);
   scree_free(study->folder);
   scree_free(study->keys);
   scree_arena_free(&study->arena);

@@ -12,14 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char friction[] = "contact.friction"; /* both: particle on particle and on wall */
-
-scree_status scree_study_set(scree_experiment *experiment, const char *key, const char *value,
-                             scree_error *error) {
-  if (strcmp(key, friction) != 0) return scree_experiment_set(experiment, key, value, error);
-  scree_status status = scree_experiment_set(experiment, "contact.friction_particle", value, error);
-  if (status != SCREE_OK) return status;
-  return scree_experiment_set(experiment, "contact.friction_wall", value, error);
+bool scree_study_is_own(const scree_study *study, const char *key) {
+  return study->own_shapes && (!strcmp(key, "rp") || !strcmp(key, "shapes"));
 }
 
 /* ---- values ---- */
@@ -31,12 +25,9 @@ static const char *value_at(scree_study *study, const scree_factor *f, double u)
   double value =
       f->logarithmic ? f->from * pow(f->to / f->from, u) : f->from + u * (f->to - f->from);
   char text[SCREE_NUMBER_SIZE];
-  scree_experiment copy = study->base;
   scree_number_format_digits(value, 9, text);
-  bool fits = study->command.count ? true
-              : study->scene_text
-                  ? scree_study_try_scene(study, f->key, text, NULL) == SCREE_OK
-                  : !strcmp(f->key, "rp") || scree_study_set(&copy, f->key, text, NULL) == SCREE_OK;
+  bool fits = study->command.count || scree_study_is_own(study, f->key) ||
+              scree_study_try(study, f->key, text, NULL) == SCREE_OK;
   if (!fits) snprintf(text, sizeof text, "%.0f", value);
   return scree_arena_text(&study->arena, text);
 }
@@ -67,34 +58,18 @@ static const char *make_label(scree_study *study, const char **values) {
   return label;
 }
 
-static scree_status check_scene_point(const scree_study *study, const scree_study_point *point,
-                                      scree_error *error) {
+/* Checks what only a point's values together can say. */
+static scree_status check_point(const scree_study *study, const scree_study_point *point,
+                                scree_error *error) {
   scree_scene_file *file;
   scree_error reason;
-  scree_status status = scree_study_scene(study, point->values, &file, error);
+  if (study->command.count) return SCREE_OK; /* its values are the command's to judge */
+  scree_status status = scree_study_scene(study, point, &file, error);
   if (status != SCREE_OK) return status;
   status = scree_scene_file_check(file, &reason);
   scree_scene_file_free(file);
   if (status == SCREE_OK) return SCREE_OK;
   return scree_fail(error, status, "%s: at the point %s: %.500s", study->path, point->label,
-                    reason.message);
-}
-
-/* Checks what only a point's values together can say. */
-static scree_status check_point(scree_study *study, const scree_study_point *point,
-                                scree_error *error) {
-  if (study->scene_text) return check_scene_point(study, point, error);
-  if (study->command.count) return SCREE_OK; /* its values are the command's to judge */
-  scree_experiment copy = study->base;
-  scree_error reason;
-  for (size_t f = 0; f < study->factor_count; f++) {
-    const char *key = study->factors[f].key;
-    if (!strcmp(key, "rp") || !strcmp(key, "shapes")) continue;
-    scree_status status = scree_study_set(&copy, key, point->values[f], error);
-    if (status != SCREE_OK) return status;
-  }
-  if (scree_experiment_check(&copy, &reason) == SCREE_OK) return SCREE_OK;
-  return scree_fail(error, SCREE_BAD_FILE, "%s: at the point %s: %.500s", study->path, point->label,
                     reason.message);
 }
 
@@ -109,6 +84,7 @@ static scree_status make_point(scree_study *study, size_t index, const double *u
     point->values[f] = unit ? value_at(study, factor, unit[index * study->factor_count + f])
                             : grid_value(study, index, f);
     if (!point->values[f]) return scree_fail_memory(error, 0, study->path);
+    if (!scree_study_is_own(study, factor->key)) continue;
     if (!strcmp(factor->key, "rp")) point->rp = point->values[f];
     if (!strcmp(factor->key, "shapes")) point->set = set_of(factor, point->values[f]);
   }
@@ -153,44 +129,26 @@ uint64_t scree_study_run_seed(const scree_study *study, size_t run) {
   return seed + scree_study_run_replicate(study, run);
 }
 
-scree_status scree_study_experiment(const scree_study *study, size_t run,
-                                    scree_experiment *experiment, scree_error *error) {
-  const scree_study_point *point = &study->points[scree_study_run_point(study, run)];
-  scree_experiment made;
-  scree_status status = scree_experiment_copy(&study->base, &made, error);
-  if (status != SCREE_OK) return status;
-  for (size_t f = 0; status == SCREE_OK && f < study->factor_count; f++) {
-    const char *key = study->factors[f].key;
-    if (!scree_study_has_answers(study) && strcmp(key, "rp") != 0 && strcmp(key, "shapes") != 0)
-      status = scree_study_set(&made, key, point->values[f], error);
-  }
-  made.seed = scree_study_run_seed(study, run);
-  if (status == SCREE_OK)
-    *experiment = made;
-  else
-    scree_experiment_free(&made);
-  return status;
+/* Whether a path is that of one of the study's own shapes, which their checksums name. */
+static bool is_own_file(const scree_study *study, const char *path) {
+  for (size_t i = 0; i < study->shape_count; i++)
+    if (!strcmp(study->shapes[i].word, path)) return true;
+  return false;
 }
 
-/* The same of a scene: its text, and what the files are that it names. */
-static scree_status write_scene_identity(const scree_study *study, size_t run, FILE *stream,
-                                         scree_error *error) {
-  scree_scene_file *file;
-  scree_status status = scree_study_run_scene(study, run, &file, error);
-  if (status != SCREE_OK) return status;
-  status = scree_scene_file_print(file, stream, error);
+static scree_status write_files(const scree_study *study, const scree_scene_file *file,
+                                FILE *stream, scree_error *error) {
+  scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK; i++) {
     char path[4096], *bytes, sum[SCREE_CHECKSUM_TEXT];
     size_t count;
     if (!scree_scene_file_input(file, i, path, sizeof path)) break;
+    if (is_own_file(study, path)) continue;
     status = scree_file_read(path, 0, &bytes, &count, error);
     if (status != SCREE_OK) break;
     fprintf(stream, "file=%s\n", scree_checksum_text(scree_checksum_of(bytes, count), sum));
     scree_free(bytes);
   }
-  for (size_t i = 0; i < study->answer_count; i++)
-    fprintf(stream, "answer=%s\n", study->answers[i].name);
-  scree_scene_file_free(file);
   return status;
 }
 
@@ -208,58 +166,50 @@ static scree_status write_command_identity(const scree_study *study, size_t run,
   return status;
 }
 
-/* Everything that the run's numbers follow from, as text: all fields but those of output, which
- * change no number; the shapes' checksums; what is made of them. */
-static void write_identity(const scree_study *study, const scree_study_point *point,
-                           const scree_experiment *e, FILE *stream) {
-  const char *key;
-  char value[64], unit[SCREE_NUMBER_SIZE];
-  for (size_t i = 0; (key = scree_experiment_key(i)); i++)
-    if (strncmp(key, "output.frame", 12) != 0 && strncmp(key, "output.checkpoint", 17) != 0 &&
-        scree_experiment_get(e, key, value, sizeof value))
-      fprintf(stream, "%s=%s\n", key, value);
+/* Everything that the run's numbers follow from, as text: the scene but for how often it is
+ * written, the files that it names, the shapes' checksums and what is made of them. */
+static scree_status write_identity(const scree_study *study, size_t run, FILE *stream,
+                                   scree_error *error) {
+  scree_scene_file *file;
+  char unit[SCREE_NUMBER_SIZE];
+  if (study->command.count) return write_command_identity(study, run, stream, error);
+  scree_status status = scree_study_run_scene(study, run, &file, error);
+  if (status != SCREE_OK) return status;
+  status = scree_scene_file_set(file, "output.frames", "0", error);
+  if (status == SCREE_OK) status = scree_scene_file_set(file, "output.checkpoint", "60", error);
+  if (status == SCREE_OK) status = scree_scene_file_print(file, stream, error);
+  if (status == SCREE_OK) status = write_files(study, file, stream, error);
+  scree_scene_file_free(file);
+  for (size_t i = 0; i < study->answer_count; i++)
+    fprintf(stream, "answer=%s\n", study->answers[i].name);
+  if (status != SCREE_OK || !study->own_shapes) return status;
   scree_number_format_digits(study->unit_m, 9, unit);
-  fprintf(stream, "rp=%s\nmethod=%s\nunit=%s\n", point->rp, scree_method_name(study->method), unit);
-  const scree_shape_set *set = &study->sets[point->set];
+  fprintf(stream, "unit=%s\n", unit);
+  const scree_shape_set *set = &study->sets[study->points[scree_study_run_point(study, run)].set];
   for (size_t i = 0; i < set->count; i++) {
-    const scree_study_shape *shape = &study->shapes[set->shapes[i]];
     char sum[SCREE_CHECKSUM_TEXT];
-    scree_checksum_text(shape->checksum, sum);
+    scree_checksum_text(study->shapes[set->shapes[i]].checksum, sum);
     fprintf(stream, "shape=%s\n", sum);
   }
+  return status;
 }
 
 static scree_status make_key(const scree_study *study, size_t run, char key[SCREE_RUN_KEY_BYTES],
                              scree_error *error) {
-  scree_experiment e;
-  scree_status status = scree_study_experiment(study, run, &e, error);
-  if (status != SCREE_OK) return status;
   char *text = NULL;
   size_t size = 0;
   FILE *stream = scree_memory_open(&text, &size);
-  if (stream) {
-    if (study->scene_text)
-      status = write_scene_identity(study, run, stream, error);
-    else if (study->command.count)
-      status = write_command_identity(study, run, stream, error);
-    else
-      write_identity(study, &study->points[scree_study_run_point(study, run)], &e, stream);
-    bool good = !ferror(stream);
-    if (!scree_memory_close(stream) || !good) {
-      free(text);
-      text = NULL;
-    }
-  }
-  scree_experiment_free(&e);
-  if (status != SCREE_OK) {
-    free(text);
-    return status;
-  }
-  if (!text) return scree_fail_memory(error, 0, "a run's name");
-  snprintf(key, SCREE_RUN_KEY_BYTES, "%016llx",
-           (unsigned long long)scree_checksum_of(text, size).high);
+  scree_status status = stream ? write_identity(study, run, stream, error)
+                               : scree_fail_memory(error, 0, "a run's name");
+  bool good = stream && !ferror(stream);
+  if (stream && !scree_memory_close(stream)) good = false;
+  if (status == SCREE_OK && (!good || !text))
+    status = scree_fail_memory(error, size, "a run's name");
+  if (status == SCREE_OK)
+    snprintf(key, SCREE_RUN_KEY_BYTES, "%016llx",
+             (unsigned long long)scree_checksum_of(text, size).high);
   free(text);
-  return SCREE_OK;
+  return status;
 }
 
 scree_status scree_study_make_keys(scree_study *study, scree_error *error) {

@@ -58,7 +58,7 @@ static const field fields[] = {
 enum { FIELD_COUNT = sizeof fields / sizeof *fields };
 
 #undef AT
-#define AT(member) offsetof(scree_run_point, member)
+#define AT(member) offsetof(scree_record_point, member)
 /* Columns of the series, a row each; phase and body count are whole. */
 static const struct {
   const char *key;
@@ -87,8 +87,8 @@ void scree_study_record_free(scree_study_record *record) {
   record->series_count = 0;
 }
 
-scree_run_result scree_no_result(void) {
-  return (scree_run_result){.repose = {.sector_deg = NAN,
+scree_record_result scree_no_result(void) {
+  return (scree_record_result){.repose = {.sector_deg = NAN,
                                        .sector_sd_deg = NAN,
                                        .cone_deg = NAN,
                                        .silhouette_deg = NAN,
@@ -148,7 +148,7 @@ static void write_field(FILE *stream, const field *f, const scree_study_record *
 static void write_series(FILE *stream, const scree_study_record *record) {
   fputs(" \"phase\": [", stream);
   for (size_t i = 0; i < record->series_count; i++)
-    fprintf(stream, "%s%d", i ? ", " : "", (int)record->series[i].phase);
+    fprintf(stream, "%s%zu", i ? ", " : "", record->series[i].phase);
   fputs("],\n \"bodies\": [", stream);
   for (size_t i = 0; i < record->series_count; i++)
     fprintf(stream, "%s%zu", i ? ", " : "", record->series[i].body_count);
@@ -252,9 +252,8 @@ static bool read_columns(const scree_yaml *root, scree_study_record *record) {
   bool good = phase && bodies;
   for (size_t i = 0; good && i < count; i++) {
     unsigned long long p, b;
-    good = parse_whole(phase->items[i].text, &p) && parse_whole(bodies->items[i].text, &b) &&
-           p <= SCREE_PHASE_DONE;
-    if (good) record->series[i].phase = (scree_phase)p;
+    good = parse_whole(phase->items[i].text, &p) && parse_whole(bodies->items[i].text, &b);
+    if (good) record->series[i].phase = (size_t)p;
     if (good) record->series[i].body_count = (size_t)b;
   }
   for (int c = 0; good && c < COLUMN_COUNT; c++) {

@@ -4,23 +4,48 @@
 
 #include "study/study.h"
 
+typedef struct scree_record_costs {
+  double time_step; /* s */
+  uint64_t step_count, particle_steps;
+  double wall_seconds, processor_seconds;
+  size_t piece_count;
+  double largest_overlap; /* m */
+} scree_record_costs;
+
+/* Of a scene with a pile its heap; else NaN. */
+typedef struct scree_record_result {
+  scree_repose repose;
+  size_t body_count, left_count; /* in the heap, or inside; and not */
+  double packing_fraction, coordination;
+  double particle_size, kinetic, time; /* m, J, s */
+  bool still;
+} scree_record_result;
+
+/* A row of the series; NaN where the scene has no such column. */
+typedef struct scree_record_point {
+  double time; /* s */
+  size_t phase, body_count;
+  double kinetic, mean_rotation, highest_speed, largest_overlap, coordination, cylinder_height;
+  double sector_deg, cone_deg, silhouette_deg, height;
+} scree_record_point;
+
 typedef struct scree_study_record {
   bool failed;
   char reason[512];
   char worker[160], machine[160], version[32];
   double started, ended; /* s since 1970 */
   double triangle_count; /* mean over the particles; 0 for spheres */
-  scree_run_costs costs;
-  scree_run_result result;
+  scree_record_costs costs;
+  scree_record_result result;
   char hash[40]; /* of the final state of the world */
-  scree_run_point *series;
+  scree_record_point *series;
   size_t series_count;
   double *answers; /* of a scene, in the study's order */
   size_t answer_count;
 } scree_study_record;
 
 /* scene_base.c: what is kept of a scene that has ended. */
-scree_status scree_study_record_scene(const scree_study *study, scree_scene *scene,
+scree_status scree_study_record_scene(const scree_study *study, const scree_scene *scene,
                                       scree_study_record *record, scree_error *error);
 
 /* command_base.c: runs the command, whose own files go to `folder`, and keeps what it prints. watch
@@ -29,8 +54,8 @@ scree_status scree_study_record_command(const scree_study *study, size_t run, co
                                         bool (*watch)(void *context), void *context,
                                         scree_study_record *record, scree_error *error);
 
-/* Of a run without a heap of the experiment: no number is known. */
-scree_run_result scree_no_result(void);
+/* Of a run without a pile: no number is known. */
+scree_record_result scree_no_result(void);
 
 /* FOLDER/results/KEY.yaml, which is JSON too. */
 scree_status scree_study_record_write(const scree_study_record *record, const char *path,

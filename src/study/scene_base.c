@@ -1,9 +1,14 @@
-/* Studies whose base is a scene: its file with any field as a factor, and any column of its sensors
- * as an answer. The scene stands in the study as its own text, with every default. */
+/* What a study varies is a scene: of a file or a template, with any field as a factor, any column
+ * of its sensors as an answer, and shapes of its own where the study names some. It stands in the
+ * study as its own text. */
 #include "base/file.h"
+#include "base/number.h"
 #include "base/platform.h"
 #include "study/outline.h"
 #include "study/record.h"
+
+#include "particle/shape.h"
+#include "scene/scene.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -60,18 +65,77 @@ scree_status scree_study_read_scene(scree_study *study, const char *name, scree_
     scree_free(bytes);
   }
   scree_free(path);
+  study->scene_is_file = status == SCREE_OK;
   return status;
 }
 
-scree_status scree_study_scene(const scree_study *study, const char *const *values,
+scree_status scree_study_take_template(scree_study *study, const char *name, scree_error *error) {
+  scree_scene_file *file; /* tells which there are */
+  scree_status status = scree_scene_file_template(name, &file, error);
+  if (status != SCREE_OK) return status;
+  scree_scene_file_free(file);
+  study->scene_is_file = false;
+  return keep_text(study, name, scree_scene_template(name), error);
+}
+
+scree_status scree_study_add_setting(scree_study *study, const char *key, const char *value,
+                                     scree_error *error) {
+  const char **setting = study->settings[study->setting_count];
+  setting[0] = scree_arena_text(&study->arena, key);
+  setting[1] = scree_arena_text(&study->arena, value);
+  if (!setting[0] || !setting[1]) return scree_fail_memory(error, 0, study->path);
+  study->setting_count++;
+  return SCREE_OK;
+}
+
+/* The shapes that the study names, in place of the scene's. */
+static scree_status pour_set(const scree_study *study, size_t set_index, scree_scene_file *file,
+                             scree_error *error) {
+  const scree_shape_set *set = &study->sets[set_index];
+  scree_poured *shapes = scree_alloc(set->count, sizeof *shapes);
+  if (!shapes) return scree_fail_memory(error, set->count, "shapes");
+  for (size_t i = 0; i < set->count; i++) {
+    const scree_study_shape *s = &study->shapes[set->shapes[i]];
+    shapes[i] =
+        (scree_poured){s->name, s->path ? "file" : "sample", s->path ? s->word : s->word + 7, 1};
+  }
+  scree_status status = scree_scene_file_pour(file, shapes, set->count, error);
+  if (status == SCREE_OK && study->method == SCREE_METHOD_QECD)
+    for (size_t i = 0; status == SCREE_OK && i < set->count; i++) {
+      char field[160];
+      snprintf(field, sizeof field, "shapes.%s.method", shapes[i].name);
+      status = scree_scene_file_set(file, field, "qecd", error);
+    }
+  scree_free(shapes);
+  return status;
+}
+
+static scree_status set_level(const scree_study *study, size_t set_index, const char *rp,
+                              scree_scene_file *file, scree_error *error) {
+  const scree_shape_set *set = &study->sets[set_index];
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < set->count; i++) {
+    char field[160];
+    snprintf(field, sizeof field, "shapes.%s.rp", study->shapes[set->shapes[i]].name);
+    status = scree_scene_file_set(file, field, rp, error);
+  }
+  return status;
+}
+
+scree_status scree_study_scene(const scree_study *study, const scree_study_point *point,
                                scree_scene_file **file, scree_error *error) {
   scree_scene_file *made = NULL;
   scree_status status = scree_scene_file_parse(study->scene_text, strlen(study->scene_text),
                                                study->scene_path, &made, error);
+  if (status == SCREE_OK && point && study->own_shapes)
+    status = pour_set(study, point->set, made, error);
   for (size_t i = 0; status == SCREE_OK && i < study->setting_count; i++)
     status = scree_scene_file_set(made, study->settings[i][0], study->settings[i][1], error);
-  for (size_t f = 0; status == SCREE_OK && values && f < study->factor_count; f++)
-    status = scree_scene_file_set(made, study->factors[f].key, values[f], error);
+  if (status == SCREE_OK && point && study->own_shapes)
+    status = set_level(study, point->set, point->rp, made, error);
+  for (size_t f = 0; status == SCREE_OK && point && f < study->factor_count; f++)
+    if (!scree_study_is_own(study, study->factors[f].key))
+      status = scree_scene_file_set(made, study->factors[f].key, point->values[f], error);
   if (status == SCREE_OK)
     *file = made;
   else
@@ -81,9 +145,9 @@ scree_status scree_study_scene(const scree_study *study, const char *const *valu
 
 scree_status scree_study_run_scene(const scree_study *study, size_t run, scree_scene_file **file,
                                    scree_error *error) {
-  const scree_study_point *point = &study->points[scree_study_run_point(study, run)];
   char seed[32];
-  scree_status status = scree_study_scene(study, point->values, file, error);
+  scree_status status =
+      scree_study_scene(study, &study->points[scree_study_run_point(study, run)], file, error);
   if (status != SCREE_OK) return status;
   snprintf(seed, sizeof seed, "%" PRIu64, scree_study_run_seed(study, run));
   status = scree_scene_file_set(*file, "seed", seed, error);
@@ -91,21 +155,48 @@ scree_status scree_study_run_scene(const scree_study *study, size_t run, scree_s
   return status;
 }
 
-scree_status scree_study_try_scene(const scree_study *study, const char *key, const char *value,
-                                   scree_error *error) {
+scree_status scree_study_try(const scree_study *study, const char *key, const char *value,
+                             scree_error *error) {
   scree_scene_file *file;
   scree_status status = scree_study_scene(study, NULL, &file, error);
-  if (status == SCREE_OK) {
-    status = scree_scene_file_set(file, key, value, error);
-    if (status == SCREE_OK) status = scree_scene_file_check(file, error);
-    scree_scene_file_free(file);
-  }
+  if (status != SCREE_OK) return status;
+  status = scree_scene_file_try(file, key, value, error);
+  scree_scene_file_free(file);
   return status;
+}
+
+/* The plan's phases, and which is the first in which something moves; its seed and pile. */
+scree_status scree_study_look(scree_study *study, scree_error *error) {
+  scree_scene_file *file;
+  scree_plan plan;
+  scree_status status = scree_study_scene(study, NULL, &file, error);
+  if (status != SCREE_OK) return status;
+  status = scree_scene_file_plan(file, &study->arena, &plan, error);
+  scree_scene_file_free(file);
+  if (status != SCREE_OK) return status;
+  study->seed = plan.seed;
+  study->phase_count = plan.phases.count;
+  study->phases = scree_arena_take(&study->arena, plan.phases.count, sizeof *study->phases);
+  if (!study->phases) return scree_fail_memory(error, 0, study->path);
+  study->moving_phase = 0;
+  for (size_t i = 0; i < plan.phases.count; i++)
+    study->phases[i] = SCREE_PLAN_AT(&plan, phases, scree_plan_phase, i)->place.name;
+  for (size_t i = 0; i < plan.geometry.count; i++) {
+    const scree_plan_geometry *g = SCREE_PLAN_AT(&plan, geometry, scree_plan_geometry, i);
+    const scree_plan_motion *m = g->motion.items;
+    if (g->motion.count && m->during)
+      study->moving_phase = scree_plan_find(&plan.phases, sizeof(scree_plan_phase), m->during);
+  }
+  study->has_pile = false;
+  for (size_t i = 0; i < plan.sensors.count; i++)
+    study->has_pile =
+        study->has_pile || SCREE_PLAN_AT(&plan, sensors, scree_plan_sensor, i)->pile != NULL;
+  return SCREE_OK;
 }
 
 scree_status scree_study_keep_scene(const scree_study *study, scree_error *error) {
   char full[4096], *path;
-  if (!study->scene_text) return SCREE_OK;
+  if (!study->scene_is_file) return SCREE_OK;
   if (!scree_path_full(study->scene_path, full, sizeof full))
     return scree_fail(error, SCREE_IO, "%s: cannot be found", study->scene_path);
   if (!(path = scree_study_path(study, "", copy_name, "")))
@@ -117,6 +208,34 @@ scree_status scree_study_keep_scene(const scree_study *study, scree_error *error
     status = scree_output_commit(&output, error);
   }
   scree_free(path);
+  return status;
+}
+
+/* ---- the shapes of a run ---- */
+
+scree_status scree_study_stock(const scree_study *study, size_t run, const scree_scene_file *file,
+                               scree_shape_store *store, double *triangle_count,
+                               scree_error *error) {
+  size_t point = scree_study_run_point(study, run);
+  const scree_shape_set *set = &study->sets[study->points[point].set];
+  scree_arena arena = {0};
+  scree_plan plan;
+  if (!study->own_shapes) return SCREE_OK;
+  scree_status status = scree_scene_file_plan(file, &arena, &plan, error);
+  for (size_t i = 0; status == SCREE_OK && i < set->count; i++) {
+    const scree_plan_shape *shape = SCREE_PLAN_AT(&plan, shapes, scree_plan_shape, i);
+    scree_shape_made made;
+    status = scree_study_make_shape(study, set->shapes[i], study->points[point].rp, &made, error);
+    if (status != SCREE_OK) break;
+    char *path = scree_scene_path(file->folder, shape->file ? shape->file : shape->sample);
+    scree_shape_spec spec = scree_scene_shape_spec(shape, path ? path : "");
+    status = path ? scree_shape_store_put(store, &spec, &made, error)
+                  : scree_fail_memory(error, 0, "a path");
+    *triangle_count += (double)made.triangle_count / (double)set->count;
+    scree_free(path);
+    scree_particle_free(made.particle);
+  }
+  scree_arena_free(&arena);
   return status;
 }
 
@@ -135,7 +254,7 @@ bool scree_study_has_column(const scree_study *study, const char *column) {
   return found;
 }
 
-const char *scree_study_sensor_names(const scree_study *study) {
+const char *scree_study_sensor_names(scree_study *study) {
   static const char none[] = "not known";
   scree_scene_file *file;
   char name[96] = "?", list[400] = "";
@@ -146,13 +265,18 @@ const char *scree_study_sensor_names(const scree_study *study) {
       snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", name);
   }
   scree_scene_file_free(file);
-  scree_study *owner = (scree_study *)(uintptr_t)study; /* its arena keeps the text */
-  const char *kept = scree_arena_text(&owner->arena, list);
+  const char *kept = scree_arena_text(&study->arena, list);
   return kept ? kept : none;
 }
 
+static size_t column_of(const scree_scene *scene, const char *name) {
+  size_t columns = scree_scene_column_count(scene), k = 0;
+  while (k < columns && strcmp(scree_scene_column_name(scene, k), name) != 0) k++;
+  return k;
+}
+
 /* Between two rows of the series as on a straight line. */
-static double value_at(const double *series, size_t rows, size_t columns, size_t k, double time) {
+static double at_time(const double *series, size_t rows, size_t columns, size_t k, double time) {
   size_t i = 0;
   while (i < rows && series[i * columns] < time) i++;
   if (i == rows) return NAN;
@@ -163,13 +287,13 @@ static double value_at(const double *series, size_t rows, size_t columns, size_t
 }
 
 static double answer_of(const scree_answer *answer, const scree_scene *scene) {
-  size_t rows, columns = scree_scene_column_count(scene), k = 0, count = 0;
+  size_t rows, columns = scree_scene_column_count(scene), k = column_of(scene, answer->column),
+               count = 0;
   const double *series = scree_scene_series(scene, &rows);
   double sum = 0;
   if (answer->outline) return scree_outline_height(scree_scene_view(scene), answer->at);
-  while (k < columns && strcmp(scree_scene_column_name(scene, k), answer->column) != 0) k++;
   if (k == columns || rows == 0) return NAN;
-  if (!isnan(answer->at)) return value_at(series, rows, columns, k, answer->at);
+  if (!isnan(answer->at)) return at_time(series, rows, columns, k, answer->at);
   if (!answer->mean) return series[(rows - 1) * columns + k];
   for (size_t i = 0; i < rows; i++) {
     double time = series[i * columns], value = series[i * columns + k];
@@ -180,28 +304,106 @@ static double answer_of(const scree_answer *answer, const scree_scene *scene) {
   return count ? sum / (double)count : (double)NAN;
 }
 
-scree_status scree_study_record_scene(const scree_study *study, scree_scene *scene,
+/* ---- what is kept of a run ---- */
+
+static double value_at(const scree_scene *scene, size_t row, const char *name) {
+  size_t rows, columns = scree_scene_column_count(scene), k = column_of(scene, name);
+  const double *series = scree_scene_series(scene, &rows);
+  return k < columns ? series[row * columns + k] : (double)NAN;
+}
+
+static double pile_at(const scree_scene *scene, size_t row, const char *what) {
+  const char *pile = scree_scene_pile_name(scene, 0);
+  char name[96];
+  snprintf(name, sizeof name, "%s.%s", pile ? pile : "", what);
+  return value_at(scene, row, name);
+}
+
+/* Of scenes in phases: what turns how fast while something moves. */
+static scree_status record_series(const scree_study *study, const scree_scene *scene,
+                                  scree_study_record *record, scree_error *error) {
+  size_t rows;
+  (void)scree_scene_series(scene, &rows);
+  if (study->phase_count == 0) return SCREE_OK;
+  record->series = scree_alloc(rows, sizeof *record->series);
+  if (!record->series) return scree_fail_memory(error, rows * sizeof *record->series, "a series");
+  record->series_count = rows;
+  for (size_t i = 0; i < rows; i++)
+    record->series[i] = (scree_record_point){
+        .time = value_at(scene, i, "time"),
+        .phase = (size_t)value_at(scene, i, "phase"),
+        .body_count = (size_t)value_at(scene, i, "inside"),
+        .kinetic = value_at(scene, i, "kinetic") + value_at(scene, i, "rotational"),
+        .mean_rotation = value_at(scene, i, "mean_rotation"),
+        .highest_speed = value_at(scene, i, "highest_speed"),
+        .largest_overlap = value_at(scene, i, "largest_overlap"),
+        .coordination = value_at(scene, i, "coordination"),
+        .cylinder_height = value_at(scene, i, "cylinder.z"),
+        .sector_deg = pile_at(scene, i, "sector_deg"),
+        .cone_deg = pile_at(scene, i, "cone_deg"),
+        .silhouette_deg = pile_at(scene, i, "silhouette_deg"),
+        .height = pile_at(scene, i, "height")};
+  return SCREE_OK;
+}
+
+static double largest_overlap(const scree_scene *scene) {
+  size_t rows;
+  double largest = 0;
+  (void)scree_scene_series(scene, &rows);
+  for (size_t i = 0; i < rows; i++) largest = fmax(largest, value_at(scene, i, "largest_overlap"));
+  return largest;
+}
+
+static void record_costs(const scree_scene *scene, scree_record_costs *costs) {
+  scree_scene_costs c = scree_scene_get_costs(scene);
+  *costs = (scree_record_costs){.time_step = scree_world_time_step(scree_scene_view(scene), NULL),
+                                .step_count = scree_world_step_count(scree_scene_view(scene)),
+                                .particle_steps = c.body_steps,
+                                .wall_seconds = c.wall_seconds,
+                                .processor_seconds = c.processor_seconds,
+                                .piece_count = (size_t)c.piece_count,
+                                .largest_overlap = largest_overlap(scene)};
+}
+
+/* Whether it ended with all at rest, by the threshold of its last phase. */
+static bool ends_still(const scree_scene *scene, const scree_observation *o) {
+  size_t count = scene->plan.phases.count;
+  if (count == 0) return scree_scene_end(scene) && !strcmp(scree_scene_end(scene), "still");
+  const scree_plan_phase *last = SCREE_PLAN_AT(&scene->plan, phases, scree_plan_phase, count - 1);
+  return o->kinetic + o->rotational < last->still * (double)o->body_count;
+}
+
+scree_status scree_study_record_scene(const scree_study *study, const scree_scene *scene,
                                       scree_study_record *record, scree_error *error) {
   const scree_world *world = scree_scene_view(scene);
   scree_scene_book book;
+  scree_observation o;
+  const scree_record_result none = scree_no_result();
+  scree_pile pile = {.repose = none.repose,
+                     .packing_fraction = none.packing_fraction,
+                     .size = none.particle_size};
+  scree_status status = SCREE_OK;
+  if (scree_scene_pile_name(scene, 0))
+    status = scree_scene_measure_pile(scene, 0, NULL, &pile, error);
+  if (status != SCREE_OK) return status;
   scree_scene_get_book(scene, &book);
+  scree_world_observe(world, &o);
   scree_checksum_text(scree_world_hash(world), record->hash);
   record->answers = scree_alloc(study->answer_count, sizeof *record->answers);
   if (!record->answers) return scree_fail_memory(error, 0, "a run's answers");
   record->answer_count = study->answer_count;
   for (size_t i = 0; i < study->answer_count; i++)
     record->answers[i] = answer_of(&study->answers[i], scene);
-  scree_observation o;
-  scree_world_observe(world, &o);
-  record->costs.time_step = scree_world_time_step(world, NULL);
-  record->costs.step_count = scree_world_step_count(world);
-  record->costs.piece_count = 1;
-  record->costs.largest_overlap = o.largest_overlap;
-  record->result = scree_no_result();
-  record->result.body_count = book.inside_count;
-  record->result.left_count = book.left_count;
-  record->result.coordination = o.coordination;
-  record->result.kinetic = o.kinetic + o.rotational;
-  record->result.time = o.time;
-  return SCREE_OK;
+  record_costs(scene, &record->costs);
+  size_t bodies = scree_scene_pile_name(scene, 0) ? pile.body_count : book.inside_count;
+  record->result = (scree_record_result){.repose = pile.repose,
+                                         .body_count = bodies,
+                                         .left_count = book.entered_count - bodies,
+                                         .packing_fraction = pile.packing_fraction,
+                                         .coordination = o.coordination,
+                                         .particle_size = pile.size,
+                                         .kinetic = o.kinetic + o.rotational,
+                                         .time = o.time,
+                                         .still = ends_still(scene, &o)};
+  return record_series(study, scene, record, error);
 }

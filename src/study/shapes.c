@@ -428,26 +428,18 @@ static scree_status make_particle(const scree_study *study, const scree_study_sh
   return scree_fail(error, status, "%s at rp %s: %.700s", shape->name, rp, inner.message);
 }
 
-scree_status scree_study_make_shapes(const scree_study *study, size_t point,
-                                     scree_mass_rule mass_rule, scree_run_shape *shapes,
-                                     double *triangle_count, scree_error *error) {
-  const scree_shape_set *set = &study->sets[study->points[point].set];
-  *triangle_count = 0;
-  for (size_t i = 0; i < set->count; i++) {
-    const scree_study_shape *shape = &study->shapes[set->shapes[i]];
-    scree_particle *particle;
-    scree_particle_measures m;
-    scree_status status = make_particle(study, shape, study->points[point].rp, &particle, error);
-    if (status != SCREE_OK) {
-      while (i-- > 0) scree_particle_free(shapes[i].particle);
-      return status;
-    }
-    scree_particle_measure(particle, &m);
-    *triangle_count += (double)m.triangle_count / (double)set->count;
-    shapes[i] = (scree_run_shape){
-        .particle = particle,
-        .density_factor = mass_rule == SCREE_MASS_FROM_SCAN ? shape->volume / m.volume : 1,
-        .name = shape->name};
-  }
+scree_status scree_study_make_shape(const scree_study *study, size_t shape, const char *rp,
+                                    scree_shape_made *made, scree_error *error) {
+  const scree_study_shape *known = &study->shapes[shape];
+  scree_shape_made result = {.scan_triangle_count = (size_t)known->triangle_count,
+                             .scan_volume = known->volume,
+                             .recommended = known->recommended_rp,
+                             .checksum = known->checksum};
+  scree_particle_measures m;
+  scree_status status = make_particle(study, known, rp, &result.particle, error);
+  if (status != SCREE_OK) return status;
+  scree_particle_measure(result.particle, &m);
+  result.triangle_count = m.triangle_count;
+  *made = result;
   return SCREE_OK;
 }

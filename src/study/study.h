@@ -8,7 +8,7 @@
 enum { SCREE_RUN_KEY_BYTES = 24 };
 
 typedef struct scree_factor {
-  const char *key; /* of the experiment, or "rp", "shapes", "contact.friction" */
+  const char *key; /* a field or a parameter of the scene; or "rp", "shapes" of the study's */
   size_t line, column;
   bool range, logarithmic; /* from `from` to `to`; else levels */
   double from, to;
@@ -66,13 +66,16 @@ struct scree_study {
   size_t text_size;
   char *folder; /* NULL before scree_study_open */
   const char *name;
-  scree_experiment base;               /* preset owned */
-  const char *scene_text, *scene_path; /* where the base is a scene; else NULL */
-  const char *(*settings)[2];          /* its fields that the base changes, and their values */
+  const char *scene_text, *scene_path; /* of the base, a file's or a template's */
+  bool scene_is_file;
+  const char *(*settings)[2]; /* its fields that the base changes, and their values */
   size_t setting_count;
   scree_texts command; /* where the base is one: its words; else none */
   scree_answer *answers;
   size_t answer_count;
+  const char **phases; /* of the scene, and the first in which something moves */
+  size_t phase_count, moving_phase;
+  bool has_pile, own_shapes; /* own: the study names them */
   uint64_t seed;
   size_t replicate_count, attempt_limit;
   scree_method method;
@@ -100,24 +103,15 @@ static inline size_t scree_study_run_replicate(const scree_study *study, size_t 
   return run / study->point_count;
 }
 
-/* Whether runs give answers of the user's, of a scene or of a command. */
-static inline bool scree_study_has_answers(const scree_study *study) {
-  return study->scene_text || study->command.count > 0;
-}
-
 /* Copies into the arena; NULL when memory is out. */
 const char *scree_arena_text(scree_arena *arena, const char *text);
 
 /* points.c: the design's points with their labels; all values have been checked. */
 scree_status scree_study_make_points(scree_study *study, scree_error *error);
-/* Sets a factor's key, which may be one of ours, in an experiment. */
-scree_status scree_study_set(scree_experiment *experiment, const char *key, const char *value,
-                             scree_error *error);
-/* The experiment of a point with the seed of a replicate. Free with scree_experiment_free. */
-scree_status scree_study_experiment(const scree_study *study, size_t run,
-                                    scree_experiment *experiment, scree_error *error);
 /* The seed of a run: the study's, or its point's where seed is a factor, and the replicate. */
 uint64_t scree_study_run_seed(const scree_study *study, size_t run);
+/* Whether the key is no field of the scene but of the study's own shapes: "shapes", "rp". */
+bool scree_study_is_own(const scree_study *study, const char *key);
 /* Names every run by its content; all shapes must be known. */
 scree_status scree_study_make_keys(scree_study *study, scree_error *error);
 
@@ -126,28 +120,40 @@ scree_status scree_study_know_shapes(scree_study *study, scree_error *error);
 /* Spheres of the clumps that "clump:20" stands for, 1 to 300; 0 where it is none. */
 size_t scree_study_spheres(const char *rp);
 
-/* The particles of a point's shapes with their density factors, in the order of its set; free each
- * particle. triangle_count: mean over the shapes. */
-scree_status scree_study_make_shapes(const scree_study *study, size_t point,
-                                     scree_mass_rule mass_rule, scree_run_shape *shapes,
-                                     double *triangle_count, scree_error *error);
+/* The particle of a shape at a level, from the folder; free it. */
+scree_status scree_study_make_shape(const scree_study *study, size_t shape, const char *rp,
+                                    scree_shape_made *made, scree_error *error);
 
-/* scene_base.c: reads the text of a scene; then its file with the base's settings and with values
- * of the factors (NULL: none), to be freed; that of a run; whether a value can be. */
+/* scene_base.c: takes the text of a scene's file, or of a template; one field more that the base
+ * changes; what the plan of the base says. */
 scree_status scree_study_read_scene(scree_study *study, const char *name, scree_error *error);
-scree_status scree_study_scene(const scree_study *study, const char *const *values,
+scree_status scree_study_take_template(scree_study *study, const char *name, scree_error *error);
+scree_status scree_study_add_setting(scree_study *study, const char *key, const char *value,
+                                     scree_error *error);
+scree_status scree_study_look(scree_study *study, scree_error *error);
+/* Its file with the base's settings and the values of a point (NULL: none), to be freed; that of a
+ * run; whether a value can be. */
+scree_status scree_study_scene(const scree_study *study, const scree_study_point *point,
                                scree_scene_file **file, scree_error *error);
 scree_status scree_study_run_scene(const scree_study *study, size_t run, scree_scene_file **file,
                                    scree_error *error);
-scree_status scree_study_try_scene(const scree_study *study, const char *key, const char *value,
-                                   scree_error *error);
+scree_status scree_study_try(const scree_study *study, const char *key, const char *value,
+                             scree_error *error);
+/* Puts the particles of a run's shapes, made from the folder's levels, into the store; adds to
+ * *triangle_count their mean. */
+scree_status scree_study_stock(const scree_study *study, size_t run, const scree_scene_file *file,
+                               scree_shape_store *store, double *triangle_count,
+                               scree_error *error);
 /* Whether the base has such a column, known from its sensors and shapes; the sensors' names. */
 bool scree_study_has_column(const scree_study *study, const char *column);
-const char *scree_study_sensor_names(const scree_study *study);
+const char *scree_study_sensor_names(scree_study *study);
 /* The scene's text into the study's folder. */
 scree_status scree_study_keep_scene(const scree_study *study, scree_error *error);
 
-/* command_base.c: whether the command has a word with {key} in it. */
+/* command_base.c: the words, a list or all in one text, parted at blanks. */
+scree_status scree_study_read_command(scree_study *study, const scree_yaml *command,
+                                      scree_error *error);
+/* Whether the command has a word with {key} in it. */
 bool scree_study_command_has(const scree_study *study, const char *key);
 /* The word of the command with a run's values, as text in the arena's way; folder NULL: {folder} is
  * left as it is. */

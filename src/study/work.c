@@ -73,84 +73,38 @@ static bool keep_lease(work *w, double done, const char *what) {
   return !w->cancelled && !w->lost && w->renewal == SCREE_OK;
 }
 
-static bool watch(void *context, const scree_run_state *state) {
-  return keep_lease(context, state->fraction, scree_phase_name(state->now.phase));
+static bool watch(void *context, const scree_scene_state *state) {
+  const char *phase = scree_scene_phase(state->scene);
+  return keep_lease(context, state->fraction, phase ? phase : "scene");
 }
 
-static scree_status fill_record(scree_run *run, scree_study_record *record, scree_error *error) {
-  size_t count;
-  const scree_run_point *series = scree_run_series(run, &count);
-  scree_run_get_costs(run, &record->costs);
-  scree_checksum_text(scree_world_hash(scree_run_world(run)), record->hash);
-  record->series = scree_alloc(count, sizeof *record->series);
-  if (!record->series) return scree_fail_memory(error, count * sizeof *series, "a series");
-  if (count) memcpy(record->series, series, count * sizeof *series);
-  record->series_count = count;
-  return scree_run_measure(run, &record->result, error);
-}
-
-/* Simulates; a checkpoint that cannot be read is thrown away once. */
-static scree_status simulate(work *w, const scree_experiment *e, const scree_run_shape *shapes,
+/* To its end; a checkpoint that cannot be read is thrown away once. */
+static scree_status simulate(work *w, const scree_scene_file *file, scree_shape_store *store,
                              scree_study_record *record, scree_error *error) {
+  scree_scene *scene = NULL;
   char *folder = run_file(w, "runs", "", error);
   if (!folder) return SCREE_OUT_OF_MEMORY;
-  scree_run *run = NULL;
-  scree_run_job job = {
-      .experiment = e,
-      .shapes = shapes,
-      .shape_count =
-          w->study->sets[w->study->points[scree_study_run_point(w->study, w->run)].set].count,
-      .folder = folder,
-      .resume = true,
-      .motion = scree_study_run_replicate(w->study, w->run) == 0, /* one of each point to look at */
-      .watch = watch,
-      .context = w};
+  scree_scene_job job = {.file = file,
+                         .folder = folder,
+                         .resume = true,
+                         .states = true,
+                         /* one of each point to look at */
+                         .no_motion = scree_study_run_replicate(w->study, w->run) > 0,
+                         .store = store,
+                         .watch = watch,
+                         .context = w};
   scree_error own;
-  scree_status status = scree_run_complete(&job, &run, &own);
+  scree_status status = scree_scene_complete(&job, &scene, &own);
   if (status == SCREE_BAD_FILE) {
-    job.resume = false;
-    job.overwrite = true;
-    status = scree_run_complete(&job, &run, &own);
-  }
-  if (status == SCREE_OK)
-    status = fill_record(run, record, error);
-  else if (error)
-    *error = own;
-  scree_run_free(run);
-  scree_free(folder);
-  return status;
-}
-
-/* ---- one run of a scene ---- */
-
-static bool watch_scene(void *context, const scree_scene_state *state) {
-  return keep_lease(context, state->fraction, "scene");
-}
-
-static scree_status simulate_scene(work *w, scree_study_record *record, scree_error *error) {
-  scree_scene_file *file;
-  scree_scene *scene = NULL;
-  scree_status status = scree_study_run_scene(w->study, w->run, &file, error);
-  if (status != SCREE_OK) return status;
-  char *folder = run_file(w, "runs", "", error);
-  scree_scene_job job = {
-      .file = file, .folder = folder, .resume = true, .watch = watch_scene, .context = w};
-  double wall = scree_now(), processor = scree_processor_time();
-  scree_error own;
-  status = folder ? scree_scene_complete(&job, &scene, &own) : SCREE_OUT_OF_MEMORY;
-  if (status == SCREE_BAD_FILE && folder) { /* a checkpoint that cannot be read */
     job.resume = false;
     job.overwrite = true;
     status = scree_scene_complete(&job, &scene, &own);
   }
-  record->costs.wall_seconds = scree_now() - wall;
-  record->costs.processor_seconds = scree_processor_time() - processor;
   if (status == SCREE_OK)
     status = scree_study_record_scene(w->study, scene, record, error);
   else if (error)
     *error = own;
   scree_scene_free(scene);
-  scree_scene_file_free(file);
   scree_free(folder);
   return status;
 }
@@ -174,21 +128,18 @@ static scree_status run_command(work *w, scree_study_record *record, scree_error
 }
 
 static scree_status make_and_simulate(work *w, scree_study_record *record, scree_error *error) {
+  scree_scene_file *file;
+  scree_shape_store *store;
   if (w->study->command.count) return run_command(w, record, error);
-  if (w->study->scene_text) return simulate_scene(w, record, error);
-  scree_run_shape shapes[SCREE_MOST_SHAPES];
-  scree_experiment e;
-  size_t point = scree_study_run_point(w->study, w->run);
-  size_t count = w->study->sets[w->study->points[point].set].count;
-  scree_status status = scree_study_experiment(w->study, w->run, &e, error);
+  scree_status status = scree_study_run_scene(w->study, w->run, &file, error);
   if (status != SCREE_OK) return status;
-  status =
-      scree_study_make_shapes(w->study, point, e.mass_rule, shapes, &record->triangle_count, error);
+  status = scree_shape_store_create(&store, error);
   if (status == SCREE_OK) {
-    status = simulate(w, &e, shapes, record, error);
-    for (size_t i = 0; i < count; i++) scree_particle_free(shapes[i].particle);
+    status = scree_study_stock(w->study, w->run, file, store, &record->triangle_count, error);
+    if (status == SCREE_OK) status = simulate(w, file, store, record, error);
+    scree_shape_store_free(store);
   }
-  scree_experiment_free(&e);
+  scree_scene_file_free(file);
   return status;
 }
 

@@ -20,10 +20,10 @@ drop() {
   { "$SCREE" drop "$@" --rays 1 --stiffness 1e-2 --progress 2>progress || cat progress; } | shape
 }
 drop sphere:40mm=3 sample:icosphere-1=4 --time 0.02 --frames 0.05 -o out
-grep -c "particle-steps/s" progress
-ls out | sed 's/drop.png//' | grep .
+grep -c "steps/s" progress
+ls out | sed 's/scene.png//' | grep .
 sed -n 2p out/series.csv
-grep -c DataSet out/drop.pvd
+grep -c DataSet out/bodies.pvd
 run drop sphere:40mm=3 -o out
 # the same bits again, another number of threads
 drop sphere:40mm=3 sample:icosphere-1=4 --time 0.02 --frames 0.05 -o again -j 3 >/dev/null
@@ -39,7 +39,7 @@ ls box
 "$SCREE" drop sphere:40mm=9 -o stopped --time 1000 --still 0 -q >text 2>&1 &
 child=$!
 tries=0
-while ! [ -s stopped/frame-000001.vtp ] && [ $tries -lt 1000 ]; do
+while ! [ -s stopped/frame-000001-bodies.vtp ] && [ $tries -lt 1000 ]; do
   sleep 0.1
   tries=$((tries + 1))
 done
@@ -47,7 +47,7 @@ kill -INT $child
 wait $child
 echo "exit code $?"
 ls stopped | grep -c part
-grep -c "$(ls stopped/frame-*.vtp | tail -1 | sed 's/.*\///')" stopped/drop.pvd
+grep -c "$(ls stopped/frame-*.vtp | tail -1 | sed 's/.*\///')" stopped/bodies.pvd
 # clumps
 printf 'x,y,z,r\n-12,0,0,10\n12,0,0,8\n0,0,5,9\n' >clump.csv
 drop clump.csv=3 --frames 0 --no-picture --time 0 -o clumps | head -1
@@ -62,7 +62,7 @@ for how in INT KILL; do
   "$SCREE" drop $pour -o cut --checkpoint 0.01 -q >/dev/null 2>&1 &
   child=$!
   tries=0
-  while ! { [ -s cut/checkpoint.scree ] && [ -s cut/frame-000002.vtp ]; } && [ $tries -lt 1000 ]; do
+  while ! { [ -s cut/checkpoint.scree ] && [ -s cut/frame-000002-bodies.vtp ]; } && [ $tries -lt 1000 ]; do
     sleep 0.01
     tries=$((tries + 1))
   done
@@ -73,15 +73,11 @@ for how in INT KILL; do
   for file in whole/*; do
     case $file in
     # these know the command, or where the pour was stopped
-    whole/checkpoint.scree | whole/drop.json | whole/provenance.json | whole/motion.scree | whole/report.html) continue ;;
+    whole/checkpoint.scree | whole/result.json | whole/provenance.json | whole/scene.yaml | whole/report.html) continue ;;
     esac
     sed 1,2d "$file" >left.txt # names of files, and the command
     sed 1,2d "cut/${file#whole/}" | cmp - left.txt
   done
-  for folder in whole cut; do
-    grep -v '"command"' $folder/drop.json >$folder.json
-  done
-  cmp whole.json cut.json
   ls whole >left.txt
   ls cut | cmp - left.txt
   [ $how = KILL ] || rm -r cut

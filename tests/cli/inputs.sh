@@ -26,14 +26,14 @@ run simplify ball.json -n 20 --density 1000 -f -o ball.ply
 printf '0 0 0 1\n' >series.csv
 run drop series.csv=3 -f -o .
 run repose series.csv -f -o .
-"$SCREE" repose --print >experiment.yaml
-cp experiment.yaml yaml
-run repose -c experiment.yaml ball.stl -f -o .
-cmp experiment.yaml yaml
+"$SCREE" repose --print >scene.yaml
+cp scene.yaml yaml
+run repose -c scene.yaml ball.stl -f -o .
+cmp scene.yaml yaml
 run report . -f -o series.csv
 cat series.csv
 echo mine >report.html
-rm series.csv experiment.yaml
+rm series.csv scene.yaml
 run repose ball.stl -o .
 run drop ball.stl -o .
 cat report.html

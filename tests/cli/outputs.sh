@@ -23,9 +23,9 @@ run drop missing.stl -o file
 touch old/series.csv
 run drop missing.stl -o old
 run repose missing.stl -o file
-touch old/experiment.yaml
+touch old/scene.yaml
 run repose missing.stl -o old
-mkdir -p old/spheres && touch old/spheres/experiment.yaml
+mkdir -p old/spheres && touch old/spheres/scene.yaml
 run repose missing.stl --rp 0.1 --spheres -o old
 printf 'name: x\nreplicates: 1\nshapes: [missing.stl]\nfactors: {rp: [1]}\n' >study.yaml
 run study study.yaml -o file

@@ -27,7 +27,7 @@ base:
 factors:
   contact.friction: [0.5]
 END
-phases="packing settling lifting holding"
+phases="pack settle lift hold"
 
 # `cut_short PHASE CHECKPOINT WORDS...`: starts scree WORDS and kills it once its checkpoint is in the phase.
 cut_short() {

@@ -56,7 +56,7 @@ run simplify ball.stl -r 50% -o half.off
 run simplify ball.stl -r 50 -o no.off 2>&1 | sed -n 2p
 run simplify ball.stl -r half -o no.off 2>&1 | sed -n 2p
 run sample box-12 --noise 0.3 -o no.off 2>&1 | sed -n 2p
-for length in 300mm 0.3 30cm; do "$SCREE" repose --print --cylinder $length --band-low 30%; done | grep 'diameter: 0.3\|band_low: 0.3' |
+for length in 300mm 0.3 30cm; do "$SCREE" repose --print --cylinder $length --band-low 30%; done | grep 'radius: 0.15\|^      band_low: 0.3' |
   sort | uniq -c | cut -c1-26
 run drop sphere:40mm --width 3bananas 2>&1 | sed -n 2p
 # what cannot be meant is named

@@ -33,7 +33,6 @@ static void check_motion(const scree_motion *m) {
   FUZZ_CHECK(m->frame_count > 0);
   for (size_t f = 0; f < m->frame_count; f++) {
     FUZZ_CHECK(isfinite(m->time[f]));
-    sum += m->cylinder_height[f];
     for (size_t i = 0; i < 7 * m->body_count; i++)
       sum += (double)m->poses[7 * f * m->body_count + i];
   }

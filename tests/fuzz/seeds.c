@@ -1,7 +1,6 @@
 /* Writes seeds for the targets whose files only the present program can write, so that a change of
  * their format does not leave the targets with files that all are refused at the first bytes:
- * FOLDER/checkpoint and FOLDER/run, which must be there. */
-#include "support/pot.h"
+ * FOLDER/checkpoint and FOLDER/scene, which must be there. */
 #include "support/shapes.h"
 
 #include <stdio.h>
@@ -80,26 +79,40 @@ static void write_worlds(void) {
   scree_mesh_free(&sheet);
 }
 
-/* ---- checkpoints and frames of runs, one in every phase ---- */
+/* ---- checkpoints and frames of a scene, one in every phase ---- */
 
-static void write_runs(void) {
-  scree_run_shape shapes[2] = {{.density_factor = 1, .name = "ball"},
-                               {.particle = make_box(), .density_factor = 1, .name = "chip"}};
-  scree_experiment e;
-  scree_run *run;
-  need(scree_experiment_preset("paper", &e, &error));
-  use_pot(&e, 4);
-  need(scree_particle_sphere(0.01, &shapes[0].particle, &error));
-  need(scree_run_create(&e, shapes, 2, &run, &error));
-  for (int phase = SCREE_PHASE_PACK; phase <= SCREE_PHASE_DONE; phase++) {
-    while ((int)scree_run_phase(run) < phase) need(scree_run_advance(run, 50, &error));
-    if (phase < SCREE_PHASE_DONE)
-      need(scree_run_save(run, path_of("run", "checkpoint", phase), true, &error));
-    need(scree_run_save_frame(run, path_of("run", "frame", phase), true, &error));
+static void write_scenes(void) {
+  static const char *const fields[][2] = {
+      {"shapes", "{ball: {sphere: 0.02, material: grain}, "
+                 "chip: {box: [0.02, 0.012, 0.006], material: grain}}"},
+      {"inlets.fill.shapes", "{ball: 1, chip: 1}"},
+      {"particles", "4"},
+      {"cylinder.diameter", "0.08"},
+      {"disc.diameter", "0.3"},
+      {"phases.pack_time", "0.1"},
+      {"phases.settle_time", "0.05"},
+      {"phases.lift_speed", "1"},
+      {"phases.lift_time", "0.08"},
+      {"phases.hold_time", "0.02"},
+      {"phases.drop_height", "0.01"},
+      {"contact.young_particle", "1e7"},
+  };
+  scree_scene_file *file;
+  scree_scene *scene;
+  need(scree_scene_file_template("repose", &file, &error));
+  for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
+    need(scree_scene_file_set(file, fields[i][0], fields[i][1], &error));
+  need(scree_scene_create(file, NULL, &scene, &error));
+  for (int phase = 0; phase <= 4; phase++) {
+    const char *now = scree_scene_phase(scene);
+    if (phase < 4)
+      need(scree_scene_save(scene, path_of("scene", "checkpoint", phase), true, &error));
+    need(scree_scene_save_frame(scene, path_of("scene", "frame", phase), true, &error));
+    while (!scree_scene_end(scene) && scree_scene_phase(scene) == now)
+      need(scree_scene_advance(scene, 50, &error));
   }
-  scree_run_free(run);
-  for (int i = 0; i < 2; i++) scree_particle_free(shapes[i].particle);
-  scree_experiment_free(&e);
+  scree_scene_free(scene);
+  scree_scene_file_free(file);
 }
 
 int main(int argument_count, char **arguments) {
@@ -110,6 +123,6 @@ int main(int argument_count, char **arguments) {
   folder = arguments[1];
   scree_set_threads(1);
   write_worlds();
-  write_runs();
+  write_scenes();
   return 0;
 }

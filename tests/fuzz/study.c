@@ -14,15 +14,14 @@ static void look_at(const scree_study *study) {
   for (size_t i = 0; i < LOOKED_AT; i++) {
     size_t index = (count - 1) / (LOOKED_AT - 1) * i;
     scree_study_run run;
-    scree_experiment experiment;
+    scree_scene_file *file;
     scree_error error;
     FUZZ_CHECK(scree_study_get_run(study, index, &run, &error) == SCREE_OK);
     FUZZ_CHECK(run.point < study->point_count && run.replicate < study->replicate_count);
     FUZZ_CHECK(study->points[run.point].set < study->set_count);
-    FUZZ_CHECK(scree_study_experiment(study, index, &experiment, &error) == SCREE_OK);
-    FUZZ_CHECK(scree_experiment_check(&experiment, &error) == SCREE_OK);
-    FUZZ_CHECK(experiment.seed == run.seed);
-    scree_experiment_free(&experiment);
+    FUZZ_CHECK(scree_study_run_scene(study, index, &file, &error) == SCREE_OK);
+    FUZZ_CHECK(scree_scene_file_check(file, &error) == SCREE_OK);
+    scree_scene_file_free(file);
   }
   for (size_t i = 0; i < study->shape_count; i++) FUZZ_CHECK(!strchr(study->shapes[i].name, '/'));
 }

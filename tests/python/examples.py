@@ -45,7 +45,7 @@ for _ in range(2):  # the second time from what the first one left
     assert "no heap: " in heap_said and "6 particles after" in heap_said and "highest centre" in heap_said, heap_said
 assert "screeMOV" in (folder / "heap/motion.scree").read_bytes()[:8].decode()
 result = json.loads((folder / "heap/result.json").read_text())
-assert [shape["name"] for shape in result["shapes"]] == ["fp-1", "sp-1"] and result["result"]["body_count"] == 6
+assert [shape["name"] for shape in result["shapes"]] == ["fp-1", "sp-1"] and result["piles"][0]["body_count"] == 6
 assert "part-0" in (folder / "heap/report.html").read_text()
 print(said)
 print(heap_said)

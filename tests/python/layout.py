@@ -13,7 +13,7 @@ structs = {name: kind for name, kind in vars(c).items()
            if isinstance(kind, type) and issubclass(kind, ctypes.Structure) and name.startswith("scree_")}
 enums = {f"SCREE_{name}": i for i, name in enumerate(c.STATUSES)}
 for prefix, words in (("METHOD", c.METHODS), ("REFERENCE", c.REFERENCES), ("PARTICLE", c.PARTICLE_KINDS),
-                      ("LAW", c.LAWS), ("CONTAINER", c.CONTAINERS), ("WALL", c.WALL_KINDS), ("VIEW", c.VIEWS)):
+                      ("LAW", c.LAWS), ("WALL", c.WALL_KINDS), ("VIEW", c.VIEWS)):
     enums |= {f"SCREE_{prefix}_{word.upper()}": i for i, word in enumerate(words)}
 for i, word in enumerate(("AREA", "VOLUME", "HAUSDORFF", "MEAN", "INERTIA", "WIDTHS")):
     enums[f"SCREE_ERROR_{word}"] = i

@@ -1,6 +1,6 @@
 """The Python module against closed forms, its own C library's facts, and refusals. Run with numpy and, by
 SCREE_TEST_WITHOUT_NUMPY, without.
-usage: module.py WORLD_WRITER (tests/vtk/world.c, which also writes the checkpoint of a run)"""
+usage: module.py WORLD_WRITER (tests/vtk/world.c, which also writes the checkpoint of a scene)"""
 import gc
 import math
 import os
@@ -303,14 +303,13 @@ class Worlds(unittest.TestCase):
         before = world.hash
         for wrong in (lambda: world.step(-1), lambda: world.set_contact(0, -1, 0.5, 0.5),
                       lambda: world.add_wall("plane", -1), lambda: world.add_body(ball, -1),
-                      lambda: scree.Pour([(ball, -1)]), lambda: scree.Pour([(ball, 1)], seed=-1),
-                      lambda: scree.Pour([(ball, 1)]).step(-1), lambda: world.run(-1), lambda: box.simplify(-1),
+                      lambda: world.run(-1), lambda: box.simplify(-1),
                       lambda: box.curve().find(-1), lambda: box.curve(stop_count=-1),
                       lambda: box.distance(box, sample_count=-1), lambda: scree.set_threads(-1),
                       lambda: scree.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, -1]])):
             with self.assertRaisesRegex(ValueError, "is -1"):
                 wrong()
-        for wrong in (lambda: world.step(2**64 + 1), lambda: scree.Pour([(ball, 2**64 + 1)]),
+        for wrong in (lambda: world.step(2**64 + 1),
                       lambda: scree.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2**32 + 2]]),
                       lambda: box.curve().choose(per_decade=2**32 + 4)):
             with self.assertRaisesRegex(ValueError, "is (18446744073709551617|4294967298|4294967300)"):
@@ -329,7 +328,6 @@ class Worlds(unittest.TestCase):
         before = world.hash
         for wrong, said in ((lambda: scree.World(gravity=(0, 0)), "World: gravity has 2 numbers; it takes 3"),
                             (lambda: scree.World(gravity=(0, 0, -9.81, 0)), "gravity has 4 numbers"),
-                            (lambda: scree.Pour([(ball, 1)], world={"gravity": ()}), "world: gravity has 0 numbers"),
                             (lambda: world.add_body(ball, 0, position=[1]), "position has 1 number; it takes 3"),
                             (lambda: world.add_body(ball, 0, orientation=(1, 0, 0)), "orientation has 3 numbers; it takes 4"),
                             (lambda: world.set_body(0, velocity=(1, 2)), "a body: velocity has 2 numbers"),
@@ -341,128 +339,6 @@ class Worlds(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "World: gravity is -9.81; 3 numbers"):
             scree.World(gravity=-9.81)
         self.assertEqual((world.hash, len(world)), (before, 2))
-
-    def test_results(self):
-        with self.assertRaises(scree.Error):
-            scree.Run("missing.scree")
-        os.mkdir("run")
-        subprocess.run([WORLD_WRITER, "run"], check=True, stdout=subprocess.DEVNULL)
-        run = scree.Run("run/run.scree")
-        world = run.world
-        self.assertEqual((run.phase, run.is_frame), ("packing", False))
-        self.assertFalse(run.measure().repose.heap)
-        self.assertEqual([point.phase for point in run.series()], ["packing"] * len(run.series()))
-        self.assertEqual(scree.Run("run/frame.scree").world.time, world.time)
-        del run  # its world keeps it
-        gc.collect()
-        self.assertGreater(len(world), 0)
-
-
-class Pours(unittest.TestCase):
-    def pour(self, **options):
-        box, ball = scree.load("sample:box-12"), scree.Particle.sphere(0.03)
-        return scree.Pour([(box, 3), (ball, 4)], world={"stiffness_factor": 0.01}, particles={"density": 1000},
-                          **options)
-
-    def test_pour(self):
-        pour = self.pour(container="box", width=0.4, depth=0.3, seed=5)
-        options = pour.options()
-        self.assertEqual((options.container, options.width, options.depth), ("box", 0.4, 0.3))
-        self.assertEqual((options.particles.density, options.world.stiffness_factor), (1000, 0.01))
-        self.assertEqual((len(pour), [pour.shape_of(i) for i in range(7)].count(1)), (7, 4))
-        pour.record("pour.scree", 0.05)
-        pour.run(pour.filling_time + 0.2)
-        pour.end_record()
-        self.assertEqual(len(pour.world), 7)
-        seen = pour.world.observe()
-        ledger = (seen.kinetic + seen.rotational + seen.potential + seen.elastic + seen.dissipated_dashpot
-                  + seen.dissipated_friction - seen.wall_work)
-        self.assertLess(abs(ledger / pour.entered_energy - 1), 0.01)
-        for x, y, z in pour.world.positions():
-            self.assertTrue(abs(x) < 0.2 and abs(y) < 0.15 and z > 0)
-        motion = scree.Motion("pour.scree")
-        self.assertEqual((motion.body_count, motion.time[len(motion) - 1]), (7, pour.world.time))
-        world = pour.world
-        del pour  # its world keeps it
-        gc.collect()
-        self.assertEqual(len(world), 7)
-
-    def test_checkpoint(self):
-        pour = self.pour(law="hysteretic")
-        pour.step(300)
-        pour.save("p.scree")
-        again = scree.Pour.load("p.scree")
-        pour.step(300)
-        again.step(300)
-        self.assertEqual((pour.world.hash, pour.world.step_count), (again.world.hash, 600))
-        with self.assertRaises(scree.Error):
-            pour.save("p.scree")
-
-    def test_refusals(self):
-        with self.assertRaisesRegex(scree.Error, "too narrow"):
-            self.pour(width=0.05)
-        with self.assertRaisesRegex(TypeError, "particles has no option 'colour'"):
-            scree.Pour([], particles={"colour": 1})
-        with self.assertRaises(ValueError):
-            self.pour(container="bag")
-        with self.assertRaises(scree.Error):
-            scree.Pour([])
-        with self.assertRaises(IndexError):
-            self.pour().shape_of(7)
-
-
-class Experiments(unittest.TestCase):
-    FIELDS = {"particles": 8, "cylinder.diameter": 0.2, "disc.diameter": 0.6, "phases.pack_time": 0.3, "phases.lift_time": 0.2,
-              "phases.settle_time": 0.1, "phases.hold_time": 0.1, "phases.lift_speed": 1, "phases.drop_height": 0.03}
-
-    def experiment(self):
-        return scree.Experiment("demo", self.FIELDS)
-
-    def test_fields(self):
-        e = self.experiment()
-        self.assertEqual((e["particles"], e["cylinder.diameter"], e["phases.inlet"], e["phases.stop_when_still"]), (8, 0.2, "heap", True))
-        e["contact.friction_particle"] = 0.25
-        e["phases.stop_when_still"] = False
-        self.assertEqual((e["contact.friction_particle"], e["phases.stop_when_still"]), (0.25, False))
-        self.assertIn("measure.band_low", e.keys())
-        with self.assertRaises(KeyError):
-            e["nothing"]
-        with self.assertRaisesRegex(scree.Error, "must be"):
-            e["contact.friction_particle"] = -1
-        with open("more.yaml", "w", encoding="utf-8") as file:
-            file.write("particles: 9\n")
-        self.assertEqual(scree.Experiment("small", path="more.yaml")["particles"], 9)
-
-    def test_run(self):
-        scan = scree.sample("fp-1", resolution=4e-3, noise=0)
-        shapes = {"phone": scan.simplify(count=40), "ball": scree.Particle.sphere(0.02)}
-        seen = []
-        with self.assertRaises(scree.Error) as refused:
-            scree.repose(shapes, self.experiment(), folder="heap", progress=lambda phase, fraction: seen.append(fraction) or False)
-        self.assertEqual(refused.exception.status, "CANCELLED")
-        with self.assertRaises(ZeroDivisionError):
-            scree.repose(shapes, self.experiment(), folder="heap", resume=True, progress=lambda phase, fraction: 1 / 0)
-        run = scree.repose(shapes, self.experiment(), folder="heap", resume=True)
-        whole = scree.repose(shapes, self.experiment())
-        self.assertEqual((run.phase, run.world.hash), ("done", whole.world.hash))
-        self.assertEqual(run.costs().piece_count, 3)
-        self.assertEqual([name for name, _ in run.shapes()], ["phone", "ball"])
-        self.assertEqual(sorted(run.body_shapes()), [0] * 4 + [1] * 4)
-        motion = scree.Motion("heap")
-        self.assertEqual((len(motion), motion.body_count), (len(motion.time), 8))
-        self.assertEqual(motion.time[len(motion) - 1], run.world.time)
-        last = motion.poses[len(motion) - 1]
-        for body in run.world.live():
-            for k in range(3):
-                self.assertAlmostEqual(last[body][k], run.world.body(body).position[k], 6)
-        run.write_json("heap/result.json")
-        scree.report("heap", "heap.html")
-        self.assertGreater(os.path.getsize("heap.html"), 600000)
-        self.assertEqual(scree.Run("heap/last.scree").series()[-1].time, run.series()[-1].time)
-        with self.assertRaises(scree.Error):
-            scree.Motion("heap/last.scree")
-        with self.assertRaises(scree.Error):
-            scree.repose([], self.experiment())
 
 
 class Calibrations(unittest.TestCase):
@@ -536,9 +412,12 @@ output: {series: 0.05}
     def test_refusals(self):
         with self.assertRaisesRegex(scree.Error, "did you mean 'count'"):
             scree.Scene("scene.yaml", {"inlets.i.cuont": 12})
-        with self.assertRaisesRegex(ValueError, "no template 'silo'; there are hopper, drum"):
+        with self.assertRaisesRegex(scree.Error, "no template 'silo'; there are hopper, drum"):
             scree.Scene.template("silo")
-        self.assertIn("time:", scree.Scene.template("drum"))
+        self.assertIn("time:", scree.Scene.templates()["drum"])
+        scene = scree.Scene("scene.yaml")
+        with self.assertRaisesRegex(ValueError, "a number of steps is -1"):
+            scene.step(-1)
 
         def stop(scene):
             raise KeyError("enough")
@@ -551,6 +430,74 @@ output: {series: 0.05}
         scene.every(0.01, stop)
         with self.assertRaisesRegex(KeyError, "enough"):
             scene.run()
+
+
+class Templates(unittest.TestCase):
+    REPOSE = {"particles": 8, "cylinder.diameter": 0.2, "disc.diameter": 0.6, "phases.pack_time": 0.3, "phases.lift_time": 0.2,
+              "phases.settle_time": 0.1, "phases.hold_time": 0.1, "phases.lift_speed": 1, "phases.drop_height": 0.03,
+              "preset": "demo"}
+
+    def repose(self, **fields):
+        scan = scree.sample("fp-1", resolution=4e-3, noise=0)
+        shapes = {"phone": scan.simplify(count=40), "ball": scree.Particle.sphere(0.02)}
+        return scree.Scene.template("repose", shapes, {**self.REPOSE, **fields})
+
+    def test_a_heap_in_a_folder(self):
+        seen = []
+        with self.assertRaises(scree.Error) as refused:
+            self.repose().complete("heap", progress=lambda phase, fraction: seen.append((phase, fraction)) or False)
+        self.assertEqual((refused.exception.status, seen[0][0]), ("CANCELLED", "pack"))
+        with self.assertRaises(ZeroDivisionError):
+            self.repose().complete("heap", resume=True, progress=lambda phase, fraction: 1 / 0)
+        scene = self.repose().complete("heap", resume=True)
+        whole = self.repose().run()
+        self.assertEqual((scene.end, scene.world.hash), (whole.end, whole.world.hash))
+        self.assertEqual(scene.costs().piece_count, 3)
+        self.assertEqual((scene.shapes, scene.phase), (["phone", "ball"], None))
+        self.assertEqual(sorted(scene.bodies().shape), [0] * 4 + [1] * 4)
+        motion, walls = scree.Motion("heap"), len(scene.geometry)
+        self.assertEqual((len(motion), motion.body_count), (len(motion.time), walls + 8))
+        self.assertEqual(motion.time[len(motion) - 1], scene.time)
+        last = motion.poses[len(motion) - 1]
+        for body in scene.world.live():
+            for k in range(3):
+                self.assertAlmostEqual(last[walls + body][k], scene.world.body(body).position[k], 6)
+        heap = scene.piles()["heap"]
+        self.assertFalse(heap.repose.heap)
+        self.assertTrue(scene.piles(cell=0.005)["heap"].repose.peak > 0)
+        with self.assertRaisesRegex(TypeError, "a pile has no option 'colour'"):
+            scene.piles(colour=1)
+        scree.report("heap", "heap.html")
+        self.assertGreater(os.path.getsize("heap.html"), 600000)
+        frame = scree.Scene.load("heap/last.scree")
+        self.assertEqual((frame.is_frame, frame.time, frame.piles()["heap"].body_count), (True, scene.time, heap.body_count))
+        with self.assertRaises(scree.Error):
+            scree.Motion("heap/last.scree")
+        with self.assertRaisesRegex(ValueError, "has no beginning"):
+            frame.complete()
+
+    def test_a_drop(self):
+        box, ball = scree.load("sample:box-12"), scree.Particle.sphere(0.03)
+        fields = {"particles": 7, "width": 0.4, "depth": 0.3, "seed": 5, "density": 1000, "contact.stiffness_factor": 0.01}
+        scene = scree.Scene.template("drop-box", {"box": (box, 3), "ball": (ball, 4)}, fields)
+        scene.complete()
+        self.assertEqual((len(scene.world), list(scene.bodies().shape).count(1)), (7, 4))
+        self.assertLess(abs(scene.book().ledger), 0.01)
+        for x, y, z in scene.world.positions():
+            self.assertTrue(abs(x) < 0.2 and abs(y) < 0.15 and z > 0)
+        world = scene.world
+        del scene  # its world keeps it
+        gc.collect()
+        self.assertEqual(len(world), 7)
+
+    def test_refusals(self):
+        ball = scree.Particle.sphere(0.03)
+        with self.assertRaisesRegex(scree.Error, "too narrow"):
+            scree.Scene.template("drop", {"ball": ball}, {"width": 0.05})
+        with self.assertRaisesRegex(ValueError, "'a.b'"):
+            scree.Scene.template("drop", {"a.b": ball})
+        with self.assertRaisesRegex(scree.Error, "no preset 'huge'"):
+            self.repose(preset="huge")
 
 
 if __name__ == "__main__":

@@ -325,18 +325,18 @@ def a_heap(browser, folder):
         result = json.load(file)
     ready(browser, page)
     text = browser.text("main")
-    for part in ("A heap of 24 particles of 2 shapes", "fp-1", "Kinetic energy against time",
-                 "Rotational velocity against time", "How this was made", "--particles 24"):
+    for part in ("24 particles came in", "fp-1", "Energy of motion",
+                 "Rotational velocity", "How this was made", "--particles 24"):
         check(part in text, f"the heap does not say: {part}")
-    angles = any(angle is not None for angle in result["series"]["sector_deg"])  # so few give none
-    check(("Angle against time" in text) == angles, "angles are drawn where there are some, and only there")
+    angles = next(column["values"] for column in result["columns"] if column["name"] == "heap.sector_deg")
+    check(("heap: sector deg" in text) == any(angles), "angles are drawn where there are some, and only there")  # so few give none
     end, count = float(browser.run("return document.body.dataset.shownTime")), int(browser.run("return document.body.dataset.shownBodies"))
-    check(abs(end - result["result"]["time"]) < 1e-9 and count == result["result"]["body_count"], "the page does not begin at the end")
+    check(abs(end - result["time"]) < 1e-9 and count == result["book"]["inside_count"], "the page does not begin at the end")
     last = painted(browser, 0)
-    check(last["covered"] > 100 and last["colors"] > 5, f"no heap to be seen: {last}")
+    check(last["covered"] > 40 and last["colors"] > 5, f"no heap to be seen: {last}")
     check(browser.run("return document.querySelectorAll('body > img').length") == 0, "the picture is shown beside the 3D view")
     start = seek(browser, 0)
-    check(start[0] == 0 and start[1] < count and "filling" in browser.text(".level-text"), f"the slider does not go to the start: {start}")
+    check(start[0] == 0 and start[1] < count and "inside" in browser.text(".level-text"), f"the slider does not go to the start: {start}")
     redrawn(browser, 0, last, "the slider does not change the view")
     before = -1
     for moment in range(0, int(browser.run("return document.querySelector('.time').max")) + 1, 20):
@@ -384,7 +384,7 @@ def a_heap(browser, folder):
     scree("repose", "sample:fp-1", "--resolution", "3mm", "-r", "1e-2", "--spheres", "--particles", "8", "--pack-time", "0.2",
           "--settle-time", "0.1", "--lift-time", "0.3", "--hold-time", "0.1", "--drop-height", "0.05", "--no-picture", "-o", "levels", folder=folder)
     ready(browser, os.path.join(folder, "levels", "report.html"))
-    check(browser.text("main").count("Angle against time") <= 2 and browser.text("main").count("How this was made") == 2, "a page of two levels lacks one")
+    check(browser.text("main").count("How this was made") == 2, "a page of two levels lacks one")
     return page
 
 
@@ -392,24 +392,24 @@ def a_pour(browser, folder):
     scree("drop", "sample:fp-1=5", "sphere:30mm=4", "--resolution", "3mm", "-n", "60", "--container", "box", "-w", "230mm", "--time", "0.3",
           "--frames", "0", "-o", "pour", folder=folder)
     page = os.path.join(folder, "pour", "report.html")
-    with open(os.path.join(folder, "pour", "drop.json"), encoding="utf-8") as file:
+    with open(os.path.join(folder, "pour", "result.json"), encoding="utf-8") as file:
         pour = json.load(file)
     with open(os.path.join(folder, "pour", "series.csv"), encoding="utf-8") as file:
-        check(len(file.readlines()) == 2 + len(pour["series"]["time"]), "drop.json has other moments than series.csv")
+        check(len(file.readlines()) == 2 + len(pour["columns"][0]["values"]), "result.json has other moments than series.csv")
     ready(browser, page)
     text = browser.text("main")
-    for part in ("9 particles of 2 shapes poured into a box of 230 × 230 mm", "sphere:30mm", "Where the energy went",
-                 "Energy of motion against time", "How this was made", "--container box"):
+    for part in ("drop into a box", "9 particles came in", "sphere:30mm",
+                 "Energy of motion", "How this was made", "--container box"):
         check(part in text, f"the pour does not say: {part}")
     end = float(browser.run("return document.body.dataset.shownTime"))
-    check(abs(end - pour["result"]["time"]) < 1e-9, "the page does not begin at the end")
+    check(abs(end - pour["time"]) < 1e-9, "the page does not begin at the end")
     check(int(browser.run("return document.body.dataset.shownBodies")) == 9, "a particle is missing")
     last = painted(browser, 0)
     check(last["covered"] > 300 and last["colors"] > 5, f"no pour to be seen: {last}")
     start = seek(browser, 0)
     check(start[0] == 0 and start[1] < 9, f"the slider does not go to the start: {start}")
     redrawn(browser, 0, last, "the slider does not change the view")
-    check(browser.run("return document.querySelectorAll('.uplot canvas').length") == 4, "a curve is missing")
+    check(browser.run("return document.querySelectorAll('.uplot canvas').length") == 3, "a curve is missing")
     no_complaints(browser, "a pour")
     pictures(browser, "pour")
     pictures(browser, "pour-phone", width=390, height=844)
@@ -522,9 +522,9 @@ def what_is_missing_is_said(page, heap, pour):
         browser.open(page)
         check("Use " in browser.text("body"), "nothing is said where JavaScript is off")
         browser.open(heap)
-        check("24 particles of 2 shapes" in browser.text("body"), "nothing is said of a heap where JavaScript is off")
+        check("24 came in" in browser.text("body"), "nothing is said of a heap where JavaScript is off")
         browser.open(pour)
-        check("touching pairs" in browser.text("body"), "nothing is said of a pour where JavaScript is off")
+        check("touching neighbours" in browser.text("body"), "nothing is said of a pour where JavaScript is off")
 
 
 def main():

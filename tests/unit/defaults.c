@@ -59,26 +59,18 @@ static void a_pile(void **state) {
   (void)state;
   scree_error error;
   scree_mesh mesh = sphere();
-  scree_grain grain;
   scree_particle *particle;
-  scree_pour *pour;
   scree_world *world;
   scree_height_field field;
   scree_repose repose;
-  CHECK_OK(scree_grain_make(&mesh, NULL, NULL, NULL, &grain, &error), error);
-  assert_int_equal(grain.triangle_count, mesh.triangle_count);
   CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &particle, &error), error);
-  scree_pour_shape shape = {.particle = particle, .count = 2};
-  CHECK_OK(scree_pour_create(&shape, 1, NULL, &pour, &error), error);
   CHECK_OK(scree_world_create(NULL, &world, &error), error);
   CHECK_OK(scree_height_field_create(0, 0, 0.1, 0.01, &field, &error), error);
   CHECK_OK(scree_repose_measure(&field, NULL, &repose, &error), error);
   assert_false(repose.heap);
   scree_height_field_free(&field);
   scree_world_free(world);
-  scree_pour_free(pour);
   scree_particle_free(particle);
-  scree_grain_free(&grain);
   scree_mesh_free(&mesh);
 }
 
@@ -107,14 +99,12 @@ static void failures(void **state) {
   scree_check check;
   scree_curve *curve;
   scree_particle *particle;
-  scree_pour *pour;
   scree_world *world;
   assert_int_equal(scree_scan_read(in_folder("missing"), NULL, &scan, NULL), SCREE_IO);
   assert_int_equal(scree_scan_parse("solid", 5, "x", NULL, &scan, NULL), SCREE_BAD_FILE);
   assert_int_equal(scree_mesh_repair(&none, NULL, NULL, &made, NULL, NULL), SCREE_BAD_MESH);
   assert_int_equal(scree_curve_build(&none, NULL, NULL, &curve, NULL), SCREE_BAD_MESH);
   assert_int_equal(scree_particle_from_mesh(&none, NULL, &particle, NULL), SCREE_BAD_MESH);
-  assert_int_equal(scree_pour_create(NULL, 0, NULL, &pour, NULL), SCREE_BAD_ARGUMENT);
   assert_int_equal(scree_world_load(in_folder("missing"), &world, NULL), SCREE_IO);
   assert_int_equal(scree_sample_make("nonsense", NULL, NULL, &made, NULL), SCREE_BAD_ARGUMENT);
   assert_int_equal(scree_mesh_check(&none, NULL, NULL, &check, NULL), SCREE_OK);

@@ -2,6 +2,7 @@
  * bytes, and what is read the same numbers. The locale is made for the test where none is
  * installed. */
 #define _XOPEN_SOURCE 700 /* setenv */
+#include "base/alloc.h"
 #include "base/file.h"
 #include "support/check.h"
 #include "support/folder.h"
@@ -29,24 +30,26 @@ static bool set_comma(void) {
   return !strcmp(text, "0,5");
 }
 
-static void write_experiment(const char *prefix) {
-  scree_experiment experiment = {0}, again = {0};
+static void write_scene(const char *prefix) {
+  scree_scene_file *file, *again;
   scree_error error;
-  char value[64];
-  CHECK_OK(scree_experiment_preset("paper", &experiment, &error), error);
-  CHECK_OK(scree_experiment_set(&experiment, "contact.friction_particle", "0.25", &error), error);
-  assert_true(experiment.friction_particle == 0.25);
-  assert_true(scree_experiment_get(&experiment, "contact.friction_particle", value, sizeof value));
-  assert_string_equal(value, "0.25");
-  FILE *stream = fopen(path_of(prefix, "experiment.yaml"), "w");
+  char *text;
+  size_t size;
+  CHECK_OK(scree_scene_file_template("repose", &file, &error), error);
+  CHECK_OK(scree_scene_file_set(file, "contact.friction_particle", "0.25", &error), error);
+  CHECK_OK(scree_scene_file_set(file, "gravity", "1.62", &error), error);
+  FILE *stream = fopen(path_of(prefix, "scene.yaml"), "w");
   assert_non_null(stream);
-  scree_experiment_print(&experiment, stream);
+  CHECK_OK(scree_scene_file_print(file, stream, &error), error);
   fclose(stream);
-  CHECK_OK(scree_experiment_preset("demo", &again, &error), error);
-  CHECK_OK(scree_experiment_read(path_of(prefix, "experiment.yaml"), &again, &error), error);
-  assert_true(again.friction_particle == 0.25 && again.lift_speed == experiment.lift_speed);
-  scree_experiment_free(&experiment);
-  scree_experiment_free(&again);
+  CHECK_OK(scree_file_read(path_of(prefix, "scene.yaml"), 0, &text, &size, &error), error);
+  assert_non_null(strstr(text, "friction: 0.25"));
+  assert_non_null(strstr(text, "-1.62"));
+  scree_free(text);
+  CHECK_OK(scree_scene_file_read(path_of(prefix, "scene.yaml"), &again, &error), error);
+  CHECK_OK(scree_scene_file_check(again, &error), error);
+  scree_scene_file_free(file);
+  scree_scene_file_free(again);
 }
 
 static void write_tables(const char *prefix, const scree_mesh *ball) {
@@ -121,16 +124,15 @@ static void expect_same(const char *name) {
 static void write_all(const char *prefix, const scree_mesh *ball) {
   scree_error error;
   CHECK_OK(scree_folder_create(path_of(prefix, ""), &error), error);
-  write_experiment(prefix);
+  write_scene(prefix);
   write_tables(prefix, ball);
   write_choice(prefix, ball);
   write_study(prefix);
 }
 
 static void commas_change_nothing(void **state) {
-  static const char *const names[] = {"experiment.yaml", "m.json", "m.csv", "a.vtp", "a.pvd",
-                                      "a.off",           "c.json", "f.csv", "key",   "label",
-                                      "f.gnuplot"};
+  static const char *const names[] = {"scene.yaml", "m.json", "m.csv", "a.vtp", "a.pvd",    "a.off",
+                                      "c.json",     "f.csv",  "key",   "label", "f.gnuplot"};
   (void)state;
   scree_mesh ball = shape_icosphere(0.0123, 3);
   write_all("plain", &ball);

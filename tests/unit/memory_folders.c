@@ -6,6 +6,7 @@
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/folder.h"
+#include "support/pot.h"
 #include "support/shapes.h"
 
 /* ---- Texts, folders, pages ---- */
@@ -66,27 +67,7 @@ static void pages(void **state) {
   scree_mesh_free(&ball);
 }
 
-/* ---- Shapes and worlds ---- */
-
-static scree_status make_grains(void *context, scree_error *error) {
-  scree_grain_options level = scree_default_grain_options(), sphere = level;
-  scree_grain grains[2] = {{.volume = 0}};
-  level.rp = 0.3;
-  level.mass_rule = SCREE_MASS_FROM_SCAN;
-  sphere.sphere = true;
-  scree_status status = scree_grain_make(context, NULL, &level, NULL, &grains[0], error);
-  if (status == SCREE_OK)
-    status = scree_grain_make(context, NULL, &sphere, NULL, &grains[1], error);
-  for (int i = 0; i < 2; i++) scree_grain_free(&grains[i]);
-  return status;
-}
-
-static void grains(void **state) {
-  (void)state;
-  scree_mesh ball = shape_icosphere(0.02, 2);
-  check_allocation_failures(make_grains, &ball);
-  scree_mesh_free(&ball);
-}
+/* ---- Worlds and scenes ---- */
 
 static scree_status export_world(void *context, scree_error *error) {
   scree_export_options options = scree_default_export_options();
@@ -104,33 +85,28 @@ static scree_status draw_world(void *context, scree_error *error) {
   return status;
 }
 
-static scree_status draw_run(void *context, scree_error *error) {
+static scree_status draw_scene(void *context, scree_error *error) {
   scree_render_options options = scree_default_render_options();
   scree_image image = {0};
   options.width = options.height = 64;
   options.samples = 1;
-  scree_status status = scree_run_picture(context, &options, NULL, &image, error);
+  scree_status status = scree_scene_pile_picture(context, &options, NULL, &image, error);
   scree_image_free(&image);
   return status;
 }
 
-static void runs(void **state) {
+static void scenes(void **state) {
   (void)state;
-  scree_run_shape shape = {.density_factor = 1};
-  scree_experiment experiment;
-  scree_run *run = NULL;
+  const scree_poured ball = {"ball", "sphere", "0.04", 1};
+  scree_scene_file *file = pot_file("4", &ball, 1);
   scree_error error;
-  CHECK_OK(scree_particle_sphere(0.02, &shape.particle, &error), error);
-  CHECK_OK(scree_experiment_preset("demo", &experiment, &error), error);
-  experiment.particle_count = 4;
-  experiment.pack_time = 0.1;
-  CHECK_OK(scree_run_create(&experiment, &shape, 1, &run, &error), error);
-  CHECK_OK(scree_run_advance(run, 500, &error), error);
-  scree_status status = draw_run(run, &error);
-  if (status != SCREE_UNSUPPORTED) check_allocation_failures(draw_run, run);
-  scree_run_free(run);
-  scree_experiment_free(&experiment);
-  scree_particle_free(shape.particle);
+  set_field(file, "cylinder.diameter", "0.2");
+  scree_scene *scene = pot_scene(file);
+  CHECK_OK(scree_scene_advance(scene, 500, &error), error);
+  scree_status status = draw_scene(scene, &error);
+  if (status != SCREE_UNSUPPORTED) check_allocation_failures(draw_scene, scene);
+  scree_scene_free(scene);
+  scree_scene_file_free(file);
   if (status == SCREE_UNSUPPORTED) skip();
 }
 
@@ -174,8 +150,10 @@ static void worlds(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(texts),  cmocka_unit_test(pages), cmocka_unit_test(grains),
-      cmocka_unit_test(worlds), cmocka_unit_test(runs),
+      cmocka_unit_test(texts),
+      cmocka_unit_test(pages),
+      cmocka_unit_test(worlds),
+      cmocka_unit_test(scenes),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,4 +1,4 @@
-/* Memory running out in experiments, runs on disk and studies: every public call refuses with a
+/* Memory running out in scenes of templates and studies: every public call refuses with a
  * sentence and leaks nothing; a study goes on afterwards. tests/allocations.sh keeps the list. */
 #include "support/alloc_fail.h"
 #include "support/check.h"
@@ -20,111 +20,78 @@ static void delete_all(const char *name) {
   assert_int_equal(system(command), 0);
 }
 
-/* ---- experiments ---- */
-
 static const char pot[] = "particles: 4\nmeasure: {cell: 0.004}\n"
                           "cylinder: {diameter: 0.08}\ndisc: {diameter: 0.2}\n"
                           "phases: {pack_time: 0.02, settle_time: 0.002, lift_speed: 1,\n"
                           "         lift_time: 0.002, hold_time: 0.002, drop_height: 0.01}\n"
                           "contact: {young_particle: 1e6}\noutput: {frame_interval: 0.01}\n";
 
-static scree_status make_experiment(void *context, scree_error *error) {
+/* ---- scenes of templates ---- */
+
+static scree_status change_template(void *context, scree_error *error) {
+  const scree_poured ball = {"ball", "sphere", "0.02", 1};
+  scree_scene_file *file = NULL, *over = NULL;
   (void)context;
-  scree_experiment made = {0}, copy = {0};
-  scree_status status = scree_experiment_preset("paper", &made, error);
-  if (status == SCREE_OK) status = scree_experiment_parse(pot, sizeof pot - 1, "pot", &made, error);
-  if (status == SCREE_OK) status = scree_experiment_check(&made, error);
-  if (status == SCREE_OK) status = scree_experiment_copy(&made, &copy, error);
-  scree_experiment_free(&copy);
-  scree_experiment_free(&made);
+  scree_status status = scree_scene_file_template("repose", &file, error);
+  if (status == SCREE_OK) status = scree_scene_file_pour(file, &ball, 1, error);
+  if (status == SCREE_OK) status = scree_scene_file_try(file, "particles", "4", error);
+  if (status == SCREE_OK)
+    status = scree_scene_file_read_over(in_folder("pot.yaml"), "repose", NULL, &over, error);
+  scree_scene_file_free(over);
+  scree_scene_file_free(file);
   return status;
 }
 
-static void experiments(void **state) {
+static scree_status run_template(void *context, scree_error *error) {
+  scree_scene_file *file = context;
+  scree_shape_store *store = NULL;
+  scree_scene *scene = NULL;
+  scree_pile pile;
+  double diameter;
+  scree_status status = scree_shape_store_create(&store, error);
+  if (status == SCREE_OK) status = scree_scene_file_largest(file, store, NULL, &diameter, error);
+  if (status == SCREE_OK) status = scree_scene_create_from(file, store, NULL, &scene, error);
+  if (status == SCREE_OK) status = scree_scene_measure_pile(scene, 0, NULL, &pile, error);
+  if (status == SCREE_OK)
+    status = scree_scene_save_frame(scene, in_folder("frame.scree"), true, error);
+  if (status == SCREE_OK) status = scree_scene_csv_write(scene, in_folder("csv"), true, error);
+  scree_scene_free(scene);
+  scree_shape_store_free(store);
+  return status;
+}
+
+static scree_status make_level(void *context, scree_error *error) {
+  scree_shape_spec spec = scree_default_shape_spec();
+  scree_shape_made made = {0}, again = {0};
+  scree_shape_store *store = NULL;
+  (void)context;
+  spec.sample = "icosphere-1";
+  spec.level = "0.5";
+  scree_status status = scree_shape_make(&spec, NULL, NULL, &made, error);
+  if (status == SCREE_OK) status = scree_shape_store_create(&store, error);
+  if (status == SCREE_OK) status = scree_shape_store_give(store, "own", made.particle, error);
+  spec = scree_default_shape_spec();
+  spec.file = "own";
+  if (status == SCREE_OK) status = scree_shape_make(&spec, store, NULL, &again, error);
+  assert_ptr_equal(again.particle, status == SCREE_OK ? made.particle : NULL);
+  scree_particle_free(again.particle);
+  scree_particle_free(made.particle);
+  scree_shape_store_free(store);
+  return status;
+}
+
+static void templates(void **state) {
   (void)state;
-  check_allocation_failures(make_experiment, NULL);
-}
-
-/* ---- runs on disk ---- */
-
-typedef struct setting {
-  scree_experiment experiment;
-  scree_run_shape shape;
-  scree_run *run;
-  scree_run_result result;
-} setting;
-
-static scree_status complete(void *context, scree_error *error) {
-  setting *s = context;
-  scree_run *run = NULL;
-  scree_run_job job = {.experiment = &s->experiment,
-                       .shapes = &s->shape,
-                       .shape_count = 1,
-                       .folder = in_folder("run"),
-                       .overwrite = true};
-  scree_status status = scree_run_complete(&job, &run, error);
-  if (status == SCREE_OK) scree_run_free(run);
-  return status;
-}
-
-static scree_status save(void *context, scree_error *error) {
-  const setting *s = context;
-  scree_status status = scree_run_save(s->run, in_folder("saved"), true, error);
-  if (status == SCREE_OK) status = scree_run_save_frame(s->run, in_folder("frame"), true, error);
-  return status;
-}
-
-static scree_status load(void *context, scree_error *error) {
-  const setting *s = context;
-  scree_run *run = NULL;
-  scree_run_result result;
-  scree_status status = scree_run_load(in_folder("saved"), &run, error);
-  if (status == SCREE_OK) status = scree_run_measure_with(run, &s->experiment, &result, error);
-  scree_run_free(run);
-  return status;
-}
-
-static scree_status write_run(void *context, scree_error *error) {
-  setting *s = context;
-  scree_heap_entry entry = {.run = s->run, .result = &s->result};
-  scree_status status = scree_heap_json_write(&entry, in_folder("json"), true, error);
-  if (status == SCREE_OK) status = scree_series_csv_write(s->run, in_folder("csv"), true, error);
-  return status;
-}
-
-static void runs(void **state) {
-  (void)state;
-  setting s = {.shape = {.density_factor = 1, .name = "ball", .source = "none"}};
+  scree_scene_file *file;
   scree_error error;
-  CHECK_OK(scree_experiment_preset("paper", &s.experiment, &error), error);
-  CHECK_OK(scree_experiment_parse(pot, sizeof pot - 1, "pot", &s.experiment, &error), error);
-  CHECK_OK(scree_particle_sphere(0.01, &s.shape.particle, &error), error);
-  check_allocation_failures(complete, &s);
-  CHECK_OK(scree_run_create(&s.experiment, &s.shape, 1, &s.run, &error), error);
-  CHECK_OK(scree_run_advance(s.run, 100, &error), error);
-  CHECK_OK(scree_run_measure(s.run, &s.result, &error), error);
-  check_allocation_failures(save, &s);
-  check_allocation_failures(load, &s);
-  check_allocation_failures(write_run, &s);
-  scree_run_free(s.run);
-  scree_particle_free(s.shape.particle);
-  scree_experiment_free(&s.experiment);
-}
-
-static scree_status make_grains(void *context, scree_error *error) {
-  scree_grain grain = {0};
-  scree_grain_options o = scree_default_grain_options();
-  o.rp = 0.5;
-  scree_status status = scree_grain_make(context, NULL, &o, NULL, &grain, error);
-  scree_grain_free(&grain);
-  return status;
-}
-
-static void grains(void **state) {
-  (void)state;
-  scree_mesh ball = shape_icosphere(0.02, 1);
-  check_allocation_failures(make_grains, &ball);
-  scree_mesh_free(&ball);
+  write_text(in_folder("pot.yaml"), pot);
+  check_allocation_failures(change_template, NULL);
+  const scree_poured ball = {"ball", "sphere", "0.02", 1};
+  CHECK_OK(scree_scene_file_read_over(in_folder("pot.yaml"), "repose", NULL, &file, &error), error);
+  CHECK_OK(scree_scene_file_pour(file, &ball, 1, &error), error);
+  check_allocation_failures(run_template, file);
+  scree_scene_file_free(file);
+  check_allocation_failures(make_level, NULL);
 }
 
 /* ---- studies ---- */
@@ -229,9 +196,7 @@ static void studies(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(experiments),
-      cmocka_unit_test(runs),
-      cmocka_unit_test(grains),
+      cmocka_unit_test(templates),
       cmocka_unit_test(studies),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -182,46 +182,7 @@ static void worlds(void **state) {
   scree_mesh_free(&p.plate);
 }
 
-/* ---- Experiments and runs ---- */
-
-static scree_status make_experiment(void *context, scree_error *error) {
-  scree_experiment experiment = {0};
-  scree_status status = scree_experiment_preset("paper", &experiment, error);
-  if (status == SCREE_OK) status = scree_experiment_read(context, &experiment, error);
-  if (status == SCREE_OK) status = scree_experiment_set(&experiment, "particles", "6", error);
-  scree_experiment_free(&experiment);
-  return status;
-}
-
-static void experiments(void **state) {
-  (void)state;
-  FILE *stream = fopen(file, "w");
-  assert_non_null(stream);
-  fputs("preset: small\nparticles: 12\ncylinder: {diameter: 0.25}\nphases:\n  pack_time: 4\n",
-        stream);
-  fclose(stream);
-  check_allocation_failures(make_experiment, file);
-}
-
-static scree_status run_shortly(void *context, scree_error *error) {
-  scree_experiment experiment = {0};
-  scree_run *run = NULL;
-  scree_run_result result;
-  scree_run_shape shape = {.particle = context, .density_factor = 1};
-  scree_status status = scree_experiment_preset("paper", &experiment, error);
-  experiment.particle_count = 8;
-  experiment.cylinder_diameter = 0.08;
-  experiment.disc_diameter = 0.3;
-  experiment.pack_time = 0.1;
-  experiment.settle_time = 0.01;
-  experiment.drop_height = 0.01;
-  if (status == SCREE_OK) status = scree_run_create(&experiment, &shape, 1, &run, error);
-  for (int i = 0; i < 3 && status == SCREE_OK; i++) status = scree_run_advance(run, 300, error);
-  if (status == SCREE_OK) status = scree_run_measure(run, &result, error);
-  scree_run_free(run);
-  scree_experiment_free(&experiment);
-  return status;
-}
+/* ---- heaps ---- */
 
 static scree_status measure_heap(void *context, scree_error *error) {
   (void)context;
@@ -238,14 +199,9 @@ static scree_status measure_heap(void *context, scree_error *error) {
   return status;
 }
 
-static void runs(void **state) {
+static void heaps(void **state) {
   (void)state;
-  scree_error error;
-  scree_particle *ball = NULL;
-  CHECK_OK(scree_particle_sphere(0.01, &ball, &error), error);
-  check_allocation_failures(run_shortly, ball);
   check_allocation_failures(measure_heap, NULL);
-  scree_particle_free(ball);
 }
 
 static scree_status fit(void *context, scree_error *error) {
@@ -278,8 +234,10 @@ static int remove_file(void **state) {
 int main(int argc, char **argv) {
   if (argc > 1) backend = argv[1];
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(particles), cmocka_unit_test(worlds), cmocka_unit_test(experiments),
-      cmocka_unit_test(runs),      cmocka_unit_test(fits),
+      cmocka_unit_test(particles),
+      cmocka_unit_test(worlds),
+      cmocka_unit_test(heaps),
+      cmocka_unit_test(fits),
   };
   return cmocka_run_group_tests(tests, make_file, remove_file);
 }

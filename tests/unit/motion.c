@@ -1,4 +1,4 @@
-/* The motion of a run on disk and in the report's page: against the run stepped beside it, through
+/* The motion of a scene on disk and in the page: against the scene stepped beside it, through
  * interruptions and damage; what the page gets of it against a plain decoder. */
 #include "base/alloc.h"
 #include "base/codec.h"
@@ -7,84 +7,68 @@
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/folder.h"
+#include "support/pot.h"
 
 #include <meshoptimizer.h>
 #include <unistd.h>
 
-/* Six spheres and six chips. */
-typedef struct pot {
-  scree_experiment experiment;
-  scree_run_shape shapes[2];
-} pot;
+enum { WALLS = 2, BODIES = 12 };
 
-static pot make_pot(void) {
-  pot p = {0};
+/* Six spheres and six chips. */
+static scree_scene_file *make_pot(void) {
   scree_error error;
   scree_mesh chip;
   scree_sample_options options = scree_default_sample_options();
-  CHECK_OK(scree_experiment_preset("paper", &p.experiment, &error), error);
-  scree_experiment *e = &p.experiment;
-  e->particle_count = 12;
-  e->cylinder_diameter = 0.08;
-  e->disc_diameter = 0.1; /* some fall off and are taken out */
-  e->pack_time = 0.1;
-  e->settle_time = 0.05;
-  e->lift_speed = 1;
-  e->lift_time = 0.08;
-  e->hold_time = 0.8;
-  e->friction_particle = e->friction_wall = 0.05;
-  e->drop_height = 0.01;
-  e->young_particle = 1e7; /* fewer steps */
+  scree_write_options written = scree_default_write_options();
+  written.overwrite = true;
   options.resolution = 4e-3;
   CHECK_OK(scree_sample_make("icosphere-2", &options, NULL, &chip, &error), error);
   for (size_t i = 0; i < 3 * chip.vertex_count; i++)
     chip.positions[i] *= (i % 3 == 2 ? 0.3 : 1) * 0.012 / 0.05;
-  CHECK_OK(scree_particle_sphere(0.01, &p.shapes[0].particle, &error), error);
-  CHECK_OK(scree_particle_from_mesh(&chip, NULL, &p.shapes[1].particle, &error), error);
+  CHECK_OK(scree_mesh_write(&chip, in_folder("chip.ply"), &written, &error), error);
   scree_mesh_free(&chip);
-  p.shapes[0].density_factor = p.shapes[1].density_factor = 1;
-  p.shapes[1].name = "chip";
-  return p;
+  const scree_poured shapes[] = {{"ball", "sphere", "0.02", 1},
+                                 {"chip", "file", in_folder("chip.ply"), 1}};
+  scree_scene_file *file = pot_file("12", shapes, 2);
+  set_field(file, "disc.diameter", "0.1"); /* some fall off and are taken out */
+  set_field(file, "phases.hold_time", "0.8");
+  set_field(file, "contact.friction", "0.05");
+  return file;
 }
 
-static void free_pot(pot *p) {
-  for (int i = 0; i < 2; i++) scree_particle_free(p->shapes[i].particle);
-  scree_experiment_free(&p->experiment);
-}
-
-static bool count_down(void *context, const scree_run_state *state) {
+static bool count_down(void *context, const scree_scene_state *state) {
   (void)state;
   size_t *left = context;
   return *left == 0 || (*left)-- == 0;
 }
 
-/* The whole run in a folder, cancelled so many times. */
-static void complete(const pot *p, const char *name, size_t cancel_count) {
-  scree_run *run;
+/* The whole scene in a folder, cancelled so many times. */
+static void complete(const scree_scene_file *file, const char *name, size_t cancel_count) {
+  scree_scene *scene = NULL;
   scree_error error;
   scree_status status;
   size_t left = cancel_count, cancelled = 0;
-  scree_run_job job = {.experiment = &p->experiment,
-                       .shapes = p->shapes,
-                       .shape_count = 2,
-                       .folder = in_folder(name),
-                       .motion = true,
-                       .resume = cancel_count > 0,
-                       .overwrite = true,
-                       .watch = count_down,
-                       .context = &left};
-  while ((status = scree_run_complete(&job, &run, &error)) == SCREE_CANCELLED) {
-    char file[80];
+  scree_scene_job job = {.file = file,
+                         .folder = in_folder(name),
+                         .states = true,
+                         .resume = cancel_count > 0,
+                         .overwrite = true,
+                         .watch = count_down,
+                         .context = &left};
+  while ((status = scree_scene_complete(&job, &scene, &error)) == SCREE_CANCELLED) {
+    char path[80];
     cancelled++;
-    snprintf(file, sizeof file, "%s/motion.scree", name);
-    FILE *stream = fopen(in_folder(file), "ab"); /* as if killed while a frame was written */
+    scree_scene_free(scene);
+    scene = NULL;
+    snprintf(path, sizeof path, "%s/motion.scree", name);
+    FILE *stream = fopen(in_folder(path), "ab"); /* as if killed while a frame was written */
     fputs("part of a frame, which is longer than its header alone", stream);
     fclose(stream);
     job.folder = in_folder(name);
   }
   CHECK_OK(status, error);
   assert_int_equal(cancelled, cancel_count);
-  scree_run_free(run);
+  scree_scene_free(scene);
 }
 
 static scree_motion read_motion(const char *name) {
@@ -94,17 +78,22 @@ static scree_motion read_motion(const char *name) {
   return m;
 }
 
-/* Steps the run to a time and compares every body. */
-static size_t check_frame(scree_run *run, const scree_motion *m, size_t frame) {
+/* Steps the scene to a time and compares every wall and body. */
+static size_t check_frame(scree_scene *scene, const scree_motion *m, size_t frame) {
   scree_error error;
-  const scree_world *world = scree_run_view(run);
+  const scree_world *world = scree_scene_view(scene);
   size_t there = 0;
   while (scree_world_time(world) < m->time[frame])
-    CHECK_OK(scree_run_advance(run, 1, &error), error);
+    CHECK_OK(scree_scene_advance(scene, 1, &error), error);
   assert_true(scree_world_time(world) == m->time[frame]);
-  assert_true(scree_run_cylinder_height(run) == m->cylinder_height[frame]);
-  for (size_t b = 0; b < m->body_count; b++) {
-    const float *pose = m->poses + 7 * (frame * m->body_count + b);
+  for (size_t w = 0; w < WALLS; w++) {
+    scree_wall wall;
+    scree_world_get_wall(world, w, &wall);
+    for (int k = 0; k < 3; k++)
+      assert_true(m->poses[7 * (frame * m->body_count + w) + (size_t)k] == (float)wall.position[k]);
+  }
+  for (size_t b = 0; b < BODIES; b++) {
+    const float *pose = m->poses + 7 * (frame * m->body_count + WALLS + b);
     scree_body body;
     bool in = b < scree_world_body_count(world) && !scree_world_body_removed(world, b);
     assert_int_equal(in, !isnan(pose[0]));
@@ -118,39 +107,38 @@ static size_t check_frame(scree_run *run, const scree_motion *m, size_t frame) {
   return there;
 }
 
-static void every_frame_is_the_run_at_its_time(void **state) {
+static void every_frame_is_the_scene_at_its_time(void **state) {
   (void)state;
-  pot p = make_pot();
-  scree_run *run;
+  scree_scene_file *file = make_pot();
   scree_error error;
-  complete(&p, "whole", 0);
+  complete(file, "whole", 0);
   scree_motion m = read_motion("whole/motion.scree");
-  CHECK_OK(scree_run_create(&p.experiment, p.shapes, 2, &run, &error), error);
+  scree_scene *scene = pot_scene(file);
   size_t there = 0, most = 0;
   double interval = (0.1 + 0.05 + 0.08 + 0.8) / 240;
-  assert_int_equal(m.body_count, 12);
+  assert_int_equal(m.body_count, WALLS + BODIES);
   assert_true(m.frame_count > 200 && m.frame_count <= 242);
   for (size_t f = 0; f < m.frame_count; f++) {
     if (f + 1 < m.frame_count) CHECK_NEAR(m.time[f], (double)f * interval, interval);
-    there = check_frame(run, &m, f);
+    there = check_frame(scene, &m, f);
     most = there > most ? there : most;
   }
-  CHECK_OK(scree_run_advance(run, 1, &error), error); /* finds that it is over */
-  assert_int_equal(scree_run_phase(run), SCREE_PHASE_DONE);
-  assert_true(scree_world_time(scree_run_view(run)) == m.time[m.frame_count - 1]);
-  assert_true(most == 12 && there < most); /* some fell off */
+  CHECK_OK(scree_scene_advance(scene, 1, &error), error); /* finds that it is over */
+  assert_non_null(scree_scene_end(scene));
+  assert_true(scree_world_time(scree_scene_view(scene)) == m.time[m.frame_count - 1]);
+  assert_true(most == BODIES && there < most); /* some fell off */
   scree_motion_free(&m);
-  scree_run_free(run);
-  free_pot(&p);
+  scree_scene_free(scene);
+  scree_scene_file_free(file);
 }
 
-static void an_interrupted_run_leaves_the_same_file(void **state) {
+static void an_interrupted_scene_leaves_the_same_file(void **state) {
   (void)state;
-  pot p = make_pot();
+  scree_scene_file *file = make_pot();
   char *whole, *pieces;
   size_t whole_size, pieces_size;
   scree_error error;
-  complete(&p, "pieces", 9);
+  complete(file, "pieces", 9);
   CHECK_OK(scree_file_read(in_folder("whole/motion.scree"), 0, &whole, &whole_size, &error), error);
   CHECK_OK(scree_file_read(in_folder("pieces/motion.scree"), 0, &pieces, &pieces_size, &error),
            error);
@@ -158,7 +146,7 @@ static void an_interrupted_run_leaves_the_same_file(void **state) {
   assert_memory_equal(pieces, whole, whole_size);
   scree_free(whole);
   scree_free(pieces);
-  free_pot(&p);
+  scree_scene_file_free(file);
 }
 
 static void write_bytes(const char *name, const char *bytes, size_t count) {
@@ -206,6 +194,7 @@ typedef struct packed {
   scree_codec in;
   double low[3], step, *times;
   size_t frame_count, body_count, triangle_count[2];
+  double *walls; /* 7 per moment, moments of a wall together */
   uint32_t *shapes;
   uint16_t *tracks; /* 8 per moment, moments of a body together */
 } packed;
@@ -225,36 +214,38 @@ static void *vertices(packed *f, size_t count, size_t size) {
   return out;
 }
 
-static void skip_shape(packed *f, size_t shape) {
+/* Its triangles in the shape itself. */
+static size_t skip_surface(packed *f) {
   f->in.position += u32(f) + 4 + 32; /* its name, count and grid */
-  uint32_t vertex_count = u32(f);
-  f->triangle_count[shape] = u32(f);
+  uint32_t vertex_count = u32(f), triangle_count = u32(f);
   free(vertices(f, vertex_count, 8));
   f->in.position += u32(f);
+  return triangle_count;
 }
 
 static packed pack(const char *name, size_t limit) {
   packed f = {0};
   scree_error error;
-  double sizes[4];
   char file[80];
   snprintf(file, sizeof file, "%s/last.scree", name);
   CHECK_OK(scree_pile_pack(in_folder(file), limit, &f.bytes, &f.size, &error), error);
   f.in = (scree_codec){.source = f.bytes, .count = f.size, .loading = true};
-  scree_code_reals(&f.in, sizes, 4);
-  CHECK_NEAR(sizes[0], 0.05, 1e-12);
-  CHECK_NEAR(sizes[1], 0.04, 1e-12);
-  assert_true(sizes[2] == 0 && sizes[3] == 0);
-  assert_int_equal(u32(&f), 0); /* walls, which only scenes have */
+  assert_int_equal(u32(&f), WALLS);
+  for (size_t i = 0; i < WALLS; i++) {
+    (void)u32(&f); /* whether it is endless */
+    (void)skip_surface(&f);
+  }
   assert_int_equal(u32(&f), 2);
-  for (size_t i = 0; i < 2; i++) skip_shape(&f, i);
+  for (size_t i = 0; i < 2; i++) f.triangle_count[i] = skip_surface(&f);
   f.body_count = u32(&f);
   f.shapes = vertices(&f, f.body_count, 4);
   scree_code_reals(&f.in, f.low, 3);
   scree_code_real(&f.in, &f.step);
   f.frame_count = u32(&f);
-  f.times = calloc(2 * f.frame_count, sizeof *f.times);
-  scree_code_reals(&f.in, f.times, 2 * f.frame_count);
+  f.times = calloc(f.frame_count, sizeof *f.times);
+  scree_code_reals(&f.in, f.times, f.frame_count);
+  f.walls = calloc(WALLS * f.frame_count, 7 * sizeof *f.walls);
+  scree_code_reals(&f.in, f.walls, WALLS * f.frame_count * 7);
   f.tracks = vertices(&f, f.frame_count * f.body_count, 16);
   assert_false(f.in.failed);
   assert_int_equal(f.in.position, f.in.count);
@@ -264,6 +255,7 @@ static packed pack(const char *name, size_t limit) {
 static void free_packed(packed *f) {
   scree_free(f->bytes);
   free(f->times);
+  free(f->walls);
   free(f->shapes);
   free(f->tracks);
 }
@@ -273,10 +265,12 @@ static void check_packed(const packed *f, const scree_motion *m) {
   for (size_t k = 0; k < f->frame_count; k++) {
     while (frame < m->frame_count && m->time[frame] != f->times[k]) frame++;
     assert_true(frame < m->frame_count);
-    assert_true(f->times[f->frame_count + k] == m->cylinder_height[frame]);
+    for (size_t i = 0; i < 7 * WALLS; i++)
+      assert_true(f->walls[7 * (i / 7 * f->frame_count + k) + i % 7] ==
+                  (double)m->poses[7 * frame * m->body_count + i]);
     for (size_t b = 0; b < f->body_count; b++) {
       const uint16_t *moment = f->tracks + 8 * (b * f->frame_count + k);
-      const float *pose = m->poses + 7 * (frame * m->body_count + b);
+      const float *pose = m->poses + 7 * (frame * m->body_count + WALLS + b);
       assert_int_equal(moment[3], !isnan(pose[0]));
       double sign = 0;
       for (int i = 0; i < 4; i++) sign += (double)pose[3 + i] * (int16_t)moment[4 + i];
@@ -293,12 +287,12 @@ static void check_packed(const packed *f, const scree_motion *m) {
 static void the_page_gets_every_frame_or_those_that_fit(void **state) {
   (void)state;
   scree_motion m = read_motion("whole/motion.scree");
-  packed all = pack("whole", 1 << 20), some = pack("whole", 12000), one = pack("whole", 1);
+  packed all = pack("whole", 1 << 20), some = pack("whole", 24000), one = pack("whole", 1);
   assert_int_equal(all.frame_count, m.frame_count);
   assert_int_equal(all.triangle_count[0], 320); /* the sphere */
   assert_int_equal(all.triangle_count[1], 320);
   check_packed(&all, &m);
-  assert_true(some.size <= 12000 && some.frame_count < all.frame_count && some.frame_count > 20);
+  assert_true(some.size <= 24000 && some.frame_count < all.frame_count && some.frame_count > 20);
   check_packed(&some, &m);
   assert_int_equal(one.frame_count, 2);
   check_packed(&one, &m);
@@ -309,12 +303,12 @@ static void the_page_gets_every_frame_or_those_that_fit(void **state) {
   scree_motion_free(&m);
 }
 
-/* A motion that another run left: its last frame is not that of last.scree. */
-static void a_motion_of_another_run_is_not_shown(void **state) {
+/* A motion that another scene left: its last frame is not that of last.scree. */
+static void a_motion_of_another_scene_is_not_shown(void **state) {
   (void)state;
-  pot p = make_pot();
-  p.experiment.seed = 2;
-  complete(&p, "other", 0);
+  scree_scene_file *file = make_pot();
+  set_field(file, "seed", "2");
+  complete(file, "other", 0);
   const char *from = in_folder("whole/motion.scree"), *to = in_folder("other/motion.scree");
   packed own = pack("other", 1 << 20);
   assert_true(own.frame_count > 200);
@@ -327,7 +321,7 @@ static void a_motion_of_another_run_is_not_shown(void **state) {
   free_packed(&own);
   free_packed(&mixed);
   free_packed(&still);
-  free_pot(&p);
+  scree_scene_file_free(file);
 }
 
 static scree_status read_again(void *context, scree_error *error) {
@@ -353,11 +347,11 @@ static void out_of_memory_is_told(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_frame_is_the_run_at_its_time),
-      cmocka_unit_test(an_interrupted_run_leaves_the_same_file),
+      cmocka_unit_test(every_frame_is_the_scene_at_its_time),
+      cmocka_unit_test(an_interrupted_scene_leaves_the_same_file),
       cmocka_unit_test(what_is_cut_or_damaged_ends_the_motion),
       cmocka_unit_test(the_page_gets_every_frame_or_those_that_fit),
-      cmocka_unit_test(a_motion_of_another_run_is_not_shown),
+      cmocka_unit_test(a_motion_of_another_scene_is_not_shown),
       cmocka_unit_test(out_of_memory_is_told),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);

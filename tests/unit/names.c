@@ -43,35 +43,13 @@ static void statuses(void **state) {
   assert_string_equal(scree_status_text(SCREE_STATUS_COUNT), "unknown status");
 }
 
-static void experiments(void **state) {
-  (void)state;
-  scree_experiment e;
-  scree_error error;
-  char value[64];
-  size_t count = 0;
-  CHECK_OK(scree_experiment_preset("paper", &e, &error), error);
-  for (const char *key; (key = scree_experiment_key(count)); count++) {
-    assert_non_null(scree_experiment_unit(key));
-    assert_true(*scree_experiment_comment(key));
-    assert_true(scree_experiment_get(&e, key, value, sizeof value));
-    CHECK_OK(scree_experiment_set(&e, key, value, &error), error);
-  }
-  assert_true(count > 20);
-  assert_null(scree_experiment_unit("colour"));
-  assert_null(scree_experiment_comment("colour"));
-  assert_false(scree_experiment_get(&e, "colour", value, sizeof value));
-  scree_experiment_free(&e);
-}
-
-/* Two kinds in a world, in the order of their first bodies; of a run in equal shares. */
+/* Two kinds in a world, in the order of their first bodies. */
 static void shapes(void **state) {
   (void)state;
   enum { BODIES = 5 };
   const scree_material material = scree_default_material();
   scree_particle *small, *large;
   scree_world *world = NULL;
-  scree_run *run = NULL;
-  scree_experiment e;
   scree_error error;
   CHECK_OK(scree_particle_sphere(0.01, &small, &error), error);
   CHECK_OK(scree_particle_sphere(0.02, &large, &error), error);
@@ -84,35 +62,12 @@ static void shapes(void **state) {
   assert_ptr_equal(scree_world_shape(world, 1), small);
   assert_null(scree_world_shape(world, 2));
   scree_world_free(world);
-
-  const scree_run_shape mixed[2] = {{.particle = small, .density_factor = 1, .name = "small"},
-                                    {.particle = large, .density_factor = 1, .name = "large"}};
-  CHECK_OK(scree_experiment_preset("demo", &e, &error), error);
-  e.particle_count = 20;
-  e.pack_time = 0.1;
-  CHECK_OK(scree_run_create(&e, mixed, 2, &run, &error), error);
-  while (scree_run_phase(run) == SCREE_PHASE_PACK)
-    CHECK_OK(scree_run_advance(run, 1000, &error), error);
-  size_t count[2] = {0};
-  for (size_t i = 0; i < scree_world_body_count(scree_run_view(run)); i++) {
-    size_t shape = scree_run_body_shape(run, i);
-    scree_run_shape found;
-    assert_true(shape < 2);
-    scree_run_get_shape(run, shape, &found);
-    assert_ptr_equal(scree_world_body_particle(scree_run_view(run), i), found.particle);
-    count[shape]++;
-  }
-  assert_int_equal(count[0], 10);
-  assert_int_equal(count[1], 10);
-  scree_run_free(run);
-  scree_experiment_free(&e);
   scree_particle_free(small);
   scree_particle_free(large);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(defects), cmocka_unit_test(repairs),
-                                     cmocka_unit_test(statuses), cmocka_unit_test(experiments),
-                                     cmocka_unit_test(shapes)};
+                                     cmocka_unit_test(statuses), cmocka_unit_test(shapes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

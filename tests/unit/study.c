@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/rng.h"
 #include "base/yaml.h"
+#include "scene/scene.h"
 #include "study/design.h"
 #include "study/lease.h"
 #include "study/record.h"
@@ -72,6 +73,16 @@ static void designs_fill_space(void **state) {
 
 /* ---- the plan ---- */
 
+static scree_plan run_plan(const scree_study *study, size_t run, scree_arena *arena) {
+  scree_scene_file *file;
+  scree_plan plan;
+  scree_error error;
+  CHECK_OK(scree_study_run_scene(study, run, &file, &error), error);
+  CHECK_OK(scree_scene_file_plan(file, arena, &plan, &error), error);
+  scree_scene_file_free(file);
+  return plan;
+}
+
 static void a_plan_follows_from_its_file(void **state) {
   (void)state;
   const char *text = "name: plan\nseed: 7\nreplicates: 3\nbase: {preset: demo}\n"
@@ -89,10 +100,11 @@ static void a_plan_follows_from_its_file(void **state) {
   assert_int_equal(run.seed, 8);
   assert_string_equal(run.label, "shapes sphere+a, rp spheres, contact.friction 0.3");
   assert_string_equal(run.shapes, "sphere+a");
-  scree_experiment e;
-  CHECK_OK(scree_study_experiment(study, 12 + 10, &e, &error), error);
-  assert_true(e.friction_particle == 0.3 && e.friction_wall == 0.3 && e.seed == 8);
-  scree_experiment_free(&e);
+  scree_arena arena = {0};
+  scree_plan plan = run_plan(study, 12 + 10, &arena);
+  const scree_plan_material *materials = plan.materials.items; /* wall, grain */
+  assert_true(materials[0].friction == 0.3 && materials[1].friction == 0.3 && plan.seed == 8);
+  scree_arena_free(&arena);
   char beside[160];
   snprintf(beside, sizeof beside, "%s", in_folder("a.stl"));
   assert_string_equal(study->shapes[2].path, beside); /* relative to the study's file */
@@ -115,13 +127,16 @@ static void a_filling_design_stays_in_its_ranges(void **state) {
     assert_int_equal(scree_study_run_count(study), 40);
     size_t slow = 0, spheres = 0;
     for (size_t i = 0; i < 20; i++) {
-      scree_experiment e;
-      CHECK_OK(scree_study_experiment(study, i, &e, &error), error);
-      assert_true(e.particle_count >= 10 && e.particle_count <= 30);
-      assert_true(e.lift_speed >= 0.01 && e.lift_speed <= 1);
-      slow += e.lift_speed < 0.1;
+      scree_arena arena = {0};
+      scree_plan plan = run_plan(study, i, &arena);
+      size_t count = ((const scree_plan_inlet *)plan.inlets.items)->count;
+      const scree_plan_geometry *cylinder = &((const scree_plan_geometry *)plan.geometry.items)[1];
+      double speed = ((const scree_plan_motion *)cylinder->motion.items)->translate->velocity[2];
+      assert_true(count >= 10 && count <= 30);
+      assert_true(speed >= 0.01 && speed <= 1);
+      slow += speed < 0.1;
+      scree_arena_free(&arena);
       spheres += !strcmp(study->points[i].rp, "spheres");
-      scree_experiment_free(&e);
     }
     assert_in_range(slow, 8, 12);
     assert_in_range(spheres, 8, 12);
@@ -300,11 +315,8 @@ static void of_many_one_wins(void **state) {
 
 static void records_read_back_the_same_or_not_at_all(void **state) {
   (void)state;
-  scree_run_point series[3] = {{.time = 0.1,
-                                .phase = SCREE_PHASE_LIFT,
-                                .body_count = 3,
-                                .mean_rotation = 1.0 / 3,
-                                .sector_deg = NAN}};
+  scree_record_point series[3] = {
+      {.time = 0.1, .phase = 2, .body_count = 3, .mean_rotation = 1.0 / 3, .sector_deg = NAN}};
   scree_study_record record = {.reason = "a \"quoted\"\\ reason\n",
                                .worker = "w",
                                .started = 1.5e9,
@@ -324,7 +336,7 @@ static void records_read_back_the_same_or_not_at_all(void **state) {
   assert_true(isnan(back.result.repose.sector_deg));
   assert_int_equal(back.series_count, 3);
   assert_true(back.series[0].mean_rotation == 1.0 / 3 && isnan(back.series[0].sector_deg));
-  assert_int_equal(back.series[0].phase, SCREE_PHASE_LIFT);
+  assert_int_equal(back.series[0].phase, 2);
   scree_study_record_free(&back);
   struct stat info;
   stat(path, &info);
@@ -404,7 +416,7 @@ static void a_study_is_worked_off_and_told(void **state) {
   scree_study_free(study);
 }
 
-static void expect_same_shape(const scree_run_shape *a, const scree_run_shape *b) {
+static void expect_same_shape(const scree_shape_made *a, const scree_shape_made *b) {
   const scree_mesh *first = scree_particle_mesh(a->particle),
                    *second = scree_particle_mesh(b->particle);
   assert_int_equal(first->vertex_count, second->vertex_count);
@@ -413,7 +425,7 @@ static void expect_same_shape(const scree_run_shape *a, const scree_run_shape *b
                       3 * first->vertex_count * sizeof *first->positions);
   assert_memory_equal(first->triangles, second->triangles,
                       3 * first->triangle_count * sizeof *first->triangles);
-  assert_true(a->density_factor == b->density_factor);
+  assert_true(a->scan_volume == b->scan_volume);
 }
 
 static double recommended_rp(const scree_mesh *scan) {
@@ -442,20 +454,22 @@ static void a_single_run_has_the_shapes_of_a_study(void **state) {
   CHECK_OK(scree_sample_make("fp-1", &study->sample, NULL, &scan, &error), error);
   rp[3] = recommended_rp(&scan);
   rp[4] = 0.5 * rp[3];
-  for (size_t point = 0; point < points; point++)
-    for (int rule = 0; rule < 2; rule++) {
-      scree_run_shape shape;
-      scree_grain grain;
-      scree_grain_options o = scree_default_grain_options();
-      double count;
-      o.rp = rp[point];
-      o.mass_rule = rule ? SCREE_MASS_FROM_SCAN : SCREE_MASS_FROM_MESH;
-      CHECK_OK(scree_study_make_shapes(study, point, o.mass_rule, &shape, &count, &error), error);
-      CHECK_OK(scree_grain_make(&scan, NULL, &o, NULL, &grain, &error), error);
-      expect_same_shape(&shape, &grain.run);
-      scree_particle_free(shape.particle);
-      scree_grain_free(&grain);
-    }
+  for (size_t point = 0; point < points; point++) {
+    char level[40];
+    scree_shape_made from_folder, made;
+    scree_shape_spec spec = scree_default_shape_spec();
+    spec.sample = "fp-1";
+    spec.resolution = 4e-3;
+    spec.noise = 0.2e-3;
+    spec.level = level;
+    snprintf(level, sizeof level, "%.17g", rp[point]);
+    CHECK_OK(scree_study_make_shape(study, 0, study->points[point].rp, &from_folder, &error),
+             error);
+    CHECK_OK(scree_shape_make(&spec, NULL, NULL, &made, &error), error);
+    expect_same_shape(&from_folder, &made);
+    scree_particle_free(from_folder.particle);
+    scree_particle_free(made.particle);
+  }
   scree_mesh_free(&scan);
   scree_study_free(study);
 }

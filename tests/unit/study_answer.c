@@ -37,19 +37,19 @@ static double power(double rp, int r) {
 
 /* Rotation since the lift, which begins at 0.5 s: a straight line of its own in each replicate.
  * Replicate 1 ends early and lies still, replicate 2 ends early and does not. */
-static scree_run_point series_point(size_t replicate, size_t i) {
+static scree_record_point series_point(size_t replicate, size_t i) {
   double time = 0.1 * (double)i;
-  return (scree_run_point){.time = time,
-                           .phase = time < 0.45 ? SCREE_PHASE_PACK : SCREE_PHASE_LIFT,
-                           .mean_rotation = (double)(replicate + 1) * (1 + (time - 0.5)),
-                           .sector_deg = NAN,
-                           .cone_deg = NAN,
-                           .silhouette_deg = NAN,
-                           .height = NAN};
+  return (scree_record_point){.time = time,
+                              .phase = time < 0.45 ? 0 : 2,
+                              .mean_rotation = (double)(replicate + 1) * (1 + (time - 0.5)),
+                              .sector_deg = NAN,
+                              .cone_deg = NAN,
+                              .silhouette_deg = NAN,
+                              .height = NAN};
 }
 
 static scree_study_record make_record(const outcome *o, size_t level, size_t replicate,
-                                      scree_run_point *series) {
+                                      scree_record_point *series) {
   double angle = level == SPHERES ? NAN : o->angles[level] + o->sd * deviate(replicate);
   bool cone = !strcmp(o->angle, "cone");
   scree_study_record r = {.version = "test",
@@ -112,7 +112,7 @@ static scree_study *make_study(const outcome *o) {
   }
   CHECK_OK(scree_study_make_keys(study, &error), error);
   for (size_t run = 0; run < scree_study_run_count(study); run++) {
-    scree_run_point series[21];
+    scree_record_point series[21];
     scree_study_record r =
         make_record(o, level_of(study, run), scree_study_run_replicate(study, run), series);
     char *file = scree_study_path(study, "results", study->keys[run], ".yaml");

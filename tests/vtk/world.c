@@ -112,26 +112,25 @@ static bool print_contact(void *context, const scree_contact *c) {
   return true;
 }
 
-/* A few spheres on their way into the cylinder of a run, as checkpoint and as frame. */
-static void write_run(const char *folder) {
+/* A few spheres on their way into the cylinder of a scene, as checkpoint and as frame. */
+static void write_scene(const char *folder) {
   scree_error error;
-  scree_experiment experiment;
-  scree_run *run;
-  scree_run_shape shape = {.density_factor = 1};
+  scree_scene_file *file;
+  scree_scene *scene;
   char path[512];
-  must(scree_experiment_preset("demo", &experiment, &error), &error);
-  must(scree_experiment_set(&experiment, "particles", "4", &error), &error);
-  must(scree_particle_sphere(0.03, &shape.particle, &error), &error);
-  must(scree_run_create(&experiment, &shape, 1, &run, &error), &error);
-  while (scree_world_body_count(scree_run_world(run)) == 0)
-    must(scree_run_advance(run, 100, &error), &error);
-  snprintf(path, sizeof path, "%s/run.scree", folder);
-  must(scree_run_save(run, path, false, &error), &error);
+  must(scree_scene_file_template("repose", &file, &error), &error);
+  must(scree_scene_file_set(file, "preset", "demo", &error), &error);
+  must(scree_scene_file_set(file, "particles", "4", &error), &error);
+  must(scree_scene_file_set(file, "shapes.ball.sphere", "0.06", &error), &error);
+  must(scree_scene_create(file, NULL, &scene, &error), &error);
+  while (scree_world_body_count(scree_scene_view(scene)) == 0)
+    must(scree_scene_advance(scene, 100, &error), &error);
+  snprintf(path, sizeof path, "%s/scene.scree", folder);
+  must(scree_scene_save(scene, path, false, &error), &error);
   snprintf(path, sizeof path, "%s/frame.scree", folder);
-  must(scree_run_save_frame(run, path, false, &error), &error);
-  scree_run_free(run);
-  scree_particle_free(shape.particle);
-  scree_experiment_free(&experiment);
+  must(scree_scene_save_frame(scene, path, false, &error), &error);
+  scree_scene_free(scene);
+  scree_scene_file_free(file);
 }
 
 int main(int argc, char **argv) {
@@ -158,7 +157,7 @@ int main(int argc, char **argv) {
   must(scree_pvd_write(files, times, 2, path, false, &error), &error);
   snprintf(path, sizeof path, "%s/world.scree", argv[1]);
   must(scree_world_save(world, path, false, &error), &error);
-  write_run(argv[1]);
+  write_scene(argv[1]);
   printf("{\"time\": %.17g, \"bodies\": [\n", scree_world_time(world));
   print_bodies(world);
   puts("], \"contacts\": [");

@@ -1,4 +1,5 @@
 // The tab of pouring: particles fall into a container while one looks on. The physics is the library's, in a worker.
+import { Box3 } from 'three';
 import { Cancelled, Engine } from './engine.js';
 import { PileView, setShapeColors, shapeColor } from '../src/pile.js';
 import { counted, element, number, whole } from '../src/text.js';
@@ -10,18 +11,35 @@ const still = 2e-8; // J a particle: at rest
 
 setShapeColors(['#4c8bc9', '#d98a3d', '#4fae7f', '#b872a8', '#a89a2e', '#8a8a94']);
 
+// The side of a cylinder, as high as it is wide, or with four corners of a box with sides along x and y.
+function tube(radius, sides) {
+  const points = [], triangles = [];
+  const reach = sides === 4 ? radius * Math.SQRT2 : radius;
+  for (let i = 0; i < sides; i++) {
+    const angle = (2 * Math.PI * (i + 0.5)) / sides, next = 2 * ((i + 1) % sides);
+    for (const z of [0, 2 * radius]) points.push(reach * Math.cos(angle), reach * Math.sin(angle), z);
+    triangles.push(2 * i, next, 2 * i + 1, next, next + 1, 2 * i + 1);
+  }
+  return { points: Float32Array.from(points), triangles: Uint32Array.from(triangles) };
+}
+
 // A pour as the report's view of piles draws it: where the bodies are now.
 class LivePile {
-  constructor({ shapeOf, width, surfaces }, box) {
+  constructor({ count, width, surfaces }, box) {
     this.shapes = surfaces.map((mesh) => ({ mesh }));
-    this.walls = [];
-    Object.assign(this, { shapeOf, width, discRadius: 0, cylinderRadius: box ? 0 : width / 2, box: box ? [width, width] : [0, 0], entered: 0 });
+    this.walls = [{ endless: false, mesh: tube(width / 2, box ? 4 : 64) }];
+    Object.assign(this, { capacity: count, width, entered: 0, bodies: surfaces.map(() => []) });
+  }
+  // Of a shape those that have entered: the view keeps this list.
+  bodiesOf(shape) {
+    return this.bodies[shape];
+  }
+  enter({ poses, entered, shapeOf }) {
+    for (let body = this.entered; body < entered; body++) this.bodies[shapeOf[body]].push(body);
+    Object.assign(this, { poses, entered });
   }
   momentAt() {
     return null;
-  }
-  cylinderAt() {
-    return 0;
   }
   pose(body, _, position, quaternion) {
     if (body >= this.entered) return false;
@@ -30,11 +48,12 @@ class LivePile {
     quaternion.set(i, j, k, w);
     return true;
   }
-  highest() {
-    return this.width;
+  wallPose(_, __, position, quaternion) {
+    position.set(0, 0, 0);
+    quaternion.identity();
   }
-  frame() {
-    return { container: this.width / 2, filled: this.width, radius: this.width / 2, top: this.width };
+  sceneBox() {
+    return new Box3().setFromArray(this.walls[0].mesh.points);
   }
 }
 
@@ -150,7 +169,7 @@ export class PourTab {
     if (this.playing) this.resume?.();
   }
 
-  async play(engine, { shapeOf }) {
+  async play(engine, { count }) {
     let time = 0;
     this.playing = true;
     this.pause.textContent = 'Pause';
@@ -160,19 +179,20 @@ export class PourTab {
       const now = await engine.ask({ do: 'advance', until: time + frame, ms: patience });
       const speed = (now.time - time) / (performance.now() - begin) * 1000;
       time = now.time;
-      this.show(now, shapeOf.length, Math.min(1, speed));
-      if (now.entered === shapeOf.length && now.energy < still) break;
+      this.show(now, count, Math.min(1, speed));
+      if (now.entered === count && now.energy < still) break;
       await new Promise((resolve) => setTimeout(resolve, Math.max(0, 1000 * frame - (performance.now() - begin))));
       await new Promise(requestAnimationFrame);
     }
     if (engine !== this.engine) return;
     this.pause.disabled = true;
-    this.tell(`At rest after ${number(time, 3)} s: ${counted(shapeOf.length, 'particle')}.`);
-    document.body.dataset.poured = String(shapeOf.length);
+    this.tell(`At rest after ${number(time, 3)} s: ${counted(count, 'particle')}.`);
+    document.body.dataset.poured = String(count);
   }
 
-  show({ poses, entered, time, energy }, count, speed) {
-    Object.assign(this.pile, { poses, entered });
+  show(now, count, speed) {
+    const { entered, time, energy } = now;
+    this.pile.enter(now);
     this.view.showTime(time);
     this.tell(`${number(time, 3)} s simulated, ${number(100 * speed, 2)} % of real time; ${whole(entered)} of ${counted(count, 'particle')} in, ${number(energy, 2)} J of motion each.`);
     Object.assign(document.body.dataset, { pourTime: time, pourEntered: entered });

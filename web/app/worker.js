@@ -147,8 +147,7 @@ const tasks = {
       pourCall('web_pour_add', `shape-${i}.ply`, unit, count);
     });
     pourCall('web_pour_start', stiffness, friction, box ? 1 : 0);
-    const shapeOf = Uint32Array.from({ length: ask('web_pour_count', 'number') }, (_, body) => ask('web_pour_shape_of', 'number', body));
-    return { shapeOf, width: ask('web_pour_width', 'number'), step: ask('web_pour_step', 'number'), surfaces: shapes.map((_, i) => surfaceOf(ask('web_pour_mesh', 'number', i))) };
+    return { count: ask('web_pour_count', 'number'), width: ask('web_pour_width', 'number'), step: ask('web_pour_step', 'number'), surfaces: shapes.map((_, i) => surfaceOf(ask('web_pour_mesh', 'number', i))) };
   },
 
   // Goes on to a time, but no longer than so many ms of the clock.
@@ -157,7 +156,8 @@ const tasks = {
     while (ask('web_pour_time', 'number') < until && performance.now() - begin < ms) pourCall('web_pour_advance', 20);
     const entered = ask('web_pour_look', 'number');
     const poses = new Float64Array(session.HEAPU8.buffer, ask('web_pour_poses', 'number'), 7 * entered).slice();
-    return { poses, entered, time: ask('web_pour_time', 'number'), energy: ask('web_pour_energy', 'number'), spent: performance.now() - begin };
+    const shapeOf = Uint32Array.from({ length: entered }, (_, body) => ask('web_pour_shape_of', 'number', body));
+    return { poses, entered, shapeOf, time: ask('web_pour_time', 'number'), energy: ask('web_pour_energy', 'number'), spent: performance.now() - begin };
   },
 
   // Distances of a level to a scan that was told before, or is now.

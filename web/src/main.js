@@ -3,10 +3,8 @@ import './page.css';
 import { CalibrationSection } from './calibrate.js';
 import { ChoiceSection } from './choice.js';
 import { ClumpSection } from './clump.js';
-import { HeapSection } from './heap.js';
 import { decoderReady } from './packed.js';
 import { setShapeColors } from './pile.js';
-import { PourSection } from './pour.js';
 import { SceneSection } from './scene.js';
 import { StudySection } from './study.js';
 import { element, number, table } from './text.js';
@@ -24,7 +22,7 @@ function provenanceRows(folder) {
   const rows = [];
   const add = (what, value) => value !== null && value !== undefined && rows.push({ what, value: String(value) });
   const first = folder.choice?.[0] ?? folder.clump?.[0];
-  const run = folder.provenance ?? folder.heap ?? folder.pour ?? folder.scene ?? {};
+  const run = folder.provenance ?? folder.scene ?? {};
   add('results', folder.folder);
   add('scree', run.version ?? first?.version);
   add('command', run.command ?? first?.command);
@@ -38,9 +36,7 @@ function provenanceRows(folder) {
   if (run.elapsed_s !== undefined) add('time', `${number(run.elapsed_s, 3)} s, ${number(run.processor_s, 3)} s of processor time, ${run.threads} threads`);
   if (run.processor) add('machine', `${run.processor}, ${run.processors} processors; ${run.system}`);
   for (const object of [...(folder.choice?.filter((entry) => !entry.set) ?? []), ...(folder.clump ?? [])]) add(`input ${object.name}`, originOf(object));
-  for (const shape of [...(folder.heap?.shapes ?? []), ...(folder.pour?.shapes ?? []), ...(folder.scene?.shapes ?? [])]) add(`shape ${shape.name}`, shape.source);
-  if (folder.heap) add('seed', folder.heap.experiment.seed);
-  if (folder.pour) add('seed', folder.pour.options.seed);
+  for (const shape of folder.scene?.shapes ?? []) add(`shape ${shape.name}`, shape.source);
   add('page made by', `scree ${data.version}`);
   return rows;
 }
@@ -52,8 +48,6 @@ async function fill() {
     const host = element('section', null, page);
     if (folder.choice) new ChoiceSection(host, folder);
     if (folder.clump) new ClumpSection(host, folder);
-    if (folder.heap) new HeapSection(host, folder);
-    if (folder.pour) new PourSection(host, folder);
     if (folder.scene) new SceneSection(host, folder);
     if (folder.study) new StudySection(host, folder);
     if (folder.calibration) new CalibrationSection(host, folder);

@@ -1,8 +1,8 @@
 // A pile (docs/reference/formats.md): its shapes, where its bodies were at moments of the run, and of a scene where its walls
 // were; and the 3D view that plays it. Between two moments bodies go straight and turn evenly.
 import {
-  Box3, BufferAttribute, BufferGeometry, CircleGeometry, Color, CylinderGeometry, DoubleSide, Group, InstancedMesh,
-  Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial, Quaternion, Vector3,
+  Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, InstancedMesh, Matrix4, Mesh, MeshStandardMaterial,
+  Quaternion, Vector3,
 } from 'three';
 import { Reader, decodeMesh, decodeVertices } from './packed.js';
 import { counted, element, number, whole } from './text.js';
@@ -17,9 +17,8 @@ export const shapeColor = (shape) => shapeColors[shape % shapeColors.length];
 export class Pile {
   constructor(id) {
     const reader = new Reader(id);
-    [this.discRadius, this.cylinderRadius, ...this.box] = reader.reals(4);
     const surface = () => {
-      const name = reader.text(); // none of a pour's
+      const name = reader.text();
       const triangleCount = reader.u32();
       const grid = { low: reader.reals(3), step: reader.real() };
       const mesh = decodeMesh(reader.mesh());
@@ -34,11 +33,14 @@ export class Pile {
     this.step = reader.real();
     const count = reader.u32();
     this.times = reader.reals(count);
-    this.cylinder = reader.reals(count);
     for (const wall of this.walls) wall.poses = Array.from({ length: count }, () => reader.reals(7));
     const tracks = decodeVertices(reader.buffer(), this.bodyCount * count, 16);
     this.places = new Uint16Array(tracks);
     this.turns = new Int16Array(tracks);
+  }
+
+  bodiesOf(shape) {
+    return [...this.shapeOf.keys()].filter((body) => this.shapeOf[body] === shape);
   }
 
   get end() {
@@ -57,10 +59,6 @@ export class Pile {
     const next = Math.min(low + 1, times.length - 1);
     const part = next > low ? (time - times[low]) / (times[next] - times[low]) : 0;
     return { moment: low, next, part: Math.min(1, Math.max(0, part)) };
-  }
-
-  cylinderAt({ moment, next, part }) {
-    return this.cylinder[moment] + part * (this.cylinder[next] - this.cylinder[moment]);
   }
 
   // Position and quaternion of a body; false where it is not there.
@@ -96,50 +94,11 @@ export class Pile {
         for (const corner of corners(own.min.toArray(), own.max.toArray())) box.expandByPoint(corner.clone().applyMatrix4(placed));
       }
     }
+    const sizes = this.shapes.map(({ mesh }) => new Vector3().setScalar(2 * Math.sqrt(mesh.points.reduce((most, _, i, p) => (i % 3 ? most : Math.max(most, p[i] ** 2 + p[i + 1] ** 2 + p[i + 2] ** 2)), 0))));
     for (const time of this.times.filter((_, i) => box.isEmpty() || i === 0 || i === this.times.length >> 1)) {
-      for (let i = 0; i < this.bodyCount; i++) if (this.pose(i, this.momentAt(time), position, turn)) box.expandByPoint(position);
+      for (let i = 0; i < this.bodyCount; i++) if (this.pose(i, this.momentAt(time), position, turn)) box.union(new Box3().setFromCenterAndSize(position, sizes[this.shapeOf[i]]));
     }
     return box.isEmpty() ? box.expandByPoint(position.set(0, 0, 0)) : box;
-  }
-
-  // How far from the axis and how high each body reaches at a moment.
-  reaches(moment) {
-    const position = new Vector3(), turn = new Quaternion(), point = new Vector3(), far = [], high = [];
-    const boxes = this.shapes.map(({ mesh }) => {
-      const { min, max } = new Box3().setFromArray(mesh.points);
-      return corners(min.toArray(), max.toArray());
-    });
-    for (let i = 0; i < this.bodyCount; i++) {
-      if (!this.pose(i, moment, position, turn)) continue;
-      const points = boxes[this.shapeOf[i]].map((corner) => point.copy(corner).applyQuaternion(turn).add(position).toArray());
-      far.push(Math.max(...points.map(([x, y]) => Math.hypot(x, y))));
-      high.push(Math.max(...points.map(([, , z]) => z)));
-    }
-    const ascending = (list) => list.sort((a, b) => a - b);
-    return { far: ascending(far), high: ascending(high) };
-  }
-
-  // What the picture is fitted to: the container and what is in it before it rises, and the bodies at the end but for
-  // those that rolled far off.
-  frame() {
-    const { times, cylinder } = this;
-    const rises = cylinder.findIndex((height) => height > 0);
-    const filled = this.reaches(this.momentAt(times[rises > 0 ? rises - 1 : times.length - 1]));
-    const { far, high } = this.reaches(this.momentAt(this.end));
-    const usual = far[Math.floor(0.95 * (far.length - 1))] ?? 0;
-    const container = this.cylinderRadius || Math.hypot(...this.box) / 2;
-    return { container, filled: filled.high.at(-1) ?? 0, radius: Math.max(container, Math.min(far.at(-1) ?? 0, 1.5 * usual)), top: high.at(-1) ?? 0 };
-  }
-
-  // Across the container: what stands round the bodies from the start.
-  get width() {
-    return Math.max(2 * this.cylinderRadius, ...this.box);
-  }
-
-  highest() {
-    let top = 0;
-    for (let i = 0; i < this.places.length; i += 8) if (this.places[i + 3] && this.places[i + 2] > top) top = this.places[i + 2];
-    return this.low[2] + this.step * top;
   }
 }
 
@@ -149,18 +108,6 @@ function geometryOf(mesh) {
   geometry.setIndex(new BufferAttribute(mesh.triangles, 1));
   return geometry;
 }
-
-// The cylinder, or the four sides of the box, standing on z = 0.
-function wallGeometry(pile) {
-  const length = Math.max(pile.width, pile.highest());
-  const box = pile.box[0] > 0;
-  const radius = box ? Math.SQRT1_2 : pile.cylinderRadius;
-  const made = new CylinderGeometry(radius, radius, length, box ? 4 : 64, 1, true, box ? Math.PI / 4 : 0).rotateX(Math.PI / 2).translate(0, 0, length / 2);
-  return box ? made.scale(...pile.box, 1) : made;
-}
-
-// Points on a circle about the vertical axis.
-const ring = (radius, z) => Array.from({ length: 16 }, (_, i) => new Vector3(radius, 0, z).applyAxisAngle(new Vector3(0, 0, 1), (Math.PI * i) / 8));
 
 // Draws a pile at any time. Throws where there is no WebGL.
 export class PileView extends View {
@@ -172,12 +119,10 @@ export class PileView extends View {
     this.clear();
     this.pile = pile;
     const group = new Group();
-    this.wall = null;
-    const fit = pile.walls.length ? this.setScene(group) : this.setContainer(group);
+    const fit = this.setScene(group);
     this.instances = pile.shapes.map((shape, k) => {
-      const bodies = [];
-      pile.shapeOf.forEach((of, body) => of === k && bodies.push(body));
-      const drawn = new InstancedMesh(geometryOf(shape.mesh), new MeshStandardMaterial({ color: new Color(shapeColor(k)), flatShading: true, roughness: 0.8 }), bodies.length);
+      const bodies = pile.bodiesOf(k);
+      const drawn = new InstancedMesh(geometryOf(shape.mesh), new MeshStandardMaterial({ color: new Color(shapeColor(k)), flatShading: true, roughness: 0.8 }), pile.capacity ?? bodies.length);
       drawn.frustumCulled = false;
       group.add(drawn);
       return { drawn, bodies };
@@ -203,21 +148,6 @@ export class PileView extends View {
     return corners(box.min.toArray(), box.max.toArray()).map((corner) => corner.sub(middle).multiplyScalar(scale));
   }
 
-  // The container of a heap or a pour.
-  setContainer(group) {
-    const { pile } = this;
-    this.walls = [];
-    const { container, filled, radius, top } = pile.frame();
-    const middle = Math.max(filled, top) / 2, scale = 1 / Math.max(radius, middle);
-    group.scale.setScalar(scale);
-    group.position.z = -middle * scale;
-    const floor = new Mesh(new CircleGeometry(pile.discRadius || pile.width, 96), new MeshStandardMaterial({ color: 0x9a9aa2, roughness: 1, transparent: true, opacity: 0.5, side: DoubleSide }));
-    floor.position.z = -0.0005 * radius; // below what lies on it, for the eye only
-    this.wall = new Mesh(wallGeometry(pile), new MeshBasicMaterial({ color: 0x8899bb, transparent: true, opacity: 0.16, side: DoubleSide, depthWrite: false }));
-    group.add(floor, this.wall);
-    return [[radius, 0], [radius, top], [container, filled]].flatMap(([r, z]) => ring(r * scale, (z - middle) * scale));
-  }
-
   showTime(time) {
     const { pile } = this;
     const at = pile.momentAt(time);
@@ -233,7 +163,6 @@ export class PileView extends View {
       drawn.instanceMatrix.needsUpdate = true;
       count += there;
     }
-    if (this.wall) this.wall.position.z = pile.cylinderAt(at);
     for (const { wall, drawn } of this.walls) pile.wallPose(wall, at, drawn.position, drawn.quaternion);
     this.draw();
     return count;

@@ -3,6 +3,14 @@
 import { PlayedSection, known } from './played.js';
 import { counted, element, number, whole } from './text.js';
 
+// The angle of repose three ways, or why there is none.
+function angleText(pile) {
+  if (!pile.heap) return `${pile.name}: there is no heap: ${pile.no_heap_because}.`;
+  const ways = [['the sectors', pile.sectors, pile.sectors.sd_deg], ['the cone', pile.cone, null], ['the silhouettes', pile.silhouettes, pile.silhouettes.sd_deg]];
+  const angles = ways.filter(([, way]) => known(way.angle_deg)).map(([name, way, sd]) => `${number(way.angle_deg, 3)}°${known(sd) ? ` ± ${number(sd, 2)}°` : ''} by ${name}`);
+  return `Angle of repose: ${angles.join(', ')}${known(pile.spread_deg) ? `; the three ways differ by ${number(pile.spread_deg, 2)}°` : ''}.`;
+}
+
 export class SceneSection extends PlayedSection {
   constructor(host, folder) {
     const { scene } = folder;
@@ -23,6 +31,7 @@ export class SceneSection extends PlayedSection {
     element('h1', scene.title ?? this.name, host);
     element('p', `${scene.whole ? 'Ended' : 'Stopped'} after ${number(scene.time, 4)} s: ${scene.ended_because}. ${counted(book.entered_count, 'particle')} came in, ${whole(book.inside_count)} inside, ${whole(book.left_count)} went out.`, host, { class: 'answer' });
     const waiting = book.waiting_count ? ` ${whole(book.waiting_count)} wait for room at inlets.` : '';
+    for (const pile of scene.piles) element('p', angleText(pile), host, { class: 'answer' });
     element('p', `${number(book.entered_mass, 5)} kg came in, ${number(book.inside_mass, 5)} kg inside, ${number(book.left_mass, 5)} kg went out.${waiting} Energy unaccounted for: ${number(100 * book.ledger, 2)} % of what was turned over.`, host, { class: 'soft' });
   }
 
@@ -58,11 +67,22 @@ export class SceneSection extends PlayedSection {
         if (columns.some(([, name]) => this.series[name].some((value) => known(value) && value !== 0))) this.chart(`${sensor}: ${kind.replaceAll('_', ' ')}`, `${kind.replaceAll('_', ' ')}${unit ? ` / ${unit}` : ''}`, columns.slice(0, 4));
     this.chart('Bodies', 'bodies', [['came in', 'entered'], ['inside', 'inside'], ['went out', 'left'], ['waiting', 'waiting']]);
     this.fallingChart('Energy of motion', 'energy / J', [['translation', 'kinetic'], ['rotation', 'rotational']]);
+    this.chart('Rotational velocity', 'mean |ω| / (rad/s)', [['mean |ω|', 'mean_rotation']], { from: 2 });
   }
 
   tellTables() {
     const { scene } = this;
     this.values('The sensors at the end', scene.columns.filter(({ name }) => name.includes('.')).map(({ name, unit, last }) => [`${name}${unit ? ` / ${unit}` : ''}`, last]), 'sensors');
+    for (const p of scene.piles) {
+      this.values(`The heap ${p.name}`, [
+        ['angle by sectors / °', p.sectors.angle_deg], ['its standard deviation / °', p.sectors.sd_deg], ['sectors with a flank', p.sectors.count],
+        ['angle by the cone / °', p.cone.angle_deg], ['its misfit, rms / mm', known(p.cone.rms) ? 1000 * p.cone.rms : null],
+        ['angle by silhouettes / °', p.silhouettes.angle_deg], ['its standard deviation / °', p.silhouettes.sd_deg],
+        ['the three ways differ by / °', p.spread_deg], ['angle by volume and centroid / °', p.volume_deg],
+        ['height / mm', 1000 * p.height], ['base radius / mm', known(p.base_radius) ? 1000 * p.base_radius : null], ['run-out / mm', 1000 * p.run_out],
+        ['packing fraction', p.packing_fraction], ['bodies', p.body_count], ['particle size / mm', 1000 * p.particle_size],
+      ], 'heap');
+    }
     this.values('Where bodies came in and went out', [
       ...scene.inlets.map(({ name, count, mass, waiting }) => [`inlet ${name}`, `${whole(count)}, ${number(mass, 5)} kg${waiting ? `, ${whole(waiting)} wait` : ''}`]),
       ...scene.outlets.map(({ name, count, mass }) => [name ? `outlet ${name}` : 'over the rim of the domain', `${whole(count)}, ${number(mass, 5)} kg`]),

@@ -1,5 +1,5 @@
-/* Checkpoints and frames of runs with lengths and checksums made to fit, those of the worlds in
- * them too: refused in a sentence, or a run that can be asked, measured, advanced and freed. */
+/* Checkpoints and frames of scenes with lengths and checksums made to fit, those of the worlds in
+ * them too: refused in a sentence, or a scene that can be asked, measured, advanced and freed. */
 #define _GNU_SOURCE /* memfd_create, memmem */
 #include "fuzz/files.h"
 #include "fuzz/forge.h"
@@ -20,25 +20,26 @@ static void forge(uint8_t *bytes, size_t size) {
   forge_header(bytes, size);
 }
 
-static void use(scree_run *run) {
+static void use(scree_scene *scene) {
   scree_error error = {0};
-  scree_run_result result;
-  scree_run_costs costs;
-  size_t count;
-  scree_run_series(run, &count);
-  scree_run_get_costs(run, &costs);
-  for (size_t i = 0; i < scree_world_body_count(scree_run_view(run)); i++)
-    FUZZ_CHECK(scree_run_body_shape(run, i) < scree_run_shape_count(run));
-  scree_status status = scree_run_measure(run, &result, &error);
-  FUZZ_CHECK(status == SCREE_OK || error.message[0]);
-  if (scree_world_body_count(scree_run_view(run)) > 50) return;
-  status = scree_run_advance(run, 2, &error);
+  size_t count, shapes = 0;
+  (void)scree_scene_series(scene, &count);
+  while (scree_scene_shape_name(scene, shapes)) shapes++;
+  for (size_t i = 0; i < scree_world_body_count(scree_scene_view(scene)); i++)
+    FUZZ_CHECK(scree_scene_body_shape(scene, i) < shapes);
+  for (size_t i = 0; scree_scene_pile_name(scene, i); i++) {
+    scree_pile pile;
+    scree_status status = scree_scene_measure_pile(scene, i, NULL, &pile, &error);
+    FUZZ_CHECK(status == SCREE_OK || error.message[0]);
+  }
+  if (scree_world_body_count(scree_scene_view(scene)) > 50) return;
+  scree_status status = scree_scene_advance(scene, 2, &error);
   FUZZ_CHECK(status == SCREE_OK || error.message[0]);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   static uint8_t forged[MOST_BYTES];
-  scree_run *run = NULL;
+  scree_scene *scene = NULL;
   scree_error error = {0};
   size_t used = scree_memory_used();
   char path[64];
@@ -47,13 +48,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   forge(forged, size);
   scree_set_threads(1);
   int fd = fuzz_file(forged, size, path);
-  scree_status status = scree_run_load(path, &run, &error);
+  scree_status status = scree_scene_load(path, &scene, &error);
   close(fd);
   FUZZ_CHECK(status == SCREE_OK || status == SCREE_BAD_FILE || status == SCREE_BAD_ARGUMENT);
-  FUZZ_CHECK(status == SCREE_OK || (error.message[0] && !strchr(error.message, '\n') && !run));
+  FUZZ_CHECK(status == SCREE_OK || (error.message[0] && !strchr(error.message, '\n') && !scene));
   fuzz_taken += status == SCREE_OK;
-  if (status == SCREE_OK) use(run);
-  scree_run_free(run);
+  if (status == SCREE_OK) use(scene);
+  scree_scene_free(scene);
   FUZZ_CHECK(scree_memory_used() == used);
   return 0;
 }

@@ -1,0 +1,552 @@
+#include "cli/scene_run.h"
+
+#include "base/file.h"
+#include "base/number.h"
+#include "base/platform.h"
+#include "cli/clump.h"
+#include "cli/options.h"
+#include "cli/output.h"
+#include "cli/terminal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATH_BYTES = 4200 };
+/* By the bits of `views`. */
+static const char *const kinds[CLI_FRAME_KINDS] = {"-bodies", "-points", "-contacts", "-geometry"};
+static const char *const collections[CLI_FRAME_KINDS] = {"bodies.pvd", "points.pvd", "contacts.pvd",
+                                                         "geometry.pvd"};
+
+static const char *const file_names[] = {
+    "checkpoint.scree",     "series.csv",   "motion.scree",    "scene.yaml",
+    "frame-#-bodies.vtp",   "bodies.pvd",   "geometry.pvd",    "scene.png",
+    "frame-#-geometry.vtp", "result.json",  "result.txt",      "stopped.scree",
+    "frame-#-points.vtp",   "points.pvd",   "contacts.pvd",    "frame-#-contacts.vtp",
+    "frame-#.scree",        "last.scree",   "provenance.json", "report.html",
+    "sensor-*.csv",         "sensor-*.vts", "bodies.csv",      "shape-#.vtp"};
+static const cli_run_files run_files = {file_names, sizeof file_names / sizeof *file_names};
+
+static scree_status no_memory(scree_error *error) {
+  *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory"};
+  return error->status;
+}
+
+static scree_status path_of(const cli_scene_run *r, const char *name, char path[PATH_BYTES],
+                            scree_error *error) {
+  if (snprintf(path, PATH_BYTES, "%s/%s", r->output, name) < PATH_BYTES) return SCREE_OK;
+  return cli_refuse(error, SCREE_LIMIT, r->output, "the folder's name is too long");
+}
+
+/* ---- while it runs ---- */
+
+static bool watch(void *context, const scree_scene_state *state) {
+  (void)context;
+  char left[32], line[200];
+  scree_scene_book b;
+  scree_scene_get_book(state->scene, &b);
+  cli_terminal_seconds(left, sizeof left, state->seconds_left);
+  snprintf(line, sizeof line, "%.2f of %g s  %.0f %%  %zu in, %zu out%s  %.0f steps/s  %s left",
+           state->time, scree_scene_duration(state->scene), 100 * state->fraction, b.inside_count,
+           b.left_count, b.waiting_count ? ", some wait" : "",
+           isnan(state->steps_per_second) ? 0 : state->steps_per_second, left);
+  cli_terminal_line(line);
+  return !cli_interrupted();
+}
+
+static scree_status write_view(const cli_scene_run *r, const scree_scene *scene, int kind,
+                               scree_error *error) {
+  static const scree_world_view views[] = {SCREE_VIEW_SURFACES, SCREE_VIEW_POINTS,
+                                           SCREE_VIEW_CONTACTS};
+  char name[CLI_FRAME_NAME], path[PATH_BYTES];
+  cli_frame_name(r->frames.count, kinds[kind], name);
+  scree_status status = path_of(r, name, path, error);
+  if (status != SCREE_OK) return status;
+  if (1u << kind == CLI_GEOMETRY) return scree_scene_walls_vtp_write(scene, path, true, error);
+  if (1u << kind == CLI_BODIES && scree_scene_frames_are_instances(scene))
+    return scree_scene_bodies_vtp_write(scene, path, true, error);
+  return scree_world_vtp_write(scree_scene_view(scene), views[kind], path, true, error);
+}
+
+static scree_status write_collections(const cli_scene_run *r, scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (int kind = 0; status == SCREE_OK && kind < CLI_FRAME_KINDS; kind++) {
+    char path[PATH_BYTES];
+    if (!(r->views & 1u << kind)) continue;
+    status = path_of(r, collections[kind], path, error);
+    if (status == SCREE_OK) status = cli_frames_list(&r->frames, kinds[kind], path, error);
+  }
+  return status;
+}
+
+static scree_status on_frame(void *context, scree_scene *scene, size_t index, scree_error *error) {
+  cli_scene_run *r = context;
+  scree_status status = SCREE_OK;
+  for (int kind = 0; status == SCREE_OK && kind < CLI_FRAME_KINDS; kind++)
+    if (r->views & 1u << kind) status = write_view(r, scene, kind, error);
+  (void)index;
+  if (status == SCREE_OK)
+    status = cli_frames_note(&r->frames, scree_world_time(scree_scene_view(scene)), error);
+  return status == SCREE_OK ? write_collections(r, error) : status;
+}
+
+/* Each shape once, for frames of instances. */
+static scree_status write_shapes(const cli_scene_run *r, const scree_scene *scene,
+                                 scree_error *error) {
+  scree_status status = SCREE_OK;
+  if (!r->output || !(scree_scene_frame_interval(scene) > 0) ||
+      !scree_scene_frames_are_instances(scene))
+    return SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && scree_scene_shape_name(scene, i); i++) {
+    char name[32], path[PATH_BYTES];
+    snprintf(name, sizeof name, "shape-%zu.vtp", i);
+    status = path_of(r, name, path, error);
+    if (status == SCREE_OK) status = scree_scene_shape_vtp_write(scene, i, path, true, error);
+  }
+  return status;
+}
+
+/* Names values of the scene that no material has, as those of options are. */
+static void remark_values(const char *text) {
+  char key[64];
+  double value;
+  for (const char *line = text; line; line = strchr(line, '\n')) {
+    line += *line == '\n';
+    size_t indent = strspn(line, " "), length = strcspn(line + indent, ":\n");
+    const char *behind = line + indent + length, *end = behind + strcspn(behind, "\n");
+    if (length >= sizeof key || end - behind < 3) continue;
+    if (!scree_number_parse(behind + 2, end, &value)) continue;
+    snprintf(key, sizeof key, "%.*s", (int)length, line + indent);
+    const cli_meaning *m = cli_find_meaning(key);
+    if (m && m->expected && (value < m->least || value > m->most))
+      fprintf(stderr, "scree: %s %g: %s\n", key, value, m->expected);
+  }
+}
+
+/* As of files that other verbs read: a scene's shapes are in mm where their unit is not said. */
+static void remark_sizes(const scree_scene *scene) {
+  for (size_t i = 0; scree_scene_shape_name(scene, i); i++) {
+    scree_particle_measures m;
+    const char *source = scree_scene_shape_source(scene, i);
+    if (!source || !*source) continue; /* the scene says its size itself */
+    scree_particle_measure(scree_scene_shape_particle(scene, i), &m);
+    cli_remark_size(scree_scene_shape_name(scene, i), m.size, "unit: says which it is");
+  }
+}
+
+static void print_walls(const scree_scene *scene) {
+  for (size_t i = 0; scree_scene_geometry_name(scene, i); i++)
+    for (const char *line = scree_scene_geometry_note(scene, i); line && *line;) {
+      size_t length = strcspn(line, "\n");
+      printf("  wall %-15s %.*s\n", scree_scene_geometry_name(scene, i), (int)length, line);
+      line += length + (line[length] == '\n');
+    }
+}
+
+static void print_forecast(const scree_scene *scene) {
+  scree_scene_forecast f;
+  scree_scene_foretell(scene, &f);
+  printf("  %.0f steps of up to %.0f bodies: ", f.step_count, f.body_count);
+  if (f.seconds < 60)
+    printf("seconds");
+  else if (f.seconds < 5400)
+    printf("about %.0f minutes", f.seconds / 60);
+  else
+    printf("about %.3g hours", f.seconds / 3600);
+  printf(" on one core");
+  if (f.frame_count > 0)
+    printf("; %.0f frames, up to %.3g MB", f.frame_count, 1e-6 * f.frame_count * f.frame_bytes);
+  putchar('\n');
+}
+
+static scree_status on_begin(void *context, scree_scene *scene, bool resumed, scree_error *error) {
+  cli_scene_run *r = context;
+  char reason[256], path[PATH_BYTES];
+  scree_status status = SCREE_OK;
+  if (resumed)
+    status = cli_frames_recall(&r->frames, scree_scene_frame_interval(scene),
+                               scree_scene_view(scene), error);
+  r->scene = scene;
+  if (status == SCREE_OK && r->output) {
+    status = path_of(r, "scene.yaml", path, error);
+    if (status == SCREE_OK) status = scree_text_write(scree_scene_text(scene), path, true, error);
+  }
+  if (status == SCREE_OK) status = write_shapes(r, scene, error);
+  if (status != SCREE_OK || r->call->quiet || r->json) return status;
+  cli_terminal_end();
+  if (!resumed && !r->states) remark_values(scree_scene_text(scene));
+  if (!resumed) remark_sizes(scene);
+  scree_scene_softness soft;
+  char sentence[600];
+  if (!resumed && scree_scene_soft(scene, &soft)) {
+    scree_scene_describe_softness(scene, &soft, sentence, sizeof sentence);
+    fprintf(stderr, "scree: %s\n", sentence);
+  }
+  char remark[SCREE_REMARK];
+  for (size_t i = 0; !resumed && scree_scene_remark(scene, i, remark); i++)
+    fprintf(stderr, "scree: %s\n", remark);
+  const char *title = scree_scene_title(scene);
+  if (r->name || title)
+    printf("%s%s%s\n", r->name ? r->name : "", r->name && title ? ": " : "", title ? title : "");
+  for (size_t i = 0; scree_scene_shape_name(scene, i); i++) {
+    const char *source = scree_scene_shape_source(scene, i);
+    scree_particle_measures m;
+    scree_particle_measure(scree_scene_shape_particle(scene, i), &m);
+    char shown[CLI_PRINTABLE_BYTES];
+    printf("  shape %-14s size %.4g mm%s%s\n", scree_scene_shape_name(scene, i), 1e3 * m.size,
+           *source ? "  " : "", cli_printable(source, shown));
+  }
+  print_walls(scene);
+  printf("  time step %s\n", (scree_scene_time_step_reason(scene, reason), reason));
+  print_forecast(scene);
+  if (resumed) printf("  goes on at %.6g s\n", scree_world_time(scree_scene_view(scene)));
+  cli_flush();
+  return SCREE_OK;
+}
+
+/* ---- at its end ---- */
+
+/* "-" where there is nothing to measure yet. */
+static const char *value_text(double value, char text[32]) {
+  if (isnan(value)) return "-";
+  snprintf(text, 32, "%.5g", value);
+  return text;
+}
+
+static void print_sensors(FILE *stream, const scree_scene *scene) {
+  size_t rows, columns = scree_scene_column_count(scene), first = 0;
+  const double *series = scree_scene_series(scene, &rows);
+  while (first < columns && !strchr(scree_scene_column_name(scene, first), '.')) first++;
+  if (!rows || first == columns) return;
+  fprintf(stream, "  %-34s %14s %14s\n", "sensor", "at the end", "mean");
+  for (size_t k = first; k < columns; k++) {
+    double sum = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < rows; i++)
+      if (!isnan(series[i * columns + k])) sum += series[i * columns + k], count++;
+    char last[32], mean[32];
+    fprintf(stream, "  %-34s %14s %14s %s\n", scree_scene_column_name(scene, k),
+            value_text(series[(rows - 1) * columns + k], last),
+            value_text(count ? sum / (double)count : (double)NAN, mean),
+            scree_scene_column_unit(scene, k));
+  }
+}
+
+void cli_print_pile(FILE *stream, const scree_pile *pile) {
+  const scree_repose *r = &pile->repose;
+  if (!r->heap) {
+    fprintf(stream, "  angle of repose   none: no heap, %s\n", r->reason);
+  } else {
+    fprintf(stream, "  angle of repose   %5.1f deg  sd %4.1f   sectors (%zu of %zu)\n",
+            r->sector_deg, r->sector_sd_deg, r->sector_count, r->sector_total);
+    fprintf(stream, "                    %5.1f deg  rms %4.1f mm  cone\n", r->cone_deg,
+            1e3 * r->cone_rms);
+    fprintf(stream, "                    %5.1f deg  sd %4.1f   silhouettes (%zu flank%s)\n",
+            r->silhouette_deg, r->silhouette_sd_deg, r->flank_count, cli_plural(r->flank_count));
+    fprintf(stream,
+            "                    %5.1f deg  by volume and centroid; the three differ by %.1f\n",
+            r->volume_deg, r->spread_deg);
+  }
+  if (pile->body_count == 0) return;
+  fprintf(stream, "  height            %5.0f mm, its highest point %.0f mm\n", 1e3 * r->height,
+          1e3 * r->peak);
+  if (isfinite(r->base_radius))
+    fprintf(stream, "  base radius       %5.0f mm, the farthest particle reaches %.0f mm\n",
+            1e3 * r->base_radius, 1e3 * r->run_out);
+  else
+    fprintf(stream, "  run-out           %5.0f mm\n", 1e3 * r->run_out);
+  fprintf(stream, "  particles         %5zu in it, of %.1f mm (sphere of equal volume)\n",
+          pile->body_count, 1e3 * pile->size);
+  fprintf(stream, "  packing fraction  %5.2f\n", pile->packing_fraction);
+}
+
+static void print_piles(FILE *stream, const scree_scene *scene) {
+  for (size_t i = 0; scree_scene_pile_name(scene, i); i++) {
+    scree_pile pile;
+    if (scree_scene_measure_pile(scene, i, NULL, &pile, NULL) == SCREE_OK)
+      cli_print_pile(stream, &pile);
+  }
+}
+
+static void print_loss(FILE *stream, const scree_scene *scene) {
+  scree_scene_loss loss;
+  if (!scree_scene_loss_of(scene, &loss)) return;
+  fprintf(stream, "  %zu left the domain, the first at %.4g s at (%.4g, %.4g, %.4g) m", loss.count,
+          loss.first_time, loss.first_place[0], loss.first_place[1], loss.first_place[2]);
+  if (!loss.is_meant)
+    fprintf(stream, ": past all geometry, where no outlet was meant; give outlets or a domain if "
+                    "one was, and look for a gap in the walls if not");
+  putc('\n', stream);
+}
+
+static void print_summary(FILE *stream, const scree_scene *scene, const char *stopped) {
+  scree_scene_book b;
+  scree_scene_get_book(scene, &b);
+  fprintf(stream, "%s after %.6g s, %llu steps\n", stopped ? "stopped" : scree_scene_end(scene),
+          scree_world_time(scree_scene_view(scene)),
+          (unsigned long long)scree_world_step_count(scree_scene_view(scene)));
+  fprintf(stream,
+          "  %zu came in, %zu are inside, %zu went out: %.5g kg in, %.5g kg inside, %.5g kg out\n",
+          b.entered_count, b.inside_count, b.left_count, b.entered_mass, b.inside_mass,
+          b.left_mass);
+  for (size_t i = 0; scree_scene_inlet_name(scene, i); i++) {
+    size_t waiting;
+    scree_scene_inlet_count(scene, i, NULL, &waiting);
+    if (waiting)
+      fprintf(stream, "  inlet %s: %zu wait, for there is no room\n",
+              scree_scene_inlet_name(scene, i), waiting);
+  }
+  print_loss(stream, scene);
+  scree_observation o;
+  scree_world_observe(scree_scene_view(scene), &o);
+  fprintf(stream, "  %.3g touching neighbours a particle, largest overlap %.4g um\n",
+          o.coordination, 1e6 * o.largest_overlap);
+  fprintf(stream, "  energy that the sums miss: %.2g of all that changed its form\n", b.ledger);
+  print_sensors(stream, scene);
+  print_piles(stream, scene);
+}
+
+/* Not of result.txt: it is another one every time. */
+static void print_costs(const scree_scene *scene) {
+  scree_scene_costs c = scree_scene_get_costs(scene);
+  if (c.body_steps)
+    printf("  cost: %.0f s on the clock, %.2f us a particle and step\n", c.wall_seconds,
+           1e6 * c.wall_seconds / (double)c.body_steps);
+}
+
+static scree_status write_json(const cli_scene_run *r, const char *stopped, double seconds,
+                               const char *path, scree_error *error) {
+  char kept[PATH_BYTES]; /* what one goes on with that no file was given for */
+  const bool given = r->file_name != NULL;
+  scree_status status = given || !r->output ? SCREE_OK : path_of(r, "scene.yaml", kept, error);
+  if (status != SCREE_OK) return status;
+  scree_scene_entry entry = {.scene = r->scene,
+                             .file = given       ? r->file_name
+                                     : r->output ? kept
+                                                 : NULL,
+                             .stopped_because = stopped,
+                             .command_line = r->call->command_line,
+                             .seconds = seconds};
+  return scree_scene_json_write(&entry, path, true, error);
+}
+
+static scree_status render(const cli_scene_run *r, const scree_render_options *options,
+                           scree_image *image, scree_error *error) {
+  scree_render_options o = *options;
+  if (!scree_scene_pile_name(r->scene, 0))
+    return scree_scene_picture(r->scene, &o, r->call->progress, image, error);
+  o.elevation_deg = 18;
+  return scree_scene_pile_picture(r->scene, &o, r->call->progress, image, error);
+}
+
+static scree_status draw(const cli_scene_run *r, scree_error *error) {
+  char path[PATH_BYTES];
+  scree_image image = {0};
+  scree_render_options o = scree_default_render_options();
+  if (r->no_picture) return SCREE_OK;
+  o.samples = r->rays;
+  scree_status status = path_of(r, "scene.png", path, error);
+  if (status == SCREE_OK) status = render(r, &o, &image, error);
+  if (status == SCREE_OK) status = scree_image_write_png(&image, path, true, error);
+  scree_image_free(&image);
+  if (status != SCREE_UNSUPPORTED && status != SCREE_CANCELLED) return status;
+  fprintf(stderr, "no picture: %s\n", error->message);
+  return SCREE_OK;
+}
+
+static scree_status write_page(const cli_scene_run *r, scree_error *error) {
+  char path[PATH_BYTES];
+  scree_status status = path_of(r, "provenance.json", path, error);
+  if (status == SCREE_OK)
+    status = scree_provenance_write(&r->start, r->call->command_line, path, true, error);
+  if (status != SCREE_OK || r->common_page) return status;
+  status = path_of(r, "report.html", path, error);
+  return status == SCREE_OK ? scree_page_write(&r->output, 1, path, true, error) : status;
+}
+
+static scree_status write_all(const cli_scene_run *r, const char *stopped, double seconds,
+                              const char *text, scree_error *error) {
+  char path[PATH_BYTES];
+  scree_status status = write_collections(r, error);
+  if (status == SCREE_OK) status = path_of(r, "result.json", path, error);
+  if (status == SCREE_OK) status = write_json(r, stopped, seconds, path, error);
+  if (status == SCREE_OK) status = path_of(r, "bodies.csv", path, error);
+  if (status == SCREE_OK) status = scree_scene_bodies_write(r->scene, path, true, error);
+  if (status == SCREE_OK) status = path_of(r, "result.txt", path, error);
+  if (status == SCREE_OK) status = scree_text_write(text, path, true, error);
+  if (status == SCREE_OK) status = draw(r, error);
+  return status == SCREE_OK ? write_page(r, error) : status;
+}
+
+static scree_status tell(cli_scene_run *r, const char *stopped, double seconds,
+                         scree_error *error) {
+  char *text = NULL;
+  size_t size;
+  FILE *stream = scree_memory_open(&text, &size);
+  if (stream) print_summary(stream, r->scene, stopped);
+  if (!stream || !scree_memory_close(stream)) {
+    free(text);
+    return no_memory(error);
+  }
+  cli_terminal_end();
+  scree_status status = SCREE_OK;
+  if (r->json)
+    status = write_json(r, stopped, seconds, "-", error);
+  else
+    fputs(text, stdout);
+  if (!r->json && !r->call->quiet) print_costs(r->scene);
+  cli_flush();
+  if (status == SCREE_OK && r->output) status = write_all(r, stopped, seconds, text, error);
+  free(text);
+  return status;
+}
+
+scree_status cli_check_scene_output(const cli_scene_run *r, scree_error *error) {
+  scree_status status = cli_make_folder(r->output, error);
+  if (status == SCREE_OK && !r->resume)
+    status = cli_check_run_output(r->call, r->output, &run_files, r->overwrite, error);
+  return status;
+}
+
+scree_status cli_clear_scene_output(const cli_call *call, const char *folder, scree_error *error) {
+  return cli_clear_run_output(call, folder, &run_files, error);
+}
+
+/* The state in which the scene failed: the report plays up to it, and nothing goes on from it. */
+static void keep_end(const cli_scene_run *r) {
+  char path[PATH_BYTES];
+  if (r->output && path_of(r, "checkpoint.scree", path, NULL) == SCREE_OK)
+    (void)scree_scene_save(r->scene, path, true, NULL);
+}
+
+scree_status cli_run_scene(cli_scene_run *r, scree_error *error) {
+  scree_scene_job job = {.file = r->file,
+                         .folder = r->output,
+                         .resume = r->resume,
+                         .overwrite = r->overwrite,
+                         .states = r->states,
+                         .store = r->store,
+                         .progress = r->call->progress,
+                         .watch = watch,
+                         .begun = on_begin,
+                         .frame = r->output && r->views ? on_frame : NULL,
+                         .context = r};
+  double seconds = scree_now();
+  scree_status status = scree_scene_complete(&job, &r->scene, error);
+  seconds = scree_now() - seconds;
+  cli_terminal_end();
+  bool told =
+      r->scene && (status == SCREE_OK || status == SCREE_CANCELLED || status == SCREE_DIVERGED);
+  if (!told) return status;
+  if (status == SCREE_DIVERGED) keep_end(r);
+  scree_error later; /* what happened first is what is told */
+  scree_status telling = tell(r, status == SCREE_OK ? NULL : error->message, seconds,
+                              status == SCREE_OK ? error : &later);
+  return status == SCREE_OK ? telling : status;
+}
+
+void cli_scene_run_free(cli_scene_run *r) {
+  scree_scene_free(r->scene);
+  free(r->frames.times);
+  r->scene = NULL;
+  r->frames = (cli_frames){0};
+}
+
+/* ---- what is poured ---- */
+
+/* A name as scenes have them: without points, and not twice. */
+static void name_shape(const char *word, const cli_poured *p, size_t index) {
+  char *name = p->texts[index];
+  cli_distinct_name(word, p->texts[0], sizeof *p->texts, index, 60);
+  for (char *c = name; *c; c++)
+    if (*c == '.' || *c == '*' || (unsigned char)*c < ' ' || *c == 127) *c = '_';
+}
+
+/* The kind of a word; its value, in the scene's terms, into `value`. */
+static const char *kind_of(const char *word, char *value, size_t size) {
+  static const char sphere[] = "sphere:";
+  const char *sample;
+  snprintf(value, size, "%s", word);
+  if (cli_is_sample(word, &sample)) {
+    snprintf(value, size, "%s", sample);
+    return "sample";
+  }
+  if (!strncmp(word, sphere, sizeof sphere - 1)) {
+    double diameter = 0;
+    if (cli_length_from_text(word + sizeof sphere - 1, &diameter))
+      snprintf(value, size, "%.17g", diameter);
+    return "sphere";
+  }
+  return cli_is_clump(word) ? "clump" : "file";
+}
+
+scree_status cli_make_poured(const char *const *words, const double *shares, size_t count,
+                             cli_poured *p, scree_error *error) {
+  *p = (cli_poured){calloc(count + 1, sizeof *p->shapes), calloc(count + 1, sizeof *p->texts),
+                    count};
+  if (!p->shapes || !p->texts) {
+    cli_poured_free(p);
+    return no_memory(error);
+  }
+  for (size_t i = 0; i < count; i++) {
+    char *value = p->texts[i] + 100;
+    name_shape(words[i], p, i);
+    const char *kind = kind_of(words[i], value, sizeof *p->texts - 100);
+    p->shapes[i] = (scree_poured){p->texts[i], kind, value, shares ? shares[i] : 1};
+  }
+  return SCREE_OK;
+}
+
+void cli_poured_free(cli_poured *p) {
+  free(p->shapes);
+  free(p->texts);
+  *p = (cli_poured){0};
+}
+
+static scree_status set_shape(scree_scene_file *file, const scree_poured *shape, const char *field,
+                              const char *value, scree_error *error) {
+  char path[200];
+  snprintf(path, sizeof path, "shapes.%s.%s", shape->name, field);
+  return scree_scene_file_set(file, path, value, error);
+}
+
+static scree_status set_length(scree_scene_file *file, const scree_poured *shape, const char *field,
+                               double value, double usual, scree_error *error) {
+  char text[40];
+  snprintf(text, sizeof text, "%.17g", value);
+  return value == usual ? SCREE_OK : set_shape(file, shape, field, text, error);
+}
+
+static bool is_scan(const scree_poured *shape) {
+  return !strcmp(shape->kind, "file") || !strcmp(shape->kind, "sample");
+}
+
+scree_status cli_pour(scree_scene_file *file, const cli_poured *p, const cli_source *source,
+                      bool no_repair, scree_error *error) {
+  const cli_source usual = CLI_SOURCE_DEFAULTS;
+  cli_input_options input = cli_source_options(source);
+  scree_status status = scree_scene_file_pour(file, p->shapes, p->count, error);
+  for (size_t i = 0; status == SCREE_OK && i < p->count; i++) {
+    const scree_poured *s = &p->shapes[i];
+    bool sample = !strcmp(s->kind, "sample"), read = is_scan(s) || !strcmp(s->kind, "clump");
+    if (read && !sample && input.read.ignore_comment_unit)
+      status = set_shape(file, s, "unit", cli_unit_name(source->unit), error);
+    if (status == SCREE_OK && sample)
+      status = set_length(file, s, "resolution", source->resolution, usual.resolution, error);
+    if (status == SCREE_OK && sample)
+      status = set_length(file, s, "noise", source->noise, -1, error);
+    if (status == SCREE_OK && sample)
+      status = set_length(file, s, "sample_seed", (double)source->seed, 1, error);
+    if (status == SCREE_OK && no_repair && !strcmp(s->kind, "file"))
+      status = set_shape(file, s, "repair", "false", error);
+  }
+  return status;
+}
+
+scree_status cli_set_scans(scree_scene_file *file, const cli_poured *p, const char *field,
+                           const char *value, scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < p->count; i++)
+    if (is_scan(&p->shapes[i])) status = set_shape(file, &p->shapes[i], field, value, error);
+  return status;
+}

@@ -1,0 +1,58 @@
+/* Running a scene in a folder: what the verbs run, repose and drop do alike. */
+#ifndef SCREE_CLI_SCENE_RUN_H
+#define SCREE_CLI_SCENE_RUN_H
+
+#include "cli/frames.h"
+#include "cli/input.h"
+#include "report/provenance.h"
+
+/* What of each frame becomes a file for ParaView: bits. */
+enum { CLI_BODIES = 1, CLI_POINTS = 2, CLI_CONTACTS = 4, CLI_GEOMETRY = 8, CLI_FRAME_KINDS = 4 };
+
+typedef struct cli_scene_run {
+  const cli_call *call;
+  scree_work_start start;
+  scree_scene_file *file; /* NULL: that of the checkpoint */
+  const char *file_name;  /* as given; NULL: scene.yaml of the folder */
+  const char *output;     /* folder; NULL: none */
+  scree_shape_store *store;
+  size_t rays;
+  unsigned views;
+  bool resume, overwrite, json, no_picture;
+  bool states;      /* also frames that can be measured again */
+  bool common_page; /* one of several, which get one report together */
+  const char *name; /* of this one among several; NULL: it is the only one */
+  scree_scene *scene;
+  cli_frames frames;
+} cli_scene_run;
+
+/* Whether the folder can be written to, before any work; of a call with several the same of what
+ * an earlier one left. */
+scree_status cli_check_scene_output(const cli_scene_run *run, scree_error *error);
+scree_status cli_clear_scene_output(const cli_call *call, const char *folder, scree_error *error);
+/* Runs it to its end, prints what came of it and writes that into the folder. run->scene stays, to
+ * be looked at; also where it was stopped. */
+scree_status cli_run_scene(cli_scene_run *run, scree_error *error);
+void cli_scene_run_free(cli_scene_run *run);
+
+/* The heap, three ways, a line each. */
+void cli_print_pile(FILE *stream, const scree_pile *pile);
+
+/* Words of the command line as what is poured: FILE, sample:NAME, sphere:LENGTH, NAME.csv, each in
+ * its share. Texts lie in `texts`; both are to be freed. */
+typedef struct cli_poured {
+  scree_poured *shapes;
+  char (*texts)[4300]; /* name and value of each */
+  size_t count;
+} cli_poured;
+scree_status cli_make_poured(const char *const *words, const double *shares, size_t count,
+                             cli_poured *poured, scree_error *error);
+void cli_poured_free(cli_poured *poured);
+/* Puts them into the file, with what the options say of how files and samples are read. */
+scree_status cli_pour(scree_scene_file *file, const cli_poured *poured, const cli_source *source,
+                      bool no_repair, scree_error *error);
+/* Sets a field of all shapes that are made from scans. */
+scree_status cli_set_scans(scree_scene_file *file, const cli_poured *poured, const char *field,
+                           const char *value, scree_error *error);
+
+#endif

@@ -1,0 +1,342 @@
+/* Changing a scene's file: fields by their place, parameters that set several, presets, the shapes
+ * that are poured, and settings from a file of their own. */
+#include "scene/scene.h"
+
+#include "base/alloc.h"
+#include "base/number.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_NAMES = 64, PATH_BYTES = 300 };
+
+/* ---- single fields ---- */
+
+/* The group of things with names of the user's that a field lies in; NULL: in none. */
+static const scree_field *named_group(const char *field) {
+  size_t length = strcspn(field, ".");
+  for (size_t i = 0; i < scree_plan_record.field_count; i++) {
+    const scree_field *f = &scree_plan_record.fields[i];
+    if (f->kind == SCREE_FIELD_NAMED && !strncmp(f->key, field, length) && !f->key[length])
+      return f;
+  }
+  return NULL;
+}
+
+/* A name that is not there, on the way to a field of it, is a slip: a thing would be made of it
+ * that nothing uses. */
+static scree_status need_named(const scree_scene_file *file, const char *field,
+                               scree_error *error) {
+  const scree_field *f = named_group(field);
+  const char *name = strchr(field, '.'), *end = name ? strchr(++name, '.') : NULL;
+  if (!f || !end) return SCREE_OK;
+  const scree_yaml *group = scree_yaml_find(&file->root, f->key);
+  const char *names[MOST_NAMES] = {NULL}, *blank = strchr(f->record->what, ' ');
+  size_t count = 0;
+  for (size_t i = 0; group && i < group->item_count && group->items[i].key; i++) {
+    const char *key = group->items[i].key;
+    if (strlen(key) == (size_t)(end - name) && !strncmp(key, name, strlen(key))) return SCREE_OK;
+    if (count < MOST_NAMES) names[count++] = key;
+  }
+  char word[64];
+  snprintf(word, sizeof word, "%.*s", (int)(end - name), name);
+  scree_reader reader = {file->name, NULL, error, ""};
+  scree_place place = {.path = f->key};
+  return scree_fail_name(&reader, &place, blank ? blank + 1 : f->record->what, word, names, count);
+}
+
+static scree_status set_field(scree_scene_file *file, const char *field, const char *value,
+                              scree_error *error) {
+  scree_status status = need_named(file, field, error);
+  return status == SCREE_OK ? scree_yaml_set(&file->root, field, value, error) : status;
+}
+
+/* "shapes.*.rp": of everything in the group. */
+static scree_status set_all(scree_scene_file *file, const char *field, const char *value,
+                            scree_error *error) {
+  const char *star = strstr(field, ".*.");
+  if (!star) return set_field(file, field, value, error);
+  char group[PATH_BYTES], path[2 * PATH_BYTES];
+  snprintf(group, sizeof group, "%.*s", (int)(star - field), field);
+  const scree_yaml *items = scree_yaml_find(&file->root, group);
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && items && i < items->item_count; i++) {
+    snprintf(path, sizeof path, "%s.%.100s.%.100s", group, items->items[i].key, star + 3);
+    status = scree_yaml_set(&file->root, path, value, error);
+  }
+  return status;
+}
+
+/* ---- parameters and presets ---- */
+
+static const char *text_of(const scree_yaml *item, const char *key) {
+  const scree_yaml *node = item->kind == SCREE_YAML_MAPPING ? scree_yaml_find(item, key) : NULL;
+  return node && node->kind == SCREE_YAML_SCALAR ? node->text : NULL;
+}
+
+static double number_of(const scree_yaml *item, const char *key) {
+  double value;
+  const char *text = text_of(item, key);
+  return text && scree_number_read(text, &value) ? value : (double)NAN;
+}
+
+/* Of a list of groups the one of that name; NULL: there is none. */
+static const scree_yaml *find_item(const scree_scene_file *file, const char *list,
+                                   const char *name) {
+  const scree_yaml *items = scree_yaml_find(&file->root, list);
+  for (size_t i = 0; items && items->kind == SCREE_YAML_SEQUENCE && i < items->item_count; i++) {
+    const char *text = text_of(&items->items[i], "name");
+    if (text && !strcmp(text, name)) return &items->items[i];
+  }
+  return NULL;
+}
+
+static size_t list_names(const scree_scene_file *file, const char *list,
+                         const char *names[MOST_NAMES]) {
+  const scree_yaml *items = scree_yaml_find(&file->root, list);
+  size_t count = 0;
+  for (size_t i = 0; items && i < items->item_count && count < MOST_NAMES; i++)
+    if ((names[count] = text_of(&items->items[i], "name"))) count++;
+  return count;
+}
+
+/* The value times the parameter's factor, with its unit; in its range where it has none. */
+static scree_status scale_value(const scree_yaml *parameter, const char *name, const char *value,
+                                char *scaled, size_t size, scree_error *error) {
+  double factor = number_of(parameter, "factor"), least = number_of(parameter, "least"),
+         most = number_of(parameter, "most"), number;
+  char text[SCREE_NUMBER_SIZE];
+  const char *end = value + strlen(value), *unit = scree_number_parse(value, end, &number);
+  if ((size_t)snprintf(scaled, size, "%s", value) >= size)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: '%.60s': is too long", name, value);
+  if (isnan(factor) && isnan(least) && isnan(most)) return SCREE_OK;
+  if (!unit)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: '%.60s': must be a number", name, value);
+  if (!*unit && (number < least || number > most))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: %g: must be %g to %g", name, number, least,
+                      most);
+  if (isnan(factor)) return SCREE_OK;
+  scree_number_format_digits(factor * number, 17, text);
+  snprintf(scaled, size, "%s%s", text, unit);
+  return SCREE_OK;
+}
+
+static scree_status set_parameter(scree_scene_file *file, const scree_yaml *parameter,
+                                  const char *name, const char *value, scree_error *error) {
+  const scree_yaml *sets = scree_yaml_find(parameter, "sets");
+  char scaled[PATH_BYTES];
+  if (!sets) return scree_scene_file_check(file, error);
+  scree_status status = scale_value(parameter, name, value, scaled, sizeof scaled, error);
+  bool one = sets->kind == SCREE_YAML_SCALAR;
+  for (size_t i = 0; status == SCREE_OK && i < (one ? 1 : sets->item_count); i++) {
+    const scree_yaml *field = one ? sets : &sets->items[i];
+    if (field->kind != SCREE_YAML_SCALAR) return scree_scene_file_check(file, error);
+    status = set_all(file, field->text, scaled, error);
+  }
+  return status;
+}
+
+static scree_status set_preset(scree_scene_file *file, const char *name, scree_error *error) {
+  const scree_yaml *preset = find_item(file, "presets", name);
+  if (!preset) {
+    const char *names[MOST_NAMES] = {NULL};
+    size_t count = list_names(file, "presets", names);
+    scree_reader reader = {"", NULL, error, ""};
+    return scree_fail_name(&reader, &(scree_place){.path = "preset"}, "preset", name, names, count);
+  }
+  const scree_yaml *set = scree_yaml_find(preset, "set");
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && set && i < set->item_count; i++)
+    if (set->items[i].kind == SCREE_YAML_SCALAR && strcmp(set->items[i].key, "preset") != 0)
+      status = scree_scene_file_set(file, set->items[i].key, set->items[i].text, error);
+  return status == SCREE_OK ? scree_yaml_set(&file->root, "preset", name, error) : status;
+}
+
+scree_status scree_scene_file_set(scree_scene_file *file, const char *field, const char *value,
+                                  scree_error *error) {
+  if (file->root.kind != SCREE_YAML_MAPPING) return scree_scene_file_check(file, error);
+  if (!strcmp(field, "preset")) return set_preset(file, value, error);
+  const scree_yaml *parameter = find_item(file, "parameters", field);
+  return parameter ? set_parameter(file, parameter, field, value, error)
+                   : set_field(file, field, value, error);
+}
+
+/* ---- several, of which the first that cannot be is told ---- */
+
+scree_status scree_scene_file_try(scree_scene_file *file, const char *field, const char *value,
+                                  scree_error *error) {
+  scree_error why;
+  scree_status status = scree_scene_file_set(file, field, value, &why);
+  if (status == SCREE_BAD_FILE) status = SCREE_BAD_ARGUMENT; /* no other field can mend it */
+  if (status != SCREE_OK) return scree_fail(error, status, "%s", why.message);
+  char *name = file->name, none[] = "";
+  file->name = none; /* its errors say nothing of the file */
+  status = scree_scene_file_check(file, &why);
+  file->name = name;
+  if (status == SCREE_OK || status == SCREE_OUT_OF_MEMORY) {
+    if (status != SCREE_OK && error) *error = why;
+    return status;
+  }
+  const char *names[MOST_NAMES] = {NULL};
+  size_t count = list_names(file, "parameters", names);
+  const char *nearest =
+      find_item(file, "parameters", field) ? NULL : scree_nearest_name(field, names, count);
+  if (nearest)
+    return scree_fail(error, SCREE_BAD_FILE, "no field '%s'; did you mean '%s'?", field, nearest);
+  if (!strncmp(why.message, "no field", 8))
+    return scree_fail(error, SCREE_BAD_FILE, "%s", why.message);
+  return scree_fail(error, SCREE_BAD_FILE, "%s: %s", field, why.message);
+}
+
+typedef struct applier {
+  scree_scene_file *file;
+  const char *name; /* of the file with the settings */
+  scree_error first;
+  scree_status status; /* of the first that failed; SCREE_BAD_FILE: all together may be good */
+} applier;
+
+static void blame(applier *a, const scree_yaml *node, scree_status status, const scree_error *why) {
+  if (status == SCREE_OK || (a->status != SCREE_OK && a->status != SCREE_BAD_FILE)) return;
+  if (a->status == SCREE_BAD_FILE && status == SCREE_BAD_FILE) return;
+  a->status = status;
+  bool unknown = !strncmp(why->message, "no field", 8);
+  if (status == SCREE_OUT_OF_MEMORY)
+    a->first = *why;
+  else
+    scree_fail(&a->first, SCREE_BAD_FILE, "%.300s, line %zu, column %zu: %.600s", a->name,
+               unknown ? node->key_line : node->line, unknown ? node->key_column : node->column,
+               why->message);
+}
+
+static void apply(applier *a, const scree_yaml *node, const char *path) {
+  char key[PATH_BYTES];
+  scree_error why;
+  snprintf(key, sizeof key, "%.150s%s%.100s", path, *path ? "." : "", node->key);
+  if (node->kind == SCREE_YAML_MAPPING) {
+    for (size_t i = 0; i < node->item_count; i++) apply(a, &node->items[i], key);
+    return;
+  }
+  scree_status status = node->kind == SCREE_YAML_SCALAR
+                            ? scree_scene_file_try(a->file, key, node->text, &why)
+                            : scree_fail(&why, SCREE_BAD_ARGUMENT, "%s: must be one value", key);
+  blame(a, node, status, &why);
+}
+
+scree_status scree_scene_file_apply(scree_scene_file *file, const scree_yaml *settings,
+                                    const char *const *but, const char *name, scree_error *error) {
+  applier a = {.file = file, .name = name};
+  const scree_yaml *preset = scree_yaml_find(settings, "preset");
+  if (preset) apply(&a, preset, "");
+  for (size_t i = 0; i < settings->item_count; i++) {
+    bool passed = &settings->items[i] == preset;
+    for (size_t k = 0; but && but[k]; k++)
+      passed = passed || !strcmp(settings->items[i].key, but[k]);
+    if (!passed) apply(&a, &settings->items[i], "");
+  }
+  if (a.status == SCREE_OK) return SCREE_OK;
+  if (a.status == SCREE_BAD_FILE && scree_scene_file_check(file, NULL) == SCREE_OK) return SCREE_OK;
+  if (error) *error = a.first;
+  return a.first.status;
+}
+
+/* ---- templates, and what is poured ---- */
+
+scree_status scree_scene_file_template(const char *name, scree_scene_file **file,
+                                       scree_error *error) {
+  const char *text = scree_scene_template(name);
+  if (text) return scree_scene_file_parse(text, strlen(text), "", file, error);
+  const char *names[MOST_NAMES] = {NULL};
+  size_t count = 0;
+  while (count < MOST_NAMES && (names[count] = scree_scene_template_name(count))) count++;
+  scree_reader reader = {"", NULL, error, ""};
+  return scree_fail_name(&reader, &(scree_place){.path = ""}, "template", name, names, count);
+}
+
+scree_status scree_scene_file_read_over(const char *path, const char *template_name,
+                                        const char *preset, scree_scene_file **file,
+                                        scree_error *error) {
+  scree_scene_file *read;
+  scree_status status = scree_scene_file_read(path, &read, error);
+  if (status != SCREE_OK) return status;
+  if (read->root.kind != SCREE_YAML_MAPPING || scree_yaml_find(&read->root, "inlets")) {
+    *file = read;
+    return SCREE_OK;
+  }
+  scree_scene_file *made = NULL;
+  status = scree_scene_file_template(template_name, &made, error);
+  if (status == SCREE_OK && preset && !scree_yaml_find(&read->root, "preset"))
+    status = scree_scene_file_set(made, "preset", preset, error);
+  if (status == SCREE_OK)
+    status = scree_scene_file_apply(made, &read->root, NULL, read->name, error);
+  scree_scene_file_free(read);
+  if (status == SCREE_OK)
+    *file = made;
+  else
+    scree_scene_file_free(made);
+  return status;
+}
+
+/* As text that reads back to the same, to be freed. */
+static char *quote(const char *text) {
+  char *quoted = scree_alloc(4 * strlen(text) + 4, 1), *at = quoted;
+  if (!quoted) return NULL;
+  *at++ = '"';
+  for (; *text; text++) {
+    scree_yaml_escape(*text, at);
+    at += strlen(at);
+  }
+  *at++ = '"';
+  *at = 0;
+  return quoted;
+}
+
+/* The first material that no geometry is of; NULL: none is left, or there is one for all. */
+static const char *particle_material(const scree_scene_file *file) {
+  const scree_yaml *materials = scree_yaml_find(&file->root, "materials"),
+                   *geometry = scree_yaml_find(&file->root, "geometry");
+  for (size_t i = 0; materials && i < materials->item_count; i++) {
+    bool used = false;
+    for (size_t k = 0; geometry && k < geometry->item_count; k++) {
+      const char *of = text_of(&geometry->items[k], "material");
+      used = used || (of && !strcmp(of, materials->items[i].key));
+    }
+    if (!used) return materials->items[i].key;
+  }
+  return NULL;
+}
+
+static scree_status add_shape(scree_scene_file *file, const scree_poured *shape,
+                              scree_error *error) {
+  const char *material = particle_material(file);
+  const scree_yaml *inlets = scree_yaml_find(&file->root, "inlets");
+  char path[PATH_BYTES], share[SCREE_NUMBER_SIZE], *value = quote(shape->value);
+  if (!value) return scree_fail_memory(error, strlen(shape->value), "a shape");
+  snprintf(path, sizeof path, "shapes.%.64s", shape->name);
+  scree_status status = scree_yaml_set(&file->root, path, "{}", error);
+  snprintf(path, sizeof path, "shapes.%.64s.%.32s", shape->name, shape->kind);
+  if (status == SCREE_OK) status = scree_yaml_set(&file->root, path, value, error);
+  scree_free(value);
+  snprintf(path, sizeof path, "shapes.%.64s.material", shape->name);
+  if (status == SCREE_OK && material) status = scree_yaml_set(&file->root, path, material, error);
+  scree_number_format_digits(shape->share, 17, share);
+  for (size_t i = 0; status == SCREE_OK && inlets && i < inlets->item_count; i++) {
+    snprintf(path, sizeof path, "inlets.%.64s.shapes.%.64s", inlets->items[i].key, shape->name);
+    status = scree_yaml_set(&file->root, path, share, error);
+  }
+  return status;
+}
+
+scree_status scree_scene_file_pour(scree_scene_file *file, const scree_poured *shapes, size_t count,
+                                   scree_error *error) {
+  const scree_yaml *inlets = scree_yaml_find(&file->root, "inlets");
+  if (file->root.kind != SCREE_YAML_MAPPING) return scree_scene_file_check(file, error);
+  scree_status status = scree_yaml_set(&file->root, "shapes", "{}", error);
+  for (size_t i = 0; status == SCREE_OK && inlets && i < inlets->item_count; i++) {
+    char path[PATH_BYTES];
+    snprintf(path, sizeof path, "inlets.%.64s.shapes", inlets->items[i].key);
+    status = scree_yaml_set(&file->root, path, "{}", error);
+  }
+  for (size_t i = 0; status == SCREE_OK && i < count; i++)
+    status = add_shape(file, &shapes[i], error);
+  return status;
+}
