@@ -180,7 +180,6 @@ scree_status scree_scene_file_plan(const scree_scene_file *file, scree_arena *ar
 /* As printed, to be freed. */
 scree_status scree_scene_file_text(const scree_scene_file *file, char **text, scree_error *error);
 
-
 /* particles.c: what a shape is made from, whose file lies at path. */
 scree_shape_spec scree_scene_shape_spec(const scree_plan_shape *shape, const char *path);
 /* The particle of one, in its order: *made holds the last one before its sizes, of which more may

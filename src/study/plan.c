@@ -644,8 +644,8 @@ static scree_status read_root(const reader *r, const scree_yaml *root) {
   status = read_base(r, f.base ? f.base : &none);
   if (status == SCREE_OK && f.shapes && study->command.count)
     return fail_at(r, f.shapes, "shapes: what a command needs stands in its words");
-  bool varied = f.factors && f.factors->kind == SCREE_YAML_MAPPING &&
-                scree_yaml_find(f.factors, "shapes");
+  bool varied =
+      f.factors && f.factors->kind == SCREE_YAML_MAPPING && scree_yaml_find(f.factors, "shapes");
   study->own_shapes = !study->command.count && (f.shapes || varied);
   if (status == SCREE_OK && scree_yaml_find(root, "seed")) study->seed = f.seed;
   if (status == SCREE_OK && f.shapes) status = read_set(r, f.shapes, &set);

@@ -89,15 +89,15 @@ void scree_study_record_free(scree_study_record *record) {
 
 scree_record_result scree_no_result(void) {
   return (scree_record_result){.repose = {.sector_deg = NAN,
-                                       .sector_sd_deg = NAN,
-                                       .cone_deg = NAN,
-                                       .silhouette_deg = NAN,
-                                       .silhouette_sd_deg = NAN,
-                                       .height = NAN,
-                                       .base_radius = NAN,
-                                       .run_out = NAN},
-                            .packing_fraction = NAN,
-                            .particle_size = NAN};
+                                          .sector_sd_deg = NAN,
+                                          .cone_deg = NAN,
+                                          .silhouette_deg = NAN,
+                                          .silhouette_sd_deg = NAN,
+                                          .height = NAN,
+                                          .base_radius = NAN,
+                                          .run_out = NAN},
+                               .packing_fraction = NAN,
+                               .particle_size = NAN};
 }
 
 /* ---- writing ---- */

@@ -379,9 +379,8 @@ scree_status scree_study_record_scene(const scree_study *study, const scree_scen
   scree_scene_book book;
   scree_observation o;
   const scree_record_result none = scree_no_result();
-  scree_pile pile = {.repose = none.repose,
-                     .packing_fraction = none.packing_fraction,
-                     .size = none.particle_size};
+  scree_pile pile = {
+      .repose = none.repose, .packing_fraction = none.packing_fraction, .size = none.particle_size};
   scree_status status = SCREE_OK;
   if (scree_scene_pile_name(scene, 0))
     status = scree_scene_measure_pile(scene, 0, NULL, &pile, error);
