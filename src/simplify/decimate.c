@@ -1,9 +1,9 @@
 /* Decimation by edge collapses in the order of their cost.
  *
  *   passes:    rank all edges, take the cheapest that are independent, judge them side by side,
- *              collapse what is allowed; again, down to a share of the scan's triangles.
- *   samples:   the scan becomes the reference surface, the vertices that went become samples of the
- *              distance from it. Passes again, while they are worth their parallel loops.
+ *              collapse what is allowed; again, while that is worth its parallel loops. On the way
+ *              the surface becomes the reference surface: the scan itself where it is not larger.
+ *   samples:   the vertices of the reference surface that went become samples of the distance.
  *   in order:  a queue of all edges; the cheapest is judged, and collapsed if it is allowed and
  *              still the cheapest. Costs are found anew whenever a quarter of the triangles has
  *              gone. Where nothing is allowed any more the guards become more lenient, twice.
@@ -30,15 +30,23 @@ enum { USUAL_SHARE = 10 };
 
 /* ---- The run ---- */
 
-scree_status scree_decimate(scree_decimator *d) {
-  double fine = scree_tune.fine * (double)d->first_triangle_count;
-  scree_status status = scree_decimate_in_passes(d, fine);
+/* The surface as it is becomes the reference surface, and passes go on as long as they are worth
+ * their parallel loops. */
+static scree_status take_samples(scree_decimator *d) {
+  scree_status status = scree_decimate_refresh(d);
+  if (status == SCREE_OK) status = scree_halfmesh_copy(&d->s, &d->samples.scan, d->error);
+  if (status == SCREE_OK) status = scree_decimate_in_passes(d, SCREE_PASS_LEAST);
   if (status == SCREE_OK) status = scree_decimate_refresh(d);
-  if (status == SCREE_OK && !d->coster->merge) { /* with qecd the cost alone decides */
-    status = scree_samples_start(d->mesh, &d->samples, d->error);
-    if (status == SCREE_OK) status = scree_samples_find(&d->s, &d->tree, &d->samples, d->error);
-  }
-  if (status == SCREE_OK) status = scree_decimate_in_passes(d, 0);
+  if (status == SCREE_OK) status = scree_samples_start(&d->samples, d->error);
+  if (status == SCREE_OK) status = scree_samples_find(&d->s, &d->tree, &d->samples, d->error);
+  return status;
+}
+
+scree_status scree_decimate(scree_decimator *d) {
+  const bool by_cost_alone = d->coster->merge;
+  scree_status status =
+      scree_decimate_in_passes(d, by_cost_alone ? SCREE_PASS_LEAST : SCREE_REFERENCE_MOST);
+  if (status == SCREE_OK && !by_cost_alone) status = take_samples(d);
   size_t done = 1;
   while (status == SCREE_OK && d->leniency < SCREE_LENIENCIES &&
          d->s.live_triangle_count > d->options.stop_count) {
@@ -104,10 +112,8 @@ out_of_memory:
 
 scree_status scree_decimator_start(scree_decimator *d, const scree_mesh *mesh,
                                    const scree_simplify_options *options, scree_error *error) {
-  *d = (scree_decimator){.mesh = mesh,
-                         .options = *options,
+  *d = (scree_decimator){.options = *options,
                          .first_triangle_count = mesh->triangle_count,
-                         .pass_least = SCREE_PASS_LEAST,
                          .usual_far = INFINITY,
                          .error = error};
   d->coster = options->method == SCREE_METHOD_QECD ? &scree_qecd_coster : &scree_volume_coster;
@@ -134,16 +140,16 @@ void scree_decimator_free(scree_decimator *d) {
 
 /* What is still to do at so many triangles, in those that go one by one: passes take less time for
  * each. */
-static double work_left(const scree_decimator *d, double count) {
+static double work_left(double count) {
   static const double FASTER = 8;
-  double one_by_one = scree_smaller(count, (double)d->pass_least);
+  double one_by_one = scree_smaller(count, SCREE_PASS_LEAST);
   return one_by_one + (count - one_by_one) / FASTER;
 }
 
 bool scree_decimate_tick(scree_decimator *d) {
-  double all = work_left(d, (double)d->first_triangle_count);
-  double end = work_left(d, (double)d->options.stop_count);
-  double left = work_left(d, (double)d->s.live_triangle_count);
+  double all = work_left((double)d->first_triangle_count);
+  double end = work_left((double)d->options.stop_count);
+  double left = work_left((double)d->s.live_triangle_count);
   return scree_tick(&d->ticker, "decimating", all > end ? (all - left) / (all - end) : 0);
 }
 
@@ -198,27 +204,26 @@ static double deviation_for(const scree_decimator *d, double area, double cost) 
 
 /* The cost with the deviation's part, of the fan as it is set; above `most` at least `most`. */
 static double whole_cost(const scree_decimator *d, const scree_fan *f, const scree_candidate *c,
-                         double most, scree_gathered *scratch, bool *out_of_memory) {
+                         double most) {
   if (!scree_has_samples(&d->samples)) return c->cost;
-  double from = deviation_for(d, c->area, scree_tune.heed * c->cost), far = from;
+  double from = deviation_for(d, c->area, scree_tune.heed * c->cost);
   double grown = scree_deviation_growth(&d->samples, &d->s, f->at);
   if (scree_larger(grown, scree_deviation_bound(&d->samples, &d->s, f)) <= from) return c->cost;
   double rest = most - c->cost;
   double to = most < INFINITY ? deviation_for(d, c->area, rest > 0 ? rest : 0) : INFINITY;
-  *out_of_memory |= !scree_deviation_find(&d->samples, &d->s, f, from, to, scratch, &far);
-  far = scree_larger(far, grown);
+  double far = scree_larger(scree_deviation_find(&d->samples, &d->s, f, from, to), grown);
   if (far <= from) return c->cost;
   return far < INFINITY ? c->cost + penalty(d, c->area, far) : scree_larger(most, c->cost);
 }
 
 /* Tries one place; the fan is set to it. */
 static void try_place(const scree_decimator *d, const scree_candidate *c, double most, scree_fan *f,
-                      scree_gathered *scratch, scree_verdict *v) {
+                      scree_verdict *v) {
   if (!(c->cost < INFINITY) || c->error > d->error_limit || scree_shape_is_spike(&d->s, c->target))
     return;
   scree_fan_set(f, c->target);
   if (!scree_shape_allows(&d->s, f, d->leniency)) return;
-  double cost = whole_cost(d, f, c, fmin(v->cost, most), scratch, &v->out_of_memory);
+  double cost = whole_cost(d, f, c, fmin(v->cost, most));
   if (!(cost < v->cost)) return;
   v->cost = cost;
   v->target = c->target;
@@ -230,20 +235,20 @@ static int by_cost(const void *a, const void *b) {
   return (x->cost > y->cost) - (x->cost < y->cost);
 }
 
-scree_verdict scree_decimate_judge(const scree_decimator *d, uint32_t h, double most, scree_fan *f,
-                                   scree_gathered *scratch) {
+scree_verdict scree_decimate_judge(const scree_decimator *d, uint32_t h, double most,
+                                   scree_fan *f) {
   static const double NEAR = 2; /* another place is hardly worth its time for less */
   scree_verdict v = {.cost = INFINITY};
   scree_candidate best, others[SCREE_FALLBACK_COUNT];
   if (!scree_fan_of_edge(&d->s, h, f) || !scree_fan_keeps_topology(&d->s, f)) return v;
   d->coster->evaluate(&d->s, &h, 1, &best);
-  try_place(d, &best, most, f, scratch, &v);
+  try_place(d, &best, most, f, &v);
   if (!(v.cost < NEAR * best.cost)) {
     for (int k = 0; k < SCREE_FALLBACK_COUNT; k++) d->coster->fall_back(&d->s, h, k, &others[k]);
     qsort(others, SCREE_FALLBACK_COUNT, sizeof *others, by_cost);
     for (int k = 0; k < SCREE_FALLBACK_COUNT && !(v.cost < NEAR * others[k].cost); k++)
       if (others[k].cost < most)
-        try_place(d, &others[k], most, f, scratch, &v);
+        try_place(d, &others[k], most, f, &v);
       else
         v.cost = fmin(v.cost, others[k].cost); /* it may be allowed */
   }
@@ -251,8 +256,7 @@ scree_verdict scree_decimate_judge(const scree_decimator *d, uint32_t h, double 
   return v;
 }
 
-bool scree_decimate_collapse(scree_decimator *d, size_t i, const scree_fan *f, double error,
-                             scree_gathered *scratch) {
+void scree_decimate_collapse(scree_decimator *d, size_t i, const scree_fan *f, double error) {
   scree_collapse_record *r = &d->record;
   scree_halfmesh *s = &d->s;
   bool one = s->half[f->half_edge].twin == SCREE_NONE;
@@ -261,11 +265,8 @@ bool scree_decimate_collapse(scree_decimator *d, size_t i, const scree_fan *f, d
   r->position[i] = vec3_mad(s->centre, f->at, s->scale);
   scree_fan_measure(s, f, &r->area[i], &r->volume[i]);
   r->error[i] = (float)error;
-  if (scree_has_samples(&d->samples) && !scree_samples_move(&d->samples, s, f, scratch))
-    return false;
   scree_fan_collapse(s, f);
   if (d->coster->merge) d->coster->merge(s, f->a, f->b);
-  return true;
 }
 
 void scree_decimate_count(scree_decimator *d, const scree_fan *f) {

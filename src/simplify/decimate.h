@@ -10,7 +10,6 @@
 #include "simplify/record.h"
 
 typedef struct scree_decimator {
-  const scree_mesh *mesh; /* the mesh given */
   scree_halfmesh s;
   const scree_coster *coster;
   scree_simplify_options options;
@@ -18,7 +17,6 @@ typedef struct scree_decimator {
   double error_limit;     /* mean square, unit box; INFINITY: none */
   scree_collapse_record record;
   size_t first_triangle_count;
-  size_t pass_least;       /* triangles below which there are no passes: SCREE_PASS_LEAST */
   scree_surface_tree tree; /* of the surface */
   scree_markers markers;   /* of its shells */
   scree_samples samples;   /* method `volume`, once the fine passes are over */
@@ -41,7 +39,7 @@ scree_status scree_decimate(scree_decimator *d);
 /* ---- For the driver's two parts, order/pass.c and order/queue.c ---- */
 
 /* Passes of many independent collapses, side by side, while there are more triangles than that. */
-scree_status scree_decimate_in_passes(scree_decimator *d, double least);
+scree_status scree_decimate_in_passes(scree_decimator *d, size_t least);
 /* One collapse after the other, always the cheapest, until none is allowed or it is time to find
  * costs anew (scree_tune.refresh). *done: how many. */
 scree_status scree_decimate_in_order(scree_decimator *d, size_t *done);
@@ -57,19 +55,17 @@ typedef struct scree_verdict {
   double cost;  /* INFINITY: none is allowed. From `most` on a lower bound */
   double error; /* mean square move */
   vec3 target;
-  bool out_of_memory;
 } scree_verdict;
 
 /* Judges the edge by all but what lies beyond the triangles around it (scree_apart). *fan is
  * filled, and set to the target. Thread-safe. */
 scree_verdict scree_decimate_judge(const scree_decimator *d, uint32_t half_edge, double most,
-                                   scree_fan *fan, scree_gathered *scratch);
+                                   scree_fan *fan);
 
 /* Writes the fan's collapse to its place in the record and does it. With fans of which no triangle
- * is common to two, thread-safe. The record's count and the surface's counts are the caller's.
- * False: out of memory. */
-bool scree_decimate_collapse(scree_decimator *d, size_t place, const scree_fan *fan, double error,
-                             scree_gathered *scratch);
+ * is common to two, thread-safe. The samples, and the counts of the record and of the surface are
+ * the caller's. */
+void scree_decimate_collapse(scree_decimator *d, size_t place, const scree_fan *fan, double error);
 
 /* After collapses: counts, and markers. */
 void scree_decimate_count(scree_decimator *d, const scree_fan *fan);

@@ -85,7 +85,8 @@ static double six_volumes(const scree_halfmesh *s) {
 static scree_status fit_start(fit *f, const scree_curve *curve, const scree_mesh *level,
                               const uint32_t *numbering, scree_error *error) {
   *f = (fit){0};
-  scree_status status = scree_samples_start(curve->mesh, &f->samples, error);
+  scree_status status = scree_halfmesh_build(curve->mesh, NULL, &f->samples.scan, error);
+  if (status == SCREE_OK) status = scree_samples_start(&f->samples, error);
   if (status == SCREE_OK) status = build_level(f, curve, level, numbering, error);
   if (status == SCREE_OK) status = scree_surface_tree_make(&f->s, &f->tree, error);
   if (status == SCREE_OK) status = scree_markers_find(&f->s, &f->markers, error);
@@ -191,25 +192,24 @@ static bool take_vertex(fit *f, uint32_t v, bool *out_of_memory) {
   return !*out_of_memory;
 }
 
-static bool find_deviation(fit *f, double from, double to, double *far) {
-  return scree_deviation_find(&f->samples, &f->s, &f->fan, from, to, &f->gathered, far);
+static double find_deviation(const fit *f, double from) {
+  return scree_deviation_find(&f->samples, &f->s, &f->fan, from, INFINITY);
 }
 
 static void improve(fit *f, uint32_t v, bool *out_of_memory) {
-  double usual = 0.5 * scree_tune.usual * f->samples.mean, far, was;
+  double usual = 0.5 * scree_tune.usual * f->samples.mean;
   if (!take_vertex(f, v, out_of_memory) || f->gathered.count < f->fan.count) return;
   double sum = sum_of_distances(f);
   vec3 place = better_place(f);
   scree_fan_set(&f->fan, place);
   if (!(sum_of_distances(f) < (1 - WORTH) * sum)) return;
-  *out_of_memory |= !find_deviation(f, usual, INFINITY, &far);
+  double far = find_deviation(f, usual);
   if (far > usual) {
     scree_fan_set(&f->fan, f->s.vertex[v].at);
-    *out_of_memory |= !find_deviation(f, 0, INFINITY, &was);
-    if (far > was) return;
+    if (far > find_deviation(f, 0)) return;
     scree_fan_set(&f->fan, place);
   }
-  if (!*out_of_memory) move(f);
+  move(f);
 }
 
 /* ---- The volume ---- */

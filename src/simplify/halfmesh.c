@@ -483,6 +483,23 @@ done:
   return status;
 }
 
+scree_status scree_halfmesh_copy(const scree_halfmesh *s, scree_halfmesh *copy,
+                                 scree_error *error) {
+  scree_halfmesh made = *s;
+  made.vertex = NULL, made.half = NULL, made.flags = NULL, made.sums = NULL;
+  SCREE_ALLOC_OR(made.vertex, s->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(made.half, 3 * s->triangle_count, error, out_of_memory);
+  SCREE_ALLOC_OR(made.flags, s->vertex_count, error, out_of_memory);
+  memcpy(made.vertex, s->vertex, s->vertex_count * sizeof *made.vertex);
+  memcpy(made.half, s->half, 3 * s->triangle_count * sizeof *made.half);
+  memcpy(made.flags, s->flags, s->vertex_count);
+  *copy = made;
+  return SCREE_OK;
+out_of_memory:
+  scree_halfmesh_free(&made);
+  return SCREE_OUT_OF_MEMORY;
+}
+
 typedef struct compaction {
   scree_halfmesh *s;
   uint32_t *vertex, *triangle; /* new numbers */

@@ -93,6 +93,10 @@ scree_status scree_halfmesh_build(const scree_mesh *mesh, const scree_halfmesh *
                                   scree_halfmesh *surface, scree_error *error);
 void scree_halfmesh_free(scree_halfmesh *surface);
 
+/* A copy of a squeezed surface, without sums. */
+scree_status scree_halfmesh_copy(const scree_halfmesh *surface, scree_halfmesh *copy,
+                                 scree_error *error);
+
 /* Squeezes out what is gone, keeping the order. Needs scratch for 4 bytes per vertex and per
  * triangle. */
 void scree_halfmesh_compact(scree_halfmesh *surface, uint32_t *vertex_scratch,

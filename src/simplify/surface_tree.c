@@ -4,7 +4,7 @@
 
 #include <float.h>
 
-enum { LEAF = 4, BLOCK = 1024, DEPTH_MOST = 64 };
+enum { LEAF = 8, BLOCK = 1024, DEPTH_MOST = 64 };
 /* Above half a unit in the last place of a float of size 1, within which positions are. */
 #define OUTWARD 1e-7f
 

@@ -26,10 +26,8 @@ typedef struct scree_tuning {
   double shape[SCREE_LENIENCIES]; /* height over longest edge; below it at most half is lost */
   double spike; /* of sqrt(area / triangles): so far beyond the scan's box a vertex may come */
   /* order */
-  double batch; /* share of the vertices whose cheapest edge a pass may take: more, and the order
-                   of the costs is lost; less, and each pass finds them all for little. */
-  double fine;  /* share of the scan's triangles down to which passes do without samples: well above
-                   any level that is asked for, so that what they got wrong is still made good. */
+  double batch;   /* share of the vertices whose cheapest edge a pass may take: more, and the order
+                     of the costs is lost; less, and each pass finds them all for little. */
   double refresh; /* share of the triangles after which costs, boxes and what is usual are found
                      anew. */
   /* samples */
@@ -52,16 +50,20 @@ static const scree_tuning scree_tune = {.stiff = 1e-5,
                                         .shape = {0.05, 0.01, 0},
                                         .spike = 0.5,
                                         .batch = 0.5,
-                                        .fine = 0.3,
                                         .refresh = 0.75,
                                         .crowd = 48,
                                         .sweeps = 3,
                                         .hold = 0.02,
                                         .near = 0.2};
 
-/* Passes of independent collapses go on while a pass has enough for all threads: a size of blocks
- * of parallel loops. Below, one collapse follows the other, which is better, and takes some tenths
- * of a second. */
-enum { SCREE_PASS_LEAST = 16384 };
+enum {
+  /* The reference surface has no more triangles: what lies below is far less than any deviation of
+   * a level that is asked for, and larger scans take hardly more time and memory. */
+  SCREE_REFERENCE_MOST = 50000,
+  /* Passes of independent collapses go on while a pass has enough for all threads: a size of blocks
+   * of parallel loops. Below, one collapse follows the other, which is better, and takes some
+   * tenths of a second. */
+  SCREE_PASS_LEAST = 16384
+};
 
 #endif

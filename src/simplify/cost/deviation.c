@@ -74,8 +74,10 @@ static void find_block(void *context, size_t begin, size_t end, size_t block, in
 /* The surface's vertices are named by those of the scan; what still is where it was stays. */
 static scree_status match(finding *f, scree_error *error) {
   const scree_halfmesh *s = f->s, *scan = &f->samples->scan;
-  uint32_t *number; /* of the mesh's vertices in the scan, which has no fewer */
-  SCREE_ALLOC_OR(number, scan->vertex_count, error, out_of_memory);
+  uint32_t *number, origins = 0; /* of the mesh's vertices in the reference surface */
+  for (size_t v = 0; v < scan->vertex_count; v++)
+    if (scan->vertex[v].origin >= origins) origins = scan->vertex[v].origin + 1;
+  SCREE_ALLOC_OR(number, origins, error, out_of_memory);
   for (uint32_t v = (uint32_t)scan->vertex_count; v-- > 0;) number[scan->vertex[v].origin] = v;
   memset(f->stays, 0, scan->vertex_count * sizeof *f->stays);
   for (size_t v = 0; v < s->vertex_count; v++) {
@@ -90,16 +92,23 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-/* From the last on, so that lists ascend. */
+/* To the front of the triangle's list, or behind its first, which deviates most. */
+static void list_sample(scree_samples *p, const scree_halfmesh *s, uint32_t t, uint32_t v) {
+  float deviation = (float)scree_deviation_of(p, s, v, (double)p->far[v]);
+  uint32_t *link = &p->first[t];
+  if (*link != SCREE_NONE && deviation <= p->worst[t]) link = &p->next[*link];
+  p->worst[t] = fmaxf(p->worst[t], deviation);
+  p->next[v] = *link;
+  *link = v;
+}
+
+/* From the last on, so that lists ascend but for their first. */
 static void link_all(scree_samples *p, const scree_halfmesh *s) {
   memset(p->first, 0xff, s->triangle_count * sizeof *p->first);
   memset(p->worst, 0, s->triangle_count * sizeof *p->worst);
   for (uint32_t v = (uint32_t)p->scan.vertex_count; v-- > 0;) {
     if (p->far[v] < 0) continue;
-    uint32_t t = p->next[v];
-    p->next[v] = p->first[t];
-    p->first[t] = v;
-    p->worst[t] = fmaxf(p->worst[t], (float)scree_deviation_of(p, s, v, (double)p->far[v]));
+    list_sample(p, s, p->next[v], v);
   }
 }
 
@@ -127,9 +136,8 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-scree_status scree_samples_start(const scree_mesh *mesh, scree_samples *p, scree_error *error) {
-  scree_status status = scree_halfmesh_build(mesh, NULL, &p->scan, error);
-  if (status == SCREE_OK) status = scree_surface_tree_make(&p->scan, &p->scan_tree, error);
+scree_status scree_samples_start(scree_samples *p, scree_error *error) {
+  scree_status status = scree_surface_tree_make(&p->scan, &p->scan_tree, error);
   if (status == SCREE_OK) status = measure_extent(p, error);
   return status;
 }
@@ -253,14 +261,14 @@ static uint32_t nearest_of_fan(const scree_fan *f, vec3 p, double *distance2) {
 }
 
 /* The squared distance of p from the scan or, where that is at most `enough`, of a part of it:
- * first of the triangles about the nearest of the samples gathered. */
-static double to_scan(const scree_samples *p, vec3 at, const scree_gathered *g, uint32_t nearest,
+ * first of the triangles about the nearest of a list of samples. */
+static double to_scan(const scree_samples *p, vec3 at, uint32_t first_sample, uint32_t nearest,
                       double enough) {
   const scree_halfmesh *scan = &p->scan;
   double best = vec3_norm2(vec3_sub(at, scan->vertex[nearest].at));
-  for (size_t k = 0; k < g->count; k++) {
-    double d = vec3_norm2(vec3_sub(at, scan->vertex[g->items[k].sample].at));
-    if (d < best) best = d, nearest = g->items[k].sample;
+  for (uint32_t v = first_sample; v != SCREE_NONE && best > enough; v = p->next[v]) {
+    double d = vec3_norm2(vec3_sub(at, scan->vertex[v].at));
+    if (d < best) best = d, nearest = v;
   }
   if (best <= enough) return best;
   uint32_t first = scan->vertex[nearest].outgoing, h = first, hint = h / 3;
@@ -311,25 +319,49 @@ double scree_deviation_growth(const scree_samples *p, const scree_halfmesh *s, v
   return scree_extent_beyond(&p->extent, at, scree_tune.grow * sqrt(s->area / PI));
 }
 
-bool scree_deviation_find(const scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
-                          double from, double to, scree_gathered *g, double *deviation) {
-  double worst = from * from, most = to * to;
-  if (!scree_samples_gather(p, s, f, g)) return false;
-  for (size_t k = 0; k < g->count && worst <= most; k++) {
-    uint32_t start = g->items[k].start, v = g->items[k].sample;
-    double enough = far_for(p, s, v, sqrt(worst)),
-           far2 = to_fan(f, p->scan.vertex[v].at, enough * enough, &start);
-    if (far2 <= enough * enough) continue;
-    double lost = scree_deviation_of(p, s, v, sqrt(far2));
-    worst = scree_larger(worst, lost * lost);
+/* The greatest deviation so far, squared, and what is asked of it. */
+typedef struct search {
+  double deviation2, most2;
+} search;
+
+/* Of one sample; start: the fan's triangle to look at first. */
+static void heed_sample(const scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
+                        uint32_t v, uint32_t start, search *w) {
+  double enough = far_for(p, s, v, sqrt(w->deviation2)),
+         far2 = to_fan(f, p->scan.vertex[v].at, enough * enough, &start);
+  if (far2 <= enough * enough) return;
+  double lost = scree_deviation_of(p, s, v, sqrt(far2));
+  w->deviation2 = scree_larger(w->deviation2, lost * lost);
+}
+
+/* The samples about the fan: first the ends, and of every list the first, which is the farthest. */
+static void heed_samples(const scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
+                         search *w) {
+  const uint32_t ends[2] = {p->of[f->a], p->of[f->b]}, count = scree_fan_triangle_count(f);
+  for (int k = 0; k < 1 + (f->b != f->a); k++)
+    if (p->far[ends[k]] == NOT_YET) heed_sample(p, s, f, ends[k], 0, w);
+  for (int rest = 0; rest < 2; rest++)
+    for (uint32_t k = 0; k < count && w->deviation2 <= w->most2; k++) {
+      uint32_t v = p->first[scree_fan_triangle(s, f, k)], start = k < f->count ? k : 0;
+      if (v != SCREE_NONE && !rest) heed_sample(p, s, f, v, start, w);
+      while (rest && v != SCREE_NONE && (v = p->next[v]) != SCREE_NONE && w->deviation2 <= w->most2)
+        heed_sample(p, s, f, v, start, w);
+    }
+}
+
+double scree_deviation_find(const scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
+                            double from, double to) {
+  search w = {from * from, to * to};
+  heed_samples(p, s, f, &w);
+  if (w.deviation2 <= w.most2)
+    w.deviation2 = scree_larger(
+        w.deviation2, to_scan(p, f->at, p->first[f->edge[0] / 3], p->of[f->a], w.deviation2));
+  for (uint32_t i = 0; i < f->count && w.deviation2 <= w.most2; i++) {
+    uint32_t near = p->of[s->half[f->edge[i]].from], first = p->first[f->edge[i] / 3];
+    w.deviation2 = scree_larger(
+        w.deviation2, to_scan(p, vec3_lerp(f->at, f->from[i], 0.5), first, near, w.deviation2));
   }
-  if (worst <= most) worst = scree_larger(worst, to_scan(p, f->at, g, p->of[f->a], worst));
-  for (uint32_t i = 0; i < f->count && worst <= most; i++) {
-    uint32_t near = p->of[s->half[f->edge[i]].from];
-    worst = scree_larger(worst, to_scan(p, vec3_lerp(f->at, f->from[i], 0.5), g, near, worst));
-  }
-  *deviation = worst <= most ? sqrt(worst) : INFINITY;
-  return true;
+  return w.deviation2 <= w.most2 ? sqrt(w.deviation2) : INFINITY;
 }
 
 static int by_distance(const void *a, const void *b) {
@@ -365,9 +397,7 @@ void scree_samples_settle(scree_samples *p, const scree_halfmesh *s, const scree
     double distance2;
     uint32_t t = f->edge[nearest_of_fan(f, p->scan.vertex[v].at, &distance2)] / 3;
     p->far[v] = (float)sqrt(distance2);
-    p->worst[t] = fmaxf(p->worst[t], (float)scree_deviation_of(p, s, v, (double)p->far[v]));
-    p->next[v] = p->first[t];
-    p->first[t] = v;
+    list_sample(p, s, t, v);
   }
 }
 

@@ -1,10 +1,11 @@
-/* How far the surface is from the scan.
+/* How far the surface is from the scan, as the reference surface stands for it: the scan itself or,
+ * where it is large, one of its finest levels. Below, that is called the scan.
  *
  * Vertices of the scan that the surface has left are samples, each in the list of the triangle that
  * it is nearest to (after Klein, Liebich, Strasser, "Mesh reduction with error control", 1996). The
- * scan itself is the reference surface. The deviation of a collapse is the greatest distance, both
- * ways, that the new triangles answer for: of the samples around from these, and of the new vertex
- * and the middles of the new edges from the scan. */
+ * deviation of a collapse is the greatest distance, both ways, that the new triangles answer for:
+ * of the samples around from these, and of the new vertex and the middles of the new edges from the
+ * scan. */
 #ifndef SCREE_SIMPLIFY_DEVIATION_H
 #define SCREE_SIMPLIFY_DEVIATION_H
 
@@ -17,7 +18,8 @@ typedef struct scree_samples {
   scree_extent extent; /* of the scan, in the frame of its vertices */
   int8_t *end;         /* per vertex of the scan: see scree_extent_end */
   uint32_t *of;        /* per vertex of the surface: of the scan */
-  uint32_t *first;     /* per triangle of the surface: its first sample, or NONE */
+  uint32_t *first;     /* per triangle of the surface: its farthest sample, the first of its list,
+                          or NONE */
   float *worst;        /* per triangle: the greatest distance of its samples */
   uint32_t *next;      /* per vertex of the scan: in its triangle's list */
   float *far;          /* the same: its distance from its triangle; below 0: no sample yet */
@@ -38,9 +40,8 @@ static inline bool scree_has_samples(const scree_samples *samples) {
   return samples->far != NULL;
 }
 
-/* Makes the mesh the reference surface. */
-scree_status scree_samples_start(const scree_mesh *mesh, scree_samples *samples,
-                                 scree_error *error);
+/* With the reference surface set, finds its tree and its extent. */
+scree_status scree_samples_start(scree_samples *samples, scree_error *error);
 /* Makes samples of all its vertices that the surface, whose tree is tight, has left. */
 scree_status scree_samples_find(const scree_halfmesh *surface, const scree_surface_tree *tree,
                                 scree_samples *samples, scree_error *error);
@@ -66,11 +67,9 @@ double scree_deviation_of(const scree_samples *samples, const scree_halfmesh *s,
  * alike, in whichever direction. A flat body packs by its thickness. */
 double scree_deviation_growth(const scree_samples *samples, const scree_halfmesh *s, vec3 at);
 
-/* The deviation; below `from` it need not be exact, above `to` it is INFINITY. False: out of
- * memory. */
-bool scree_deviation_find(const scree_samples *samples, const scree_halfmesh *s,
-                          const scree_fan *fan, double from, double to, scree_gathered *scratch,
-                          double *deviation);
+/* The deviation; below `from` it need not be exact, above `to` it is INFINITY. */
+double scree_deviation_find(const scree_samples *samples, const scree_halfmesh *s,
+                            const scree_fan *fan, double from, double to);
 
 /* The samples of the fan's triangles and of those that go, and the vertices of the scan that its
  * vertices will leave. False: out of memory. */

@@ -15,12 +15,12 @@
 
 #include <string.h>
 
-enum { ROUNDS = 4, CLAIMS = 3 }; /* rounds of a pass; choices of a round */
+enum { ROUNDS = 2, CLAIMS = 8 }; /* rounds of a pass; choices of a round */
 enum { BLOCK = 1024, TAKEN_BLOCK = 64, SIDE_BY_SIDE = 256 }; /* of vertices, of collapses; edges */
+/* At most a collapse for so many vertices: each keeps its two ends and those about them. */
+enum { VERTICES_EACH = 8 };
 /* A pass that takes less of the triangles is the last. */
 #define LEAST_SHARE 0.02
-/* A whole cost may be so many times the limit, which comes from costs without deviations. */
-#define ROOM_FOR_DEVIATION 1.0
 
 enum { TAKEN = 1, TOUCHED = 2, APEX = 4, REFUSED = 8 }; /* marks of vertices */
 
@@ -47,23 +47,18 @@ typedef struct pass {
   uint32_t *candidates;
   size_t candidate_count;
   scree_keyed *order, *swap;
-  scree_gathered *scratch; /* per worker */
-  bool out_of_memory;
 } pass;
 
 static void pass_free(pass *p) {
-  for (int i = 0; p->scratch && i < scree_worker_count(); i++) scree_free(p->scratch[i].items);
-  void *const blocks[] = {p->apex,       p->best,  p->cost,   p->leader, p->chosen,
-                          p->marks,      p->taken, p->sorted, p->target, p->sorted_target,
-                          p->candidates, p->order, p->swap,   p->scratch};
+  void *const blocks[] = {p->apex,  p->best,       p->cost,   p->leader, p->chosen,
+                          p->marks, p->taken,      p->sorted, p->target, p->sorted_target,
+                          p->order, p->candidates, p->swap};
   for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) scree_free(blocks[i]);
 }
 
 static scree_status pass_allocate(pass *p, scree_decimator *d) {
   size_t n = d->s.vertex_count;
-  *p = (pass){.d = d, .room = n / 4 + 1};
-  p->scratch = scree_alloc_zero((size_t)scree_worker_count(), sizeof *p->scratch);
-  if (!p->scratch) return scree_fail_memory(d->error, sizeof *p->scratch, "a pass");
+  *p = (pass){.d = d, .room = n / VERTICES_EACH + 1};
   SCREE_ALLOC_OR(p->best, n, d->error, out_of_memory);
   SCREE_ALLOC_OR(p->cost, n, d->error, out_of_memory);
   SCREE_ALLOC_OR(p->leader, n, d->error, out_of_memory);
@@ -328,17 +323,15 @@ static void choose(pass *p) {
 /* ---- Judging and doing ---- */
 
 static void judge_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block;
+  (void)block, (void)worker;
   pass *p = context;
   scree_fan f;
   for (size_t i = begin; i < end; i++) {
     taken *t = &p->taken[i];
-    double most = ROOM_FOR_DEVIATION * p->limit;
-    scree_verdict v = scree_decimate_judge(p->d, t->half_edge, most, &f, &p->scratch[worker]);
-    if (v.out_of_memory) __atomic_store_n(&p->out_of_memory, true, __ATOMIC_RELAXED);
+    scree_verdict v = scree_decimate_judge(p->d, t->half_edge, p->limit, &f);
     t->cost = v.cost;
     t->error = (float)v.error;
-    t->allowed = v.cost < most;
+    t->allowed = v.cost < p->limit;
     p->target[i] = v.target;
   }
 }
@@ -398,7 +391,7 @@ static void set_stale(scree_halfmesh *s, uint32_t v) {
 }
 
 static void collapse_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block;
+  (void)block, (void)worker;
   pass *p = context;
   scree_decimator *d = p->d;
   scree_fan f;
@@ -407,9 +400,7 @@ static void collapse_block(void *context, size_t begin, size_t end, size_t block
     if (!t->allowed) continue;
     scree_fan_of_edge(&d->s, t->half_edge, &f);
     scree_fan_set(&f, p->target[i]);
-    if (!scree_decimate_collapse(d, d->record.count + p->order[i].index, &f, (double)t->error,
-                                 &p->scratch[worker]))
-      __atomic_store_n(&p->out_of_memory, true, __ATOMIC_RELAXED);
+    scree_decimate_collapse(d, d->record.count + p->order[i].index, &f, (double)t->error);
     set_stale(&d->s, f.a);
     for (uint32_t k = 0; k < f.count; k++) {
       set_stale(&d->s, d->s.half[f.edge[k]].from);
@@ -449,12 +440,11 @@ static scree_status run_round(pass *p, size_t *done) {
   scree_surface_tree_fit(&d->tree, &d->s, &planned);
   scree_parallel_for(p->taken_count, TAKEN_BLOCK, guard_block, p);
   *done += collapse_all(p);
-  if (p->out_of_memory) return scree_fail_memory(d->error, 0, "samples");
   rank_stale(p);
   return scree_markers_find(&d->s, &d->markers, d->error);
 }
 
-static scree_status run_pass(scree_decimator *d, double least, size_t *done) {
+static scree_status run_pass(scree_decimator *d, size_t least, size_t *done) {
   pass p = {0};
   *done = 0;
   scree_status status = scree_decimate_refresh(d);
@@ -464,18 +454,17 @@ static scree_status run_pass(scree_decimator *d, double least, size_t *done) {
     rank_stale(&p);
     if (set_limit(&p))
       for (int round = 0; status == SCREE_OK && round < ROUNDS; round++)
-        if ((double)d->s.live_triangle_count > least) status = run_round(&p, done);
+        if (d->s.live_triangle_count > least) status = run_round(&p, done);
   }
   pass_free(&p);
   return status;
 }
 
-scree_status scree_decimate_in_passes(scree_decimator *d, double least) {
+scree_status scree_decimate_in_passes(scree_decimator *d, size_t least) {
   scree_status status = SCREE_OK;
-  least = fmax(least, (double)(d->options.stop_count > d->pass_least ? d->options.stop_count
-                                                                     : d->pass_least));
   size_t done = SIZE_MAX, live = 0;
-  while (status == SCREE_OK && (double)d->s.live_triangle_count > least &&
+  if (least < d->options.stop_count) least = d->options.stop_count;
+  while (status == SCREE_OK && d->s.live_triangle_count > least &&
          (double)done > LEAST_SHARE * (double)live) {
     live = d->s.live_triangle_count;
     status = scree_decimate_tick(d) ? run_pass(d, least, &done) : SCREE_CANCELLED;

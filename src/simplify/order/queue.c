@@ -186,8 +186,9 @@ static scree_status collapse(queue *q, double error) {
   const scree_fan *f = &q->fan;
   drop_triangle(q, f->half_edge / 3);
   if (f->d != SCREE_NONE) drop_triangle(q, d->s.half[f->half_edge].twin / 3);
-  if (!scree_decimate_collapse(d, d->record.count, f, error, &q->scratch))
+  if (scree_has_samples(&d->samples) && !scree_samples_move(&d->samples, &d->s, f, &q->scratch))
     return scree_fail_memory(d->error, q->scratch.count * sizeof *q->scratch.items, "samples");
+  scree_decimate_collapse(d, d->record.count, f, error);
   scree_decimate_count(d, f);
   for (uint32_t i = 0; i < f->count; i++) {
     scree_bounds b = scree_fan_bounds(f, i);
@@ -211,9 +212,7 @@ static scree_status step(queue *q, bool *found) {
     uint32_t e = q->edge[0];
     double next = next_cost(q), was = q->cost[e];
     double most = q->known[e] ? INFINITY : JUDGED_TO * fmax(next, was);
-    scree_verdict v = scree_decimate_judge(d, e, most, &q->fan, &q->scratch);
-    if (v.out_of_memory)
-      return scree_fail_memory(d->error, q->scratch.count * sizeof *q->scratch.items, "samples");
+    scree_verdict v = scree_decimate_judge(d, e, most, &q->fan);
     if (v.cost > next && v.cost < INFINITY && !(q->known[e] && v.cost <= was)) {
       set(q, e, v.cost, true);
     } else if (v.cost < INFINITY && scree_apart(&around, &q->fan)) {
