@@ -75,5 +75,6 @@ if(SCREE_PYTHON)
                   OUTPUT_VARIABLE python_version OUTPUT_STRIP_TRAILING_WHITESPACE)
 endif()
 set(SCREE_PYTHON_DIR lib/python${python_version}/dist-packages CACHE STRING "Where the Python module is installed")
-install(DIRECTORY python/scree DESTINATION ${SCREE_PYTHON_DIR} FILES_MATCHING PATTERN "*.py")
+install(DIRECTORY python/scree DESTINATION ${SCREE_PYTHON_DIR} FILES_MATCHING PATTERN "*.py" PATTERN py.typed)
 install(FILES VERSION DESTINATION ${SCREE_PYTHON_DIR}/scree)
+install(DIRECTORY include/scree DESTINATION ${SCREE_PYTHON_DIR}/scree/include) # which it reads the interface from

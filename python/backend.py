@@ -37,8 +37,10 @@ def _soname(library):
 
 def _contents(library, version):
     """(name in the wheel, bytes) of everything but RECORD."""
-    for source in sorted((HERE / "scree").glob("*.py")):
+    for source in [*sorted((HERE / "scree").glob("*.py")), HERE / "scree/py.typed"]:
         yield f"scree/{source.name}", source.read_bytes()
+    for header in sorted((ROOT / "include/scree").glob("*.h")):
+        yield f"scree/include/scree/{header.name}", header.read_bytes()
     yield "scree/VERSION", version.encode()
     yield f"scree/{_soname(library)}", library.resolve().read_bytes()
     info = f"scree-{version}.dist-info"

@@ -10,21 +10,22 @@ SI units: metres, kilograms, seconds, radians. Tables are numpy arrays where num
 lists where it is not. What the library refuses is a scree.Error with one sentence and a `status`. Long work takes
 `progress`, a function of (phase, fraction) that cancels by returning False; Ctrl-C works anyway."""
 from ._calibrate import calibrate, optimise
-from ._library import Error, c_uint32 as _uint32, lib as _lib
+from ._library import Error, lib as _lib
 from ._mesh import Choice, Curve, Mesh, load, sample, samples
-from ._results import Motion, report
-from ._scene import Scene
-from ._values import whole as _whole
+from ._report import report
+from ._scene import Motion, Scene
+from ._values import Record, whole as _whole
 from ._world import Particle, World, write_pvd
 
-__all__ = ["Choice", "Curve", "Error", "Mesh", "Motion", "Particle", "Scene", "World", "calibrate", "load", "optimise",
+__all__ = ["Choice", "Curve", "Error", "Mesh", "Motion", "Particle", "Record", "Scene", "World", "calibrate", "load", "optimise",
            "report", "sample", "samples", "set_threads", "version", "write_pvd"]
+__version__: str = _lib.version()
 
 
-def version():
-    return _lib["version"]().decode()
+def version() -> str:
+    return __version__
 
 
-def set_threads(count):
+def set_threads(count: int) -> None:
     """Threads of parallel work; 0: one per processor. Results do not depend on it."""
-    _lib["set_threads"](_whole(count, "a number of threads", _uint32))
+    _lib.set_threads(_whole(count, "a number of threads"))

@@ -1,15 +1,41 @@
 """Between C values and Python's: numpy arrays where numpy is there, memoryviews and lists where it is not."""
+from __future__ import annotations
+
 import ctypes
+import html
 import operator
 import types
+
+from ._headers import Enum
 
 try:
     import numpy
 except ImportError:
-    numpy = None
+    numpy = None  # type: ignore[assignment]
 
 WHOLE_KINDS = (ctypes.c_int, ctypes.c_size_t, ctypes.c_uint32, ctypes.c_uint64)
 UNITS = {"m": 1, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "km": 1e3, "inch": 0.0254, "in": 0.0254, "ft": 0.3048}
+
+
+class Record(types.SimpleNamespace):
+    """Values by name; vars() makes a dictionary of it. A notebook shows it as a table."""
+
+    def _repr_html_(self) -> str:
+        return rows_html(vars(self))
+
+
+def rows_html(values):
+    """A table of names and values; what is long is cut."""
+    def cell(value):
+        if isinstance(value, Record):
+            return rows_html(vars(value))
+        if isinstance(value, dict):
+            return rows_html(value)
+        text = f"{value:.6g}" if isinstance(value, float) else str(value)
+        return html.escape(text if len(text) <= 200 else text[:200] + " ...")
+
+    return "<table>" + "".join(f"<tr><th>{html.escape(str(name))}</th><td>{cell(value)}</td></tr>"
+                               for name, value in values.items()) + "</table>"
 
 
 def metres(unit):
@@ -51,6 +77,15 @@ def index_of(word, words, what):
     return words.index(word)
 
 
+def word_of(kind, word, what):
+    """The C value of an enum's word."""
+    return word if isinstance(word, (int, Enum)) else kind(index_of(word, kind.words, what))
+
+
+def text_of(value):
+    return None if value is None else value.decode(errors="replace")
+
+
 def table(pointer, rows, columns, owner):
     """rows x columns values at a C pointer, without copying: a numpy array, or a 2-D memoryview. Read only; keeps
     owner alive."""
@@ -68,8 +103,9 @@ def table(pointer, rows, columns, owner):
 
 
 def column(values):
-    """A list of numbers as a numpy array where there is numpy."""
-    return numpy.array(values) if numpy else list(values)
+    """Numbers as a numpy array where there is numpy, else a list; nested C arrays too."""
+    values = [list(value) if isinstance(value, ctypes.Array) else value for value in values]
+    return numpy.array(values) if numpy else values
 
 
 def c_array(kind, values, width=None):
@@ -96,25 +132,23 @@ def c_array(kind, values, width=None):
     return (kind * max(1, len(flat)))(*flat), len(rows) if width else len(flat)
 
 
-def from_struct(struct, words=()):
-    """A C struct as a namespace: arrays as numpy arrays or lists, text as str, enums as the words given by field."""
-    words = dict(words)
+def record(struct):
+    """A C struct as a Record: arrays as numpy arrays or lists, text as str, enums as words; without what it points to."""
     result = {}
     for name, kind in struct._fields_:
         value = getattr(struct, name)
-        if name in words:
-            value = words[name][value]
+        if issubclass(kind, Enum):
+            value = kind.words[value.value] if value.value < len(kind.words) else None
         elif isinstance(value, bytes):
-            value = value.decode(errors="replace")
+            value = text_of(value)
         elif isinstance(value, ctypes.Structure):
-            value = from_struct(value)
+            value = record(value)
         elif isinstance(value, ctypes.Array):
-            value = [list(row) if isinstance(row, ctypes.Array) else row for row in value]
             value = column(value)
-        elif isinstance(value, ctypes._Pointer):
+        elif kind is ctypes.c_void_p or isinstance(value, (ctypes._Pointer, ctypes._CFuncPtr)):
             continue
         result[name] = value
-    return types.SimpleNamespace(**result)
+    return Record(**result)
 
 
 def set_fields(struct, values, what):
@@ -123,12 +157,21 @@ def set_fields(struct, values, what):
     for name, value in values.items():
         if name not in known:
             raise TypeError(f"{what} has no option '{name}'; there are {', '.join(known)}")
-        if isinstance(getattr(struct, name), ctypes.Structure):
+        kind = known[name]
+        if issubclass(kind, ctypes.Structure):
             set_fields(getattr(struct, name), value, name)
             continue
-        if isinstance(getattr(struct, name), ctypes.Array):
-            value = vector(value, f"{what}: {name}", known[name])
-        elif known[name] in WHOLE_KINDS:
-            value = whole(value, f"{what}: {name}", known[name])
+        if issubclass(kind, ctypes.Array):
+            value = vector(value, f"{what}: {name}", kind)
+        elif issubclass(kind, Enum):
+            value = word_of(kind, value, name)
+        elif kind in WHOLE_KINDS:
+            value = whole(value, f"{what}: {name}", kind)
+        elif kind is ctypes.c_char_p and isinstance(value, str):
+            value = value.encode()
+        elif issubclass(kind, ctypes._CFuncPtr):
+            value = kind(value)
+        elif hasattr(value, "_c"):
+            value = ctypes.pointer(value._c)
         setattr(struct, name, value)
     return struct

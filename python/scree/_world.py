@@ -1,295 +1,290 @@
 """Particles and worlds."""
+from __future__ import annotations
+
 import ctypes
+import itertools
 import math
 import os
-import types
-import weakref
+from typing import Any, Sequence
 
-from . import _library as c
-from ._library import call, lib
-from ._mesh import Mesh
-from ._values import c_array, column, from_struct, index_of, metres, set_fields, table, vector, whole
+from . import _picture
+from ._library import Handle, lib
+from ._mesh import Mesh, Progress, Shared
+from ._saved import Saved
+from ._values import Record, c_array, column, metres, record, set_fields, table
 
 
-class Particle:
-    """A rigid shape: of a closed mesh, a sphere, or a clump of spheres. Its frame has its origin in the centre of
-    mass and its axes along the principal axes."""
+class Particle(Shared):
+    """A rigid shape: of a closed mesh, a sphere, or a clump of spheres; not to be changed. Its frame has its origin in the
+    centre of mass and its axes along the principal axes."""
 
-    def __init__(self, mesh, **options):
+    def __init__(self, mesh: Mesh, **options: Any) -> None:
         """Option rounding, m."""
-        settings = set_fields(lib["default_particle_options"](), options, "Particle")
-        self._take("particle_from_mesh", mesh._struct, settings)
-
-    def _take(self, name, *arguments):
-        handle = ctypes.c_void_p()
-        call(name, *arguments, handle)
-        self._handle = handle
-        self._finalizer = weakref.finalize(self, lib["particle_free"], handle)
-        return self
+        self._c = lib.particle_from_mesh(mesh, set_fields(lib.default_particle_options(), options, "Particle"))
 
     @classmethod
-    def sphere(cls, radius):
-        return cls.__new__(cls)._take("particle_sphere", radius)
+    def sphere(cls, radius: float) -> Particle:
+        return cls._of(lib.particle_sphere(radius))
 
     @classmethod
-    def clump(cls, centres, radii, like=None):
+    def clump(cls, centres: Any, radii: Sequence[float], like: Particle | None = None) -> Particle:
         """like: a particle whose volume, centre and inertia the clump takes over."""
         where, count = c_array(ctypes.c_double, centres, 3)
         sizes, size_count = c_array(ctypes.c_double, radii)
         if count != size_count:
             raise ValueError(f"{count} centres, but {size_count} radii")
-        return cls.__new__(cls)._take("particle_clump", where, sizes, count, like._handle if like else None)
+        return cls._of(lib.particle_clump(where, sizes, count, like))
 
     @classmethod
-    def clump_of(cls, mesh, count, progress=None):
+    def clump_of(cls, mesh: Mesh, count: int, progress: Progress = None) -> Particle:
         """A clump of so many spheres, 1 to 300, or as many as the mesh has use for, with the mesh's volume, centre and
         inertia. A mesh of about 2,000 triangles has all the detail that spheres show."""
-        with c.Progress(progress) as p:
-            return cls.__new__(cls)._take("clump_fit", mesh._struct, whole(count, "count"), p)
+        return cls._of(lib.clump_fit(mesh, count, progress))
 
-    def measure(self):
+    def measure(self) -> Record:
         """The fields of scree_particle_measures: volume, size, centre, orientation, inertia, ..."""
-        measures = c.scree_particle_measures()
-        lib["particle_measure"](self._handle, measures)
-        return from_struct(measures, {"kind": c.PARTICLE_KINDS})
+        return record(lib.particle_measure(self))
 
-    def mesh(self):
+    def mesh(self) -> Mesh:
         """A copy of the mesh in the particle's frame; no triangles for spheres and clumps."""
-        copy = c.scree_mesh()
-        call("mesh_copy", lib["particle_mesh"](self._handle), copy)
-        return Mesh._of(copy)
+        return Mesh._of(lib.mesh_copy(lib.particle_mesh(self)))
+
+    def __reduce__(self) -> tuple:
+        """By a checkpoint of a world with this one body."""
+        return _particle_in, (_world_of(self),)
+
+    def __repr__(self) -> str:
+        measures = self.measure()
+        return f"<scree.Particle: {measures.kind} of size {measures.size:.4g} m>"
+
+    def _repr_html_(self) -> str:
+        return _picture.html(self, lambda options: lib.world_picture(_world_of(self), options, None), self.measure())
 
 
-class World:
-    """Bodies under gravity, touching each other and walls. Options are those of scree_world_options; law "linear" or
-    "hysteretic"."""
+class World(Saved):
+    """Bodies under gravity, touching each other and walls. Options are those of scree_world_options; law "linear",
+    "hysteretic" or "hertz".
 
-    def __init__(self, law="linear", **options):
-        settings = set_fields(lib["default_world_options"](), options, "World")
-        settings.law = index_of(law, c.LAWS, "law")
-        self._handle = ctypes.c_void_p()
-        call("world_create", settings, self._handle)
-        self._finalizer = weakref.finalize(self, lib["world_free"], self._handle)
+    One thread at a time: while a thread is in step or run, another's calls raise RuntimeError; `time` and `step_count` alone
+    may be read. copy.copy and pickle make a world of its own by a checkpoint, which goes on with the same bits."""
+
+    def __init__(self, law: str = "linear", **options: Any) -> None:
+        self._c = lib.world_create(set_fields(lib.default_world_options(), {"law": law, **options}, "World"))
 
     @classmethod
-    def load(cls, path):
-        """From a checkpoint of save()."""
-        world = cls.__new__(cls)
-        world._handle = ctypes.c_void_p()
-        call("world_load", os.fsencode(path), world._handle)
-        world._finalizer = weakref.finalize(world, lib["world_free"], world._handle)
-        return world
-
-    @classmethod
-    def _within(cls, handle, owner):
+    def _within(cls, pointer, owner):
         """One that belongs to something else, which lives as long as the world is in use."""
         world = cls.__new__(cls)
-        world._handle, world._owner = ctypes.c_void_p(handle), owner
+        world._c = Handle("world", pointer, within=owner)
         return world
 
-    def save(self, path, overwrite=False):
-        call("world_save", self._handle, os.fsencode(path), overwrite)
+    @classmethod
+    def load(cls, path: str | os.PathLike) -> World:
+        """From a checkpoint of save()."""
+        return cls._of(lib.world_load(path))
 
-    def add_material(self, wall=False, **values):
+    def save(self, path: str | os.PathLike, overwrite: bool = False) -> None:
+        lib.world_save(self, path, overwrite)
+
+    def add_material(self, wall: bool = False, **values: Any) -> int:
         """Its index. stiffness (N/m2), density (kg/m3), restitution, friction, rolling_friction,
         surface_energy (J/m2), poisson (of the law hertz); wall: the defaults of walls."""
-        material = lib["default_wall_material" if wall else "default_material"]()
-        return self._add("world_add_material", set_fields(material, values, "a material"))
+        material = lib.default_wall_material() if wall else lib.default_material()
+        return lib.world_add_material(self, set_fields(material, values, "a material"))
 
-    def set_contact(self, a, b, restitution, friction):
+    def set_contact(self, a: int, b: int, restitution: float, friction: float) -> None:
         """Between two materials."""
-        a, b = whole(a, "a material"), whole(b, "a material")
-        call("world_set_contact", self._handle, a, b, restitution, friction)
+        lib.world_set_contact(self, a, b, restitution, friction)
 
-    def set_pair(self, a, b, **values):
+    def set_pair(self, a: int, b: int, **values: float) -> Record:
         """Between two materials: restitution, friction, rolling_friction, pull_off (N), surface_energy (J/m2); what is
         not given stays. All of them."""
-        a, b, contact = whole(a, "a material"), whole(b, "a material"), c.scree_material_contact()
-        call("world_get_pair", self._handle, a, b, contact)
-        call("world_set_pair", self._handle, a, b, set_fields(contact, values, "a pair"))
-        return from_struct(contact)
+        contact = set_fields(lib.world_get_pair(self, a, b), values, "a pair")
+        lib.world_set_pair(self, a, b, contact)
+        return record(contact)
 
-    def add_wall(self, kind, material, mesh=None, **values):
+    def add_wall(self, kind: str, material: int, mesh: Mesh | None = None, **values: Any) -> int:
         """Its index. kind plane, disc, cylinder or mesh; position, axis, radius, length, velocity,
         angular_velocity; surface_velocity and surface_angular_velocity of a belt; two_sided: a closed mesh too is a
         sheet. One that is wound inwards holds what is in it."""
-        wall = c.scree_wall(kind=index_of(kind, c.WALL_KINDS, "wall"), axis=(0, 0, 1))
-        set_fields(wall, {"material": material, **values}, "a wall")
-        if mesh is not None:
-            wall.mesh = ctypes.pointer(mesh._struct)
-        return self._add("world_add_wall", wall)
+        given = {"kind": kind, "material": material, "axis": (0, 0, 1), **values}
+        return lib.world_add_wall(self, set_fields(lib.type("wall")(), given if mesh is None else {**given, "mesh": mesh},
+                                                   "a wall"))
 
-    def set_wall_velocity(self, index, velocity=(0, 0, 0), angular_velocity=(0, 0, 0)):
-        self._check(index, "world_wall_count", "wall")
-        call("world_set_wall_velocity", self._handle, index, vector(velocity, "velocity", c.double3),
-             vector(angular_velocity, "angular_velocity", c.double3))
+    def set_wall_velocity(self, index: int, velocity: Sequence[float] = (0, 0, 0),
+                          angular_velocity: Sequence[float] = (0, 0, 0)) -> None:
+        lib.world_set_wall_velocity(self, self._wall(index), velocity, angular_velocity)
 
-    def set_wall_surface(self, index, velocity=(0, 0, 0), angular_velocity=(0, 0, 0)):
+    def set_wall_surface(self, index: int, velocity: Sequence[float] = (0, 0, 0),
+                         angular_velocity: Sequence[float] = (0, 0, 0)) -> None:
         """Of its surface, while the wall itself stays: a belt, a roller."""
-        self._check(index, "world_wall_count", "wall")
-        call("world_set_wall_surface", self._handle, index, vector(velocity, "velocity", c.double3),
-             vector(angular_velocity, "angular_velocity", c.double3))
+        lib.world_set_wall_surface(self, self._wall(index), velocity, angular_velocity)
 
-    def set_wall_motion(self, index, *motions):
+    def set_wall_motion(self, index: int, *motions: dict[str, Any]) -> None:
         """From now on, each a dictionary: law constant, sine, positions or speeds; turns (about the axis through
         `through`, else along it), axis, speed, amplitude, frequency, phase, table ([[t, value], ...]), from, until."""
-        self._check(index, "world_wall_count", "wall")
-        structs, tables = (c.scree_wall_motion * max(1, len(motions)))(), []
+        structs = (lib.type("wall_motion") * max(1, len(motions)))()
         for i, given in enumerate(motions):
-            values = dict(given)
-            struct = lib["default_wall_motion"]()
-            struct.law = index_of(values.pop("law", "constant"), c.MOTION_LAWS, "law")
-            rows, struct.row_count = c_array(ctypes.c_double, values.pop("table", []), 2) if "table" in values else (None, 0)
-            struct.table = ctypes.cast(rows, ctypes.POINTER(ctypes.c_double))
-            tables.append(rows)
-            structs[i] = set_fields(struct, values, "a motion")
-        call("world_set_wall_motion", self._handle, index, structs, len(motions))
+            values = {**given}
+            rows, count = c_array(ctypes.c_double, values.pop("table"), 2) if "table" in given else (None, 0)
+            struct = set_fields(lib.default_wall_motion(), values, "a motion")
+            struct.table, struct.row_count = ctypes.cast(rows, ctypes.POINTER(ctypes.c_double)), count
+            structs[i] = struct
+        lib.world_set_wall_motion(self, self._wall(index), structs, len(motions))
 
-    def wall_power(self, index):
+    def wall_power(self, index: int) -> tuple[float, float]:
         """What the wall does on bodies: W in the last step, and J since the start."""
-        self._check(index, "world_wall_count", "wall")
-        power, energy = ctypes.c_double(), ctypes.c_double()
-        lib["world_wall_power"](self._handle, index, power, energy)
-        return power.value, energy.value
+        return lib.world_wall_power(self, self._wall(index))
 
-    def wall_force(self, index):
+    def wall_force(self, index: int) -> tuple[Any, Any]:
         """Force and torque about its position on the wall in the last step."""
-        self._check(index, "world_wall_count", "wall")
-        force, torque = c.double3(), c.double3()
-        lib["world_wall_force"](self._handle, index, force, torque)
-        return column(force), column(torque)
+        return lib.world_wall_force(self, self._wall(index))
 
-    def add_body(self, particle, material, **state):
+    def add_body(self, particle: Particle, material: int, **state: Any) -> int:
         """Its index. position (m), orientation (w x y z), velocity (m/s), angular_velocity (rad/s)."""
-        body = set_fields(lib["default_body"](), state, "a body")
-        index = ctypes.c_size_t()
-        call("world_add_body", self._handle, particle._handle, whole(material, "a material"), body, index)
-        return index.value
+        return lib.world_add_body(self, particle, material, set_fields(lib.default_body(), state, "a body"))
 
-    def _add(self, name, struct):
-        index = ctypes.c_size_t()
-        call(name, self._handle, struct, index)
-        return index.value
+    def _wall(self, index):
+        return _below(index, lib.world_wall_count(self), "wall")
 
-    def _check(self, index, count_name, what):
-        count = lib[count_name](self._handle)
-        if not 0 <= index < count:
-            raise IndexError(f"{what} {index} of {count}")
+    def _body(self, index):
+        return _below(index, len(self), "body")
 
-    def __len__(self):
+    def __len__(self) -> int:
         """All bodies ever added."""
-        return lib["world_body_count"](self._handle)
+        return lib.world_body_count(self)
 
-    def live(self):
+    def live(self) -> list[int]:
         """Indices of the bodies that are in."""
-        return [i for i in range(len(self)) if not lib["world_body_removed"](self._handle, i)]
+        return [i for i, removed in enumerate(of_each(lib.world_body_removed, self, len(self))) if not removed]
 
-    def body(self, index):
+    def body(self, index: int) -> Record:
         """position, orientation, velocity, angular_velocity; mass, material."""
-        self._check(index, "world_body_count", "body")
-        state = c.scree_body()
-        lib["world_get_body"](self._handle, index, state)
-        body = from_struct(state)
-        body.mass = lib["world_body_mass"](self._handle, index)
-        body.material = lib["world_body_material"](self._handle, index)
+        body = record(lib.world_get_body(self, self._body(index)))
+        body.mass, body.material = lib.world_body_mass(self, index), lib.world_body_material(self, index)
         return body
 
-    def set_body(self, index, **state):
-        self._check(index, "world_body_count", "body")
-        body = c.scree_body()
-        lib["world_get_body"](self._handle, index, body)
-        call("world_set_body", self._handle, index, set_fields(body, state, "a body"))
+    def set_body(self, index: int, **state: Any) -> None:
+        body = lib.world_get_body(self, self._body(index))
+        lib.world_set_body(self, index, set_fields(body, state, "a body"))
 
-    def set_body_force(self, index, force=(0, 0, 0), torque=(0, 0, 0)):
+    def set_body_force(self, index: int, force: Sequence[float] = (0, 0, 0), torque: Sequence[float] = (0, 0, 0)) -> None:
         """N through its centre and N m, in every step until they are set anew."""
-        self._check(index, "world_body_count", "body")
-        call("world_set_body_force", self._handle, index, vector(force, "force", c.double3),
-             vector(torque, "torque", c.double3))
+        lib.world_set_body_force(self, self._body(index), force, torque)
 
-    def bodies(self):
-        """position, orientation, velocity and angular_velocity of all bodies ever added, a row each."""
-        count, widths = len(self), {"position": 3, "orientation": 4, "velocity": 3, "angular_velocity": 3}
-        arrays = [(ctypes.c_double * max(1, count * width))() for width in widths.values()]
-        lib["world_get_bodies"](self._handle, 0, count, *arrays)
-        return types.SimpleNamespace(**{
-            name: table(ctypes.cast(array, ctypes.POINTER(ctypes.c_double)), count, width, array)
-            for array, (name, width) in zip(arrays, widths.items())})
+    def bodies(self) -> Record:
+        """Of all bodies ever added, a row each: position, orientation, velocity and angular_velocity; mass (kg), material;
+        inside, whether it has not been removed. Row i is body i."""
+        with self._c.turn.taken():
+            count, widths = len(self), {"position": 3, "orientation": 4, "velocity": 3, "angular_velocity": 3}
+            arrays = [(ctypes.c_double * max(1, count * width))() for width in widths.values()]
+            lib.world_get_bodies(self, 0, count, *arrays)
+            return Record(**{name: table(ctypes.cast(array, ctypes.POINTER(ctypes.c_double)), count, width, array)
+                             for array, (name, width) in zip(arrays, widths.items())},
+                          mass=column(of_each(lib.world_body_mass, self, count)),
+                          material=column(of_each(lib.world_body_material, self, count)),
+                          inside=column([not removed for removed in of_each(lib.world_body_removed, self, count)]))
 
-    def remove_body(self, index):
-        self._check(index, "world_body_count", "body")
-        lib["world_remove_body"](self._handle, index)
+    def remove_body(self, index: int) -> None:
+        lib.world_remove_body(self, self._body(index))
 
-    def positions(self):
+    def positions(self) -> Any:
         """Of the live bodies, a row each, m."""
-        rows = self.bodies().position
-        return column([[rows[i, k] for k in range(3)] for i in self.live()])
+        rows, live = self.bodies().position, self.live()
+        return rows[live] if hasattr(rows, "dtype") else [list(map(float, (rows[i, k] for k in range(3)))) for i in live]
 
-    def step(self, count=1):
+    def step(self, count: int = 1) -> None:
         """Advances by whole steps; Error with status DIVERGED where the run leaves its model."""
-        call("world_step", self._handle, whole(count, "a number of steps"))
+        with self._c.turn.taken(steps=True):
+            lib.world_step(self, count)
 
-    def run(self, duration):
+    def run(self, duration: float) -> None:
         """Advances by a time in seconds, rounded up to whole steps."""
-        advance(self, self.step, duration)
-
-    time = property(lambda self: lib["world_time"](self._handle))
-    step_count = property(lambda self: lib["world_step_count"](self._handle))
-    time_step = property(lambda self: lib["world_time_step"](self._handle, None))
+        if not (math.isfinite(duration) and duration >= 0):
+            raise ValueError(f"a duration is {duration} s; finite and at least 0")
+        with self._c.turn.taken(steps=True):
+            end = self.time + duration
+            while self.time < end:  # in pieces, between which Ctrl-C works
+                self.step(min(1000, max(1, int((end - self.time) / self.time_step + 0.999999))))
 
     @property
-    def hash(self):
+    def time(self) -> float:
+        """s"""
+        return lib.world_time.c(self._c.pointer)
+
+    @property
+    def step_count(self) -> int:
+        return lib.world_step_count.c(self._c.pointer)
+
+    @property
+    def time_step(self) -> float:
+        """s"""
+        return lib.world_time_step(self, None)
+
+    @property
+    def hash(self) -> str:
         """Names the state, 32 hexadecimal digits."""
-        checksum = lib["world_hash"](self._handle)
+        checksum = lib.world_hash(self)
         return f"{checksum.high:016x}{checksum.low:016x}"
 
-    def observe(self):
+    def observe(self) -> Record:
         """Energies, momenta, coordination, counts: the fields of scree_observation."""
-        observation = c.scree_observation()
-        lib["world_observe"](self._handle, observation)
-        return from_struct(observation)
+        return record(lib.world_observe(self))
 
-    def contacts(self):
-        """Every touching feature: body, other, wall, position, normal, force, overlap, share."""
+    def contacts(self) -> list[Record]:
+        """Every touching feature: body, other, wall, position, normal, force, overlap, weight."""
         found = []
 
         def visit(_context, contact):
-            found.append(from_struct(contact.contents))
+            found.append(record(contact.contents))
             return True
 
-        call("world_visit_contacts", self._handle, c.VISITOR(visit), None)
+        lib.world_visit_contacts(self, visit, None)
         return found
 
-    def write_vtp(self, path, view="surfaces", overwrite=False):
+    def write_vtp(self, path: str | os.PathLike, view: str = "surfaces", overwrite: bool = False) -> None:
         """For ParaView: surfaces, points, contacts or walls."""
-        call("world_vtp_write", self._handle, index_of(view, c.VIEWS, "view"), os.fsencode(path), overwrite)
+        lib.world_vtp_write(self, view, path, overwrite)
 
-    def export(self, folder, unit="mm", overwrite=False):
+    def export(self, folder: str | os.PathLike, unit: str | float = "mm", overwrite: bool = False) -> None:
         """pile.json, bodies.csv and an STL per shape."""
-        options = lib["default_export_options"]()
-        options.unit_m, options.overwrite = metres(unit), overwrite
-        call("world_export", self._handle, options, os.fsencode(folder))
+        options = set_fields(lib.default_export_options(), {"unit_m": metres(unit), "overwrite": overwrite}, "export")
+        lib.world_export(self, options, folder)
+
+    def __repr__(self) -> str:
+        return f"<scree.World of {len(self)} bodies at {self.time:.6g} s>"
+
+    def _repr_html_(self) -> str:
+        return _picture.html(self, lambda options: lib.world_picture(self, options, None), self.observe())
 
 
-class Owner:
-    """Of a C object: it is freed when neither the Python object nor its world is in use."""
-
-    def __init__(self, free, handle):
-        weakref.finalize(self, lib[free], handle)
-
-
-def advance(world, step, duration):
-    """step(count), in pieces between which Ctrl-C works."""
-    if not (math.isfinite(duration) and duration >= 0):
-        raise ValueError(f"a duration is {duration} s; finite and at least 0")
-    end = world.time + duration
-    while world.time < end:
-        step(min(1000, max(1, int((end - world.time) / world.time_step + 0.999999))))
+def of_each(function, owner, count):
+    """function(owner, 0), (owner, 1), ... below count, for many: by the bare C function."""
+    with owner._c.turn.taken():
+        return list(map(function.c, itertools.repeat(owner._c.pointer), range(count)))
 
 
-def write_pvd(path, files, times, overwrite=False):
+def _below(index, count, what):
+    if not 0 <= index < count:
+        raise IndexError(f"{what} {index} of {count}")
+    return index
+
+
+def _world_of(particle):
+    world = World(gravity=(0, 0, 0))
+    world.add_body(particle, world.add_material())
+    return world
+
+
+def _particle_in(world):
+    return Particle._of(Handle("particle", lib.world_body_particle(world, 0), within=world._c))
+
+
+def write_pvd(path: str | os.PathLike, files: Sequence[str | os.PathLike], times: Sequence[float],
+              overwrite: bool = False) -> None:
     """A series for ParaView: .pvd, or .vtp.series by the path's ending."""
     names = (ctypes.c_char_p * max(1, len(files)))(*[os.fsencode(f) for f in files])
     when, count = c_array(ctypes.c_double, times)
     if count != len(files):
         raise ValueError(f"{len(files)} files, but {count} times")
-    call("pvd_write", names, when, count, os.fsencode(path), overwrite)
+    lib.pvd_write(names, when, count, path, overwrite)

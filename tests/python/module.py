@@ -2,11 +2,15 @@
 SCREE_TEST_WITHOUT_NUMPY, without.
 usage: module.py WORLD_WRITER (tests/vtk/world.c, which also writes the checkpoint of a scene)"""
 import gc
+import html.parser
+import inspect
 import math
 import os
+import pathlib
 import subprocess
 import sys
 import tempfile
+import typing
 import unittest
 import xml.etree.ElementTree
 import zipfile
@@ -15,6 +19,7 @@ if os.environ.get("SCREE_TEST_WITHOUT_NUMPY"):
     sys.modules["numpy"] = None  # import numpy fails
 import scree
 from scree import _values
+from scree._library import lib
 
 WORLD_WRITER = sys.argv.pop(1)
 os.chdir(tempfile.mkdtemp())
@@ -23,6 +28,55 @@ SIDE = 0.06912  # of the sample box
 
 def tetrahedron():
     return scree.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+
+
+class Interface(unittest.TestCase):
+    def test_version(self):
+        version = (pathlib.Path(__file__).parents[2] / "VERSION").read_text().strip()
+        self.assertEqual((scree.__version__, scree.version()), (version, version))
+
+    def test_hints(self):
+        """Every public function says of what types its arguments and its answer are."""
+        self.assertTrue((pathlib.Path(scree.__file__).parent / "py.typed").exists())
+        functions = []
+        for name in scree.__all__:
+            thing = getattr(scree, name)
+            members = vars(thing).items() if inspect.isclass(thing) else [(name, thing)]
+            for key, member in members:
+                member = member.fget if isinstance(member, property) else getattr(member, "__func__", member)
+                if inspect.isfunction(member) and (not key.startswith("_") or key == "__init__"):
+                    functions.append(f"{name}.{key}")
+                    hints = typing.get_type_hints(member, vars(sys.modules[member.__module__]))
+                    wanted = {p for p in inspect.signature(member).parameters if p != "self" and p != "cls"} | {"return"}
+                    self.assertEqual(wanted - set(hints), set(), functions[-1])
+        self.assertGreater(len(functions), 80)
+
+    def test_notebooks(self):
+        """Well-formed, with a picture where the library draws, and with texts as texts."""
+        class Reader(html.parser.HTMLParser):
+            def __init__(self):
+                super().__init__()
+                self.open, self.seen = [], []
+
+            def handle_starttag(self, tag, attrs):
+                self.seen.append(tag)
+                self.open += [tag] if tag != "img" else []
+
+            def handle_endtag(self, tag):
+                assert self.open.pop() == tag
+
+        scan = scree.sample("icosphere-2")
+        scan.source = "<b>scan</b>"
+        world = scree.World()
+        world.add_body(scree.Particle(scan), world.add_material())
+        with open("shown.yaml", "w") as file:
+            file.write(Scenes.FILE)
+        drawn = [scan, scan.choose(), scree.Particle.clump([[0, 0, 0], [1, 0, 0]], [1, 1]), world, scree.Scene("shown.yaml").run(0.05)]
+        for thing in [*drawn, scan.measure(), scan.check()]:
+            reader = Reader()
+            reader.feed(thing._repr_html_())
+            self.assertEqual((reader.open, "b" in reader.seen, "table" in reader.seen), ([], False, True))
+            self.assertEqual("img" in reader.seen, thing in drawn and lib.build_has("rays") and lib.build_has("pictures"), thing)
 
 
 class Meshes(unittest.TestCase):
@@ -246,6 +300,13 @@ class Worlds(unittest.TestCase):
         self.assertEqual(world.live(), [1])
         with self.assertRaises(IndexError):
             world.body(2)
+        all_at_once = world.bodies()
+        self.assertEqual(list(all_at_once.inside), [False, True])
+        for i in range(2):
+            for name, value in vars(world.body(i)).items():
+                row = getattr(all_at_once, name)
+                row = [row[i, k] for k in range(len(value))] if hasattr(value, "__len__") else row[i]
+                self.assertEqual(row, list(value) if hasattr(value, "__len__") else value, name)
         measures = self.box.measure()
         self.assertEqual(measures.kind, "mesh")
         self.assertAlmostEqual(measures.volume, SIDE**3, 12)
@@ -319,7 +380,7 @@ class Worlds(unittest.TestCase):
                 world.run(duration)
             with self.assertRaisesRegex(ValueError, f"rp is {duration}"):
                 box.simplify(rp=duration)
-        with self.assertRaisesRegex(TypeError, "a number of steps is 2.5"):
+        with self.assertRaisesRegex(TypeError, "step_count is 2.5"):
             world.step(2.5)
         self.assertEqual((world.hash, len(world)), (before, 2))
 
@@ -416,7 +477,7 @@ output: {series: 0.05}
             scree.Scene.template("silo")
         self.assertIn("time:", scree.Scene.templates()["drum"])
         scene = scree.Scene("scene.yaml")
-        with self.assertRaisesRegex(ValueError, "a number of steps is -1"):
+        with self.assertRaisesRegex(ValueError, "step_count is -1"):
             scene.step(-1)
 
         def stop(scene):
