@@ -5,8 +5,9 @@
 - what fails raises Error;
 - outputs, which stand last, are not passed: those that are missing are made, filled and answered, several as a tuple.
   What is made and has a function to free it is freed when nothing in Python uses it any more;
-- arguments are what Python has: text and paths, words of enums, sequences for vectors, functions for callbacks and
-  progress, and objects of this package for the C object in their `_c`;
+- arguments are what Python has: text and paths, words of enums, sequences for vectors, dictionaries for structs (what is
+  not given has its default), functions for callbacks and progress, and objects of this package for the C object in
+  their `_c`;
 - a C object is in the hands of one thread at a time: see Turn."""
 from __future__ import annotations
 
@@ -19,7 +20,7 @@ import threading
 import weakref
 
 from ._headers import Enum, Headers
-from ._values import column, text_of, vector, whole, word_of
+from ._values import WHOLE_KINDS, column, set_fields, text_of, vector, whole, word_of
 
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -117,7 +118,9 @@ class Function:
             return lambda values: vector(values, parameter.name, array)
         if kind is not None and issubclass(kind, Enum):
             return lambda word: word_of(kind, word, parameter.name)
-        if kind in (ctypes.c_int, ctypes.c_size_t, ctypes.c_uint32, ctypes.c_uint64):
+        if parameter.const and parameter.base in self.library.headers.structs:
+            return lambda values: self.library.filled(parameter.base, values) if isinstance(values, dict) else values
+        if kind in WHOLE_KINDS:
             return lambda value: whole(value, parameter.name, kind)
         return None
 
@@ -202,6 +205,13 @@ class Library:
 
     def type(self, name):
         return self.headers.type("scree_" + name)
+
+    def filled(self, base, values):
+        """A struct of these values, and of its defaults where the library has such."""
+        noun = base[len("scree_"):]
+        named = "default_" + noun
+        struct = getattr(self, named)() if "scree_" + named in self.headers.functions else self.headers.type(base)()
+        return set_fields(struct, values, noun.replace("_options", ""))
 
     def free_of(self, base):
         """The function that frees what has this type; None: none does."""

@@ -7,7 +7,7 @@ from typing import Any, Callable, Optional
 
 from . import _picture
 from ._library import lib
-from ._values import Record, c_array, column, index_of, metres, record, set_fields, table
+from ._values import Record, c_array, column, index_of, metres, record, table
 
 Progress = Optional[Callable[[str, float], Optional[bool]]]
 CHOICES = ("recommended", "paper", "robust", "plain", "smooth", "cost")
@@ -104,8 +104,7 @@ class Mesh(Shared):
     def write(self, path: str | os.PathLike, unit: str | float = "mm", overwrite: bool = False,
               comment: str | None = None) -> None:
         """STL, PLY, OBJ, OFF or 3MF by the path's ending."""
-        given = {"unit_m": metres(unit), "overwrite": overwrite, "comment": comment}
-        lib.mesh_write(self, path, set_fields(lib.default_write_options(), given, "write"))
+        lib.mesh_write(self, path, {"unit_m": metres(unit), "overwrite": overwrite, "comment": comment})
 
     def write_vtp(self, path: str | os.PathLike, reference: Mesh | None = None, overwrite: bool = False) -> None:
         """For ParaView, with the areas of the triangles and, where a reference mesh is given, the distance to it."""
@@ -115,9 +114,8 @@ class Mesh(Shared):
                **options: Any) -> Record:
         """For a DEM code: options density (kg/m3), centre, principal, overwrite. Answers rotation, translation,
         mass, inertia, bounding_radius and measures of what was written; json_path gets them too."""
-        settings = set_fields(lib.default_export_options(), options, "export")
-        set_fields(settings, {"unit_m": metres(unit), "source": self.source, "checksum": vars(self.checksum)}, "export")
-        return record(lib.particle_export(self, settings, path, json_path))
+        facts = {"unit_m": metres(unit), "source": self.source, "checksum": vars(self.checksum)}
+        return record(lib.particle_export(self, {**options, **facts}, path, json_path))
 
     def measure(self) -> Record:
         """Area, volume, centroid, inertia and so on, SI: the fields of scree_measures."""
@@ -130,13 +128,13 @@ class Mesh(Shared):
     def check(self, progress: Progress = None, **options: Any) -> Record:
         """Whether it can serve as a particle: usable, verdict, defects by name, volume. Option intersections: False
         skips the exact test, which takes most of the time."""
-        return _check(lib.mesh_check(self, set_fields(lib.default_check_options(), options, "check"), progress))
+        return _check(lib.mesh_check(self, options, progress))
 
     def repair(self, progress: Progress = None, **options: Any) -> tuple[Mesh, Record]:
         """A repaired mesh, and what was done: done by name, before, after. Options seam_tolerance, hole_edges,
         fill_large_holes, debris_share, drop_cavities, keep_largest, cut_intersections, merge_shells (shells that cross,
         overlap or touch become one), merge_folds, intersections, cavity_share, volume_change: scree_repair_options in scree/check.h."""
-        repaired, report = lib.mesh_repair(self, set_fields(lib.default_repair_options(), options, "repair"), progress)
+        repaired, report = lib.mesh_repair(self, options, progress)
         told = record(report)
         told.before, told.after = _check(report.before), _check(report.after)
         told.done = {lib.repair_action_name(i): n for i, n in enumerate(report.done)}
@@ -144,8 +142,7 @@ class Mesh(Shared):
 
     def distance(self, other: Mesh, progress: Progress = None, **options: Any) -> Record:
         """Mean, RMS and Hausdorff distance to another mesh and back; options sample_count, hausdorff_gap, one_way."""
-        settings = set_fields(lib.default_distance_options(), options, "distance")
-        return record(lib.mesh_distance(self, other, settings, progress))
+        return record(lib.mesh_distance(self, other, options, progress))
 
     def distance_field(self, reference: Mesh) -> Any:
         """The distance of every vertex from the reference's surface, m."""
@@ -193,8 +190,7 @@ class Curve(Shared):
     """The record of one decimation; level 0 is the mesh, level i the mesh after i collapses. It is not pickled."""
 
     def __init__(self, mesh: Mesh, method: str = "volume", progress: Progress = None, **options: Any) -> None:
-        settings = set_fields(lib.default_simplify_options(), {"method": method, **options}, "curve")
-        self.source_mesh, self._c = mesh, lib.curve_build(mesh, settings, progress)
+        self.source_mesh, self._c = mesh, lib.curve_build(mesh, {"method": method, **options}, progress)
         self._c.borrowed = mesh._c  # the record's mesh; it goes after the record
 
     def __reduce__(self):
@@ -238,7 +234,7 @@ class Choice(Shared, Record):
 
     def __init__(self, curve: Curve, progress: Progress = None, reference: str = "scan",
                  tolerances: dict[str, float] | None = None, **options: Any) -> None:
-        settings = set_fields(lib.default_choice_options(), {"reference": reference, **options}, "choose")
+        settings = lib.filled("scree_choice_options", {"reference": reference, **options})
         names = [lib.shape_error_name(i) for i in range(len(settings.tolerances))]
         for name, share in (tolerances or {}).items():
             settings.tolerances[index_of(name, names, "tolerance")] = share
@@ -301,8 +297,7 @@ def load(path: str | os.PathLike, unit: str | float | None = None, weld: float =
         return sample(path[len("sample:"):], **sample_options)
     if sample_options:
         raise TypeError(f"{', '.join(sample_options)}: options of samples only")
-    given = {"unit_m": metres(unit or "mm"), "weld_tolerance": weld, "ignore_comment_unit": unit is not None}
-    scan = lib.scan_read(path, set_fields(lib.default_read_options(), given, "load"))
+    scan = lib.scan_read(path, {"unit_m": metres(unit or "mm"), "weld_tolerance": weld, "ignore_comment_unit": unit is not None})
     mesh, facts = Mesh._of(scan.mesh, os.fsdecode(path)), record(scan)
     mesh.format, mesh.warning, mesh.checksum = facts.format, facts.warning, facts.checksum
     return mesh
@@ -310,8 +305,7 @@ def load(path: str | os.PathLike, unit: str | float | None = None, weld: float =
 
 def sample(name: str, progress: Progress = None, **options: Any) -> Mesh:
     """A built-in sample; options resolution and noise in metres, seed."""
-    settings = set_fields(lib.default_sample_options(), options, "sample")
-    made = Mesh._of(lib.sample_make(name, settings, progress), "sample:" + name)
+    made = Mesh._of(lib.sample_make(name, options, progress), "sample:" + name)
     made.format = "sample"
     return made
 

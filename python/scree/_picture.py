@@ -12,7 +12,7 @@ from ._values import Record, rows_html, set_fields
 
 def html(thing, draw, facts: Record) -> str:
     """draw(options) answers an image."""
-    options = set_fields(lib.default_render_options(), {"width": 400, "height": 300, "samples": 8}, "a picture")
+    options = {"width": 400, "height": 300, "samples": 8}
     picture = ""
     try:
         with tempfile.TemporaryDirectory() as folder:

@@ -100,8 +100,7 @@ class Scene(Saved):
             return progress is None or progress(phase, state.contents.fraction) is not False
 
         watch, room = Callback(report), ctypes.c_void_p()
-        job = set_fields(lib.type("scene_job")(), {"resume": resume, "overwrite": overwrite, "states": True, "watch": watch},
-                         "complete")
+        job = lib.filled("scree_scene_job", {"resume": resume, "overwrite": overwrite, "states": True, "watch": watch})
         job.file, job.store = self._file.pointer, self._store.pointer
         job.folder = None if folder is None else os.fsencode(folder)
         with self._c.turn.taken(steps=True):
@@ -131,7 +130,7 @@ class Scene(Saved):
     def piles(self, **settings: Any) -> dict[str, Record]:
         """The piles of its sensors as they stand, by name: repose (angles in degrees, NaN where there is none),
         body_count, packing_fraction, size. settings: cell, sectors, band_low, band_high, for the scene's own."""
-        return {name: record(lib.scene_measure_pile(self, i, set_fields(lib.scene_pile_settings(self, i), settings, "a pile")))
+        return {name: record(lib.scene_measure_pile(self, i, set_fields(lib.scene_pile_settings(self, i), settings, "pile")))
                 for i, name in enumerate(lib.names("scene_pile_name", self))}
 
     @property

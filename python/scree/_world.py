@@ -20,7 +20,7 @@ class Particle(Shared):
 
     def __init__(self, mesh: Mesh, **options: Any) -> None:
         """Option rounding, m."""
-        self._c = lib.particle_from_mesh(mesh, set_fields(lib.default_particle_options(), options, "Particle"))
+        self._c = lib.particle_from_mesh(mesh, options)
 
     @classmethod
     def sphere(cls, radius: float) -> Particle:
@@ -69,7 +69,7 @@ class World(Saved):
     may be read. copy.copy and pickle make a world of its own by a checkpoint, which goes on with the same bits."""
 
     def __init__(self, law: str = "linear", **options: Any) -> None:
-        self._c = lib.world_create(set_fields(lib.default_world_options(), {"law": law, **options}, "World"))
+        self._c = lib.world_create({"law": law, **options})
 
     @classmethod
     def _within(cls, pointer, owner):
@@ -89,8 +89,7 @@ class World(Saved):
     def add_material(self, wall: bool = False, **values: Any) -> int:
         """Its index. stiffness (N/m2), density (kg/m3), restitution, friction, rolling_friction,
         surface_energy (J/m2), poisson (of the law hertz); wall: the defaults of walls."""
-        material = lib.default_wall_material() if wall else lib.default_material()
-        return lib.world_add_material(self, set_fields(material, values, "a material"))
+        return lib.world_add_material(self, set_fields(lib.default_wall_material(), values, "material") if wall else values)
 
     def set_contact(self, a: int, b: int, restitution: float, friction: float) -> None:
         """Between two materials."""
@@ -99,7 +98,7 @@ class World(Saved):
     def set_pair(self, a: int, b: int, **values: float) -> Record:
         """Between two materials: restitution, friction, rolling_friction, pull_off (N), surface_energy (J/m2); what is
         not given stays. All of them."""
-        contact = set_fields(lib.world_get_pair(self, a, b), values, "a pair")
+        contact = set_fields(lib.world_get_pair(self, a, b), values, "pair")
         lib.world_set_pair(self, a, b, contact)
         return record(contact)
 
@@ -108,8 +107,7 @@ class World(Saved):
         angular_velocity; surface_velocity and surface_angular_velocity of a belt; two_sided: a closed mesh too is a
         sheet. One that is wound inwards holds what is in it."""
         given = {"kind": kind, "material": material, "axis": (0, 0, 1), **values}
-        return lib.world_add_wall(self, set_fields(lib.type("wall")(), given if mesh is None else {**given, "mesh": mesh},
-                                                   "a wall"))
+        return lib.world_add_wall(self, given if mesh is None else {**given, "mesh": mesh})
 
     def set_wall_velocity(self, index: int, velocity: Sequence[float] = (0, 0, 0),
                           angular_velocity: Sequence[float] = (0, 0, 0)) -> None:
@@ -127,7 +125,7 @@ class World(Saved):
         for i, given in enumerate(motions):
             values = {**given}
             rows, count = c_array(ctypes.c_double, values.pop("table"), 2) if "table" in given else (None, 0)
-            struct = set_fields(lib.default_wall_motion(), values, "a motion")
+            struct = lib.filled("scree_wall_motion", values)
             struct.table, struct.row_count = ctypes.cast(rows, ctypes.POINTER(ctypes.c_double)), count
             structs[i] = struct
         lib.world_set_wall_motion(self, self._wall(index), structs, len(motions))
@@ -142,7 +140,7 @@ class World(Saved):
 
     def add_body(self, particle: Particle, material: int, **state: Any) -> int:
         """Its index. position (m), orientation (w x y z), velocity (m/s), angular_velocity (rad/s)."""
-        return lib.world_add_body(self, particle, material, set_fields(lib.default_body(), state, "a body"))
+        return lib.world_add_body(self, particle, material, state)
 
     def _wall(self, index):
         return _below(index, lib.world_wall_count(self), "wall")
@@ -166,7 +164,7 @@ class World(Saved):
 
     def set_body(self, index: int, **state: Any) -> None:
         body = lib.world_get_body(self, self._body(index))
-        lib.world_set_body(self, index, set_fields(body, state, "a body"))
+        lib.world_set_body(self, index, set_fields(body, state, "body"))
 
     def set_body_force(self, index: int, force: Sequence[float] = (0, 0, 0), torque: Sequence[float] = (0, 0, 0)) -> None:
         """N through its centre and N m, in every step until they are set anew."""
@@ -248,8 +246,7 @@ class World(Saved):
 
     def export(self, folder: str | os.PathLike, unit: str | float = "mm", overwrite: bool = False) -> None:
         """pile.json, bodies.csv and an STL per shape."""
-        options = set_fields(lib.default_export_options(), {"unit_m": metres(unit), "overwrite": overwrite}, "export")
-        lib.world_export(self, options, folder)
+        lib.world_export(self, {"unit_m": metres(unit), "overwrite": overwrite}, folder)
 
     def __repr__(self) -> str:
         return f"<scree.World of {len(self)} bodies at {self.time:.6g} s>"

@@ -347,7 +347,7 @@ class Worlds(unittest.TestCase):
         world.step(10)
         self.assertEqual(world.wall_power(0), (0, 0))
         for wrong, said in (({"law": "cosine"}, "law 'cosine' is none of"), ({"table": [[0, 1, 2]]}, "rows of 2"),
-                            ({"colour": 1}, "a motion has no option 'colour'")):
+                            ({"colour": 1}, "wall_motion has no option 'colour'")):
             with self.assertRaisesRegex((ValueError, TypeError), said):
                 world.set_wall_motion(0, wrong)
         ball = world.add_body(scree.Particle.sphere(0.01), world.add_material(), position=(0, 0, 1))
@@ -387,17 +387,17 @@ class Worlds(unittest.TestCase):
     def test_vectors_that_c_would_fill_up(self):
         world, ball = self.world(), scree.Particle.sphere(0.01)
         before = world.hash
-        for wrong, said in ((lambda: scree.World(gravity=(0, 0)), "World: gravity has 2 numbers; it takes 3"),
+        for wrong, said in ((lambda: scree.World(gravity=(0, 0)), "world: gravity has 2 numbers; it takes 3"),
                             (lambda: scree.World(gravity=(0, 0, -9.81, 0)), "gravity has 4 numbers"),
                             (lambda: world.add_body(ball, 0, position=[1]), "position has 1 number; it takes 3"),
                             (lambda: world.add_body(ball, 0, orientation=(1, 0, 0)), "orientation has 3 numbers; it takes 4"),
-                            (lambda: world.set_body(0, velocity=(1, 2)), "a body: velocity has 2 numbers"),
-                            (lambda: world.add_wall("disc", 1, radius=1, axis=(0, 1)), "a wall: axis has 2 numbers"),
+                            (lambda: world.set_body(0, velocity=(1, 2)), "body: velocity has 2 numbers"),
+                            (lambda: world.add_wall("disc", 1, radius=1, axis=(0, 1)), "wall: axis has 2 numbers"),
                             (lambda: world.set_wall_velocity(0, (1, 2)), "velocity has 2 numbers"),
                             (lambda: world.set_wall_velocity(0, angular_velocity=(1, 2, 3, 4)), "angular_velocity has 4 numbers")):
             with self.assertRaisesRegex(ValueError, said):
                 wrong()
-        with self.assertRaisesRegex(TypeError, "World: gravity is -9.81; 3 numbers"):
+        with self.assertRaisesRegex(TypeError, "world: gravity is -9.81; 3 numbers"):
             scree.World(gravity=-9.81)
         self.assertEqual((world.hash, len(world)), (before, 2))
 
@@ -526,7 +526,7 @@ class Templates(unittest.TestCase):
         heap = scene.piles()["heap"]
         self.assertFalse(heap.repose.heap)
         self.assertTrue(scene.piles(cell=0.005)["heap"].repose.peak > 0)
-        with self.assertRaisesRegex(TypeError, "a pile has no option 'colour'"):
+        with self.assertRaisesRegex(TypeError, "pile has no option 'colour'"):
             scene.piles(colour=1)
         scree.report("heap", "heap.html")
         self.assertGreater(os.path.getsize("heap.html"), 600000)

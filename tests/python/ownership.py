@@ -3,6 +3,7 @@ Run with numpy and, by SCREE_TEST_WITHOUT_NUMPY, without."""
 import copy
 import gc
 import inspect
+import multiprocessing
 import os
 import pathlib
 import pickle
@@ -183,6 +184,13 @@ class Copies(unittest.TestCase):
         self.assertEqual(lib.memory_used(), before)
 
 
+    def test_choices_of_other_processes(self):
+        scans = [mesh(), scree.sample("icosphere-3")]
+        with multiprocessing.get_context("spawn").Pool(2) as pool:
+            choices = pool.map(scree.Mesh.choose, scans)
+        self.assertEqual([facts(choice) for choice in choices], [facts(scan.choose()) for scan in scans])
+
+
 def print_nothing(_scene):
     pass
 
@@ -287,6 +295,21 @@ class Threads(unittest.TestCase):
         for thread in threads:
             thread.join()
         self.assertEqual((problems, len(set(hashes))), ([], 1))
+
+    def test_a_mesh_and_a_curve_for_many_threads(self):
+        scan, problems, seen = scree.sample("icosphere-3"), [], set()
+        curve = scan.curve()
+
+        def use():
+            level = curve.mesh(curve.find(100))
+            seen.add((str(facts(level)), str(scan.measure()), str(scan.distance(level)), str(curve.choose().recommended)))
+
+        threads = [threading.Thread(target=lambda: self.keep(problems, use)) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual((problems, len(seen)), ([], 1))
 
     @staticmethod
     def keep(problems, function):
