@@ -106,7 +106,7 @@ class World(Saved):
         """Its index. kind plane, disc, cylinder or mesh; position, axis, radius, length, velocity,
         angular_velocity; surface_velocity and surface_angular_velocity of a belt; two_sided: a closed mesh too is a
         sheet. One that is wound inwards holds what is in it."""
-        given = {"kind": kind, "material": material, "axis": (0, 0, 1), **values}
+        given: dict[str, Any] = {"kind": kind, "material": material, "axis": (0, 0, 1), **values}
         return lib.world_add_wall(self, given if mesh is None else {**given, "mesh": mesh})
 
     def set_wall_velocity(self, index: int, velocity: Sequence[float] = (0, 0, 0),
