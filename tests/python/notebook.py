@@ -1,12 +1,16 @@
 """Runs the cells of a notebook in their order; every value that a cell ends with is shown.
-usage: notebook.py NOTEBOOK"""
+usage: notebook.py NOTEBOOK      Exits 77 where there is no numpy."""
 import ast
+import importlib.util
 import json
 import os
 import pathlib
 import sys
 import tempfile
 
+if not importlib.util.find_spec("numpy"):
+    print("skipped: numpy is not installed (Debian: python3-numpy)")
+    sys.exit(77)
 cells = [cell for cell in json.loads(pathlib.Path(sys.argv[1]).read_text(encoding="utf-8"))["cells"]
          if cell["cell_type"] == "code"]
 os.chdir(tempfile.mkdtemp())
