@@ -16,19 +16,32 @@ scree_status cli_recommended_level(const scree_curve *curve, const scree_mesh *m
   return SCREE_OK;
 }
 
+/* The command that repairs the word with an option, and what that does. */
+static void offer(const char *word, const char *option, const char *does, scree_error *error) {
+  char shown[CLI_PRINTABLE_BYTES];
+  size_t used = strlen(error->message);
+  snprintf(error->message + used, sizeof error->message - used,
+           "; `scree repair %s -o closed.stl %s` %s", cli_printable(word, shown), option, does);
+}
+
 /* Holes by the mean of those that are left, of which the largest is at least that. */
-void cli_hint_at_option(const scree_repair_report *report, const scree_repair_options *options,
-                        scree_error *error) {
-  size_t holes = report->after.defects[SCREE_DEFECT_HOLE], used = strlen(error->message);
-  size_t edges = report->after.defects[SCREE_DEFECT_BOUNDARY_EDGE];
-  if (error->status == SCREE_BAD_MESH && report->after.usable)
-    snprintf(error->message + used, sizeof error->message - used,
-             "; `scree repair --volume-change` allows more");
-  if (error->status != SCREE_BAD_MESH || options->fill_large_holes || holes == 0) return;
-  if (edges / holes > options->hole_edges)
-    snprintf(error->message + used, sizeof error->message - used,
-             "; `scree repair --large-holes` fills those of more than %zu edges",
-             options->hole_edges);
+void cli_hint_at_option(const char *word, const scree_repair_report *report,
+                        const scree_repair_options *options, scree_error *error) {
+  const scree_check *after = &report->after;
+  size_t holes = after->defects[SCREE_DEFECT_HOLE];
+  size_t edges = after->defects[SCREE_DEFECT_BOUNDARY_EDGE];
+  double change = 100 * fabs(report->volume_after / report->volume_before - 1);
+  char option[32], does[64];
+  if (error->status != SCREE_BAD_MESH) return;
+  if (after->usable && change <= 99) {
+    snprintf(option, sizeof option, "--volume-change %.0f%%", ceil(change));
+    offer(word, option, "allows it", error);
+  } else if (!options->fill_large_holes && holes > 0 && edges / holes > options->hole_edges) {
+    snprintf(does, sizeof does, "fills those of more than %zu edges", options->hole_edges);
+    offer(word, "--large-holes", does, error);
+  } else if (!options->keep_largest && after->shell_count > 1) {
+    offer(word, "--largest", "keeps the largest shell alone", error);
+  }
 }
 
 /* Always in the same unit, which is the default one. */
@@ -76,7 +89,7 @@ scree_status cli_load_closed(const char *word, const cli_input_options *options,
   if (status == SCREE_OK && !cli_is_sample(word, NULL)) {
     status = scree_mesh_prepare(&scan->mesh, no_repair ? NULL : &repair, progress, &scan->mesh,
                                 &made, error);
-    if (status != SCREE_OK && !no_repair) cli_hint_at_option(&made, &repair, error);
+    if (status != SCREE_OK && !no_repair) cli_hint_at_option(word, &made, &repair, error);
     if (status != SCREE_OK) scree_scan_free(scan);
     if (scale) scale_report(&made, *scale);
   }
@@ -164,7 +177,8 @@ void cli_repair_text(const scree_repair_report *report, char *buffer, size_t siz
   size_t used = 0;
   buffer[0] = 0;
   const size_t *done = report->done;
-  if (report->before.usable && !done[SCREE_REPAIR_FILL_CAVITY]) return;
+  if (report->before.usable && report->before.triangle_count == report->after.triangle_count)
+    return; /* nothing is lost */
   for (int a = 0; a < SCREE_REPAIR_ACTION_COUNT; a++) {
     if (!done[a] || used + 1 >= size) continue;
     used += (size_t)snprintf(buffer + used, size - used, "%s%zu %s",

@@ -51,9 +51,10 @@ scree_status cli_recommended_level(const scree_curve *curve, const scree_mesh *m
                                    const scree_progress *progress, size_t *level,
                                    scree_error *error);
 
-/* Where the repair failed for what an option allows: which one, at the end of the error. */
-void cli_hint_at_option(const scree_repair_report *report, const scree_repair_options *options,
-                        scree_error *error);
+/* Where the repair of the word failed for what an option allows: the command, at the end of the
+ * error. */
+void cli_hint_at_option(const char *word, const scree_repair_report *report,
+                        const scree_repair_options *options, scree_error *error);
 
 /* The facets that reading left out, where there were any. */
 void cli_print_left_out(FILE *stream, size_t count);

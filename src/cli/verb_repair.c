@@ -188,7 +188,7 @@ static int run(const cli_call *call) {
   (void)take_plane(call, scan.unit_m, &how); /* which the file may state */
   scree_status status =
       scree_mesh_repair(&scan.mesh, &how, call->progress, &repaired, &report, &error);
-  if (status == SCREE_BAD_MESH) cli_hint_at_option(&report, &how, &error);
+  if (status == SCREE_BAD_MESH) cli_hint_at_option(call->inputs[0], &report, &how, &error);
   if (status != SCREE_OK) cli_name_in_error(call->inputs[0], &error);
   if (status != SCREE_OK && status != SCREE_BAD_MESH) {
     code = cli_fail(&error);

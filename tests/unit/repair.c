@@ -253,6 +253,35 @@ static void t_junctions(void **state) {
   scree_mesh_free(&coarse);
 }
 
+/* A label that lies on a body, flat or slightly bent, is dropped; a flat side of the body is not,
+ * and with no debris to drop the label stays and cannot be mended. */
+static void labels(void **state) {
+  (void)state;
+  scree_mesh body = shape_grid_box(3, 3, 3, 6), label = shape_sheet(0, 8);
+  scree_repair_options keep = scree_default_repair_options();
+  scree_measures clean = measures_of(&body);
+  scree_error error;
+  scree_mesh none;
+  keep.debris_share = 0;
+  for (size_t i = 0; i < 3 * label.vertex_count; i++)
+    label.positions[i] = 0.5 + 2 * label.positions[i];
+  for (int bent = 0; bent < 2; bent++) {
+    for (size_t v = 0; v < label.vertex_count; v++) {
+      double *p = label.positions + 3 * v;
+      p[2] = 3.001 + bent * 1e-3 * (p[0] - 1.5) * (p[0] - 1.5);
+    }
+    scree_mesh mesh = shape_join(&body, &label);
+    outcome o = repair(&mesh);
+    expect_same(&o, &clean, 1e-12);
+    assert_int_equal(o.report.done[SCREE_REPAIR_DROP_DEBRIS], 1);
+    assert_int_equal(scree_mesh_repair(&mesh, &keep, NULL, &none, NULL, &error), SCREE_BAD_MESH);
+    free_outcome(&o);
+    scree_mesh_free(&mesh);
+  }
+  scree_mesh_free(&body);
+  scree_mesh_free(&label);
+}
+
 /* Boxes that share an edge, or a corner, come apart and keep their volumes but for a hair. */
 static void touching_boxes(void **state) {
   (void)state;
@@ -743,6 +772,7 @@ int main(void) {
                                      cmocka_unit_test(holes),
                                      cmocka_unit_test(large_hole),
                                      cmocka_unit_test(t_junctions),
+                                     cmocka_unit_test(labels),
                                      cmocka_unit_test(touching_boxes),
                                      cmocka_unit_test(fins),
                                      cmocka_unit_test(fin_on_an_open_surface),

@@ -22,6 +22,10 @@ enum {
 /* No more than this share of the facets is cut out: beyond it, it is no local repair. */
 #define CUT_SHARE 0.1
 
+/* An open shell is a flat sheet where it bounds no more than this share of its area to the power of
+ * 3/2: filled, it would lie on itself. */
+#define FLAT_SHARE 1e-3
+
 typedef struct nest {
   scree_adjacency adjacency;
   scree_shells shells;
@@ -76,14 +80,25 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
+static bool is_flat_sheet(const scree_shell *s) {
+  return !s->closed && fabs(s->volume) <= FLAT_SHARE * s->area * sqrt(s->area);
+}
+
+/* Small open shells and, beside a larger one that is none, flat sheets, as labels are in scans. */
 scree_status scree_repair_scraps(scree_repair *r, scree_error *error) {
   nest n;
   scree_status status = find_nest(r, &n, error);
   if (status != SCREE_OK) return status;
   size_t count = 0;
+  double largest_body = 0;
+  for (size_t i = 0; i < n.shells.count; i++)
+    if (!is_flat_sheet(&n.shells.items[i]))
+      largest_body = fmax(largest_body, n.shells.items[i].area);
   for (size_t i = 0; i < n.shells.count; i++) {
     const scree_shell *s = &n.shells.items[i];
-    n.drop[i] = !s->closed && s->area < r->options->debris_share * n.largest_area;
+    double least = r->options->debris_share * n.largest_area;
+    n.drop[i] = !s->closed &&
+                (s->area < least || (least > 0 && is_flat_sheet(s) && s->area < largest_body));
     count += n.drop[i];
   }
   if (count) status = drop_shells(r, &n, error);
