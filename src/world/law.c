@@ -22,6 +22,8 @@
  * that, dU + W over an impact, it gives back: its force is up to twice as large, or none, until the
  * balance is even (compare Love and Laursen 2003, "Energy conserving algorithms for contact").
  */
+#include "world/law.h"
+
 #include "world/contact.h"
 #include "world/walls.h"
 
@@ -141,105 +143,29 @@ static double weight_of(const scree_contact_point *contact, const scree_smooth_m
   return above > 0 ? contact->taper * above / maximum->denominator : 0;
 }
 
-/* Of the pair's spring, at an overlap of 0 or more. */
-typedef struct spring_state {
-  double force, energy;
-} spring_state;
-
-static spring_state spring_at(const scree_pair *pair, double m) {
-  double k = pair->law.stiffness, hertz = pair->law.hertz;
-  if (hertz == 0) return (spring_state){k * m, 0.5 * k * m * m};
-  double force = hertz * m * sqrt(m);
-  return (spring_state){force, 0.4 * force * m};
-}
-
-/* What leapfrog keeps of the spring's energy in the midst of a drift from one overlap to another:
- * K x y/2 of a linear one. */
-static double energy_between(const scree_pair *pair, double x, double y) {
-  spring_state at_x = spring_at(pair, x), at_y = spring_at(pair, y);
-  return 0.5 * (at_x.energy + at_y.energy) - 0.25 * (at_x.force - at_y.force) * (x - y);
-}
-
-/* How far the contact is no impact any more, from 0 to 1: the tangential dashpot. An oblique impact
- * follows the spring and slider alone; what rests on each other is calmed. */
-static double lasting(const scree_pair *pair) {
-  double age = pair->age / pair->law.contact_time;
-  return age < 1.5 ? 0 : age > 3 ? 1 : (age - 1.5) / 1.5;
-}
-
-/* What all contacts of the pair share: in sliding, and the motion that their dashpots see.
- */
+/* What all contacts of the pair share: in sliding, and the motion that their dashpots see. */
 typedef struct slider {
-  double stiffness, damping, friction,
-      time_step;         /* k_t over contact weight, c_t over contact weight, mu, dt */
+  scree_slider along;
   double normal_damping; /* C */
-  double grown;          /* by which the contact weights count in sliding */
   vec3 velocity, spin;
   bool belt; /* b's surface moves along itself so: */
   vec3 belt_velocity, belt_spin;
 } slider;
 
-/* With u the velocity of the last drift and a dt what the last forces added to it, dashpots of an
- * impact see u + a dt/2, that of their own moment, and those that last u - a dt/4. A motion that
- * turns about from step to step grows where c dt/m > 1 by the former, > 2 by u alone, and > 4 by
- * the latter, which no other factor exceeds. A slender body that many others hold has so much: with
- * u + a dt/2 it never came to rest, and what trembles creeps. */
-static const double impact_lead = 1, lasting_lead = -0.5; /* of u to u + a dt/2 */
-
-/* K_t and C_t, C by the ratio of tangential and normal stiffness, over the root of the overlap. */
-static void set_mindlin(const scree_pair *pair, slider *law, double lasts) {
-  double ratio = pair->law.mindlin / (1.5 * pair->law.hertz);
-  law->grown = sqrt(pair->overlap);
-  law->stiffness = pair->law.mindlin;
-  law->damping = lasts * pair->law.damping * sqrt(ratio) / sqrt(law->grown);
-}
-
 static slider make_slider(const scree_world *world, const scree_pair *pair,
                           const scree_frame *relative, double drift) {
-  double ratio = world->options.tangential_ratio, lasts = lasting(pair),
-         lead = impact_lead + (lasting_lead - impact_lead) * lasts;
+  double lasts = scree_lasting(pair), lead = scree_dashpot_lead(lasts);
   vec3 velocity = vec3_sub(relative->velocity_now, relative->velocity),
        spin = vec3_sub(relative->spin_now, relative->spin);
-  slider law = {.stiffness = pair->law.stiffness * ratio,
-                .damping = lasts * pair->law.damping * sqrt(ratio),
-                .grown = 1,
-                .friction = pair->law.friction,
-                .time_step = drift,
+  slider law = {.along = scree_slider_of(pair, world->options.tangential_ratio, lasts, drift),
                 .velocity = vec3_mad(relative->velocity, velocity, lead),
                 .spin = vec3_mad(relative->spin, spin, lead)};
-  if (pair->law.hertz > 0) set_mindlin(pair, &law, lasts);
   const scree_world_wall *wall = pair->wall ? &world->walls.items[pair->b] : NULL;
   if (!wall || !scree_wall_is_belt(wall)) return law;
   law.belt = true;
   law.belt_velocity = wall->surface_velocity;
   law.belt_spin = wall->surface_spin;
   return law;
-}
-
-/* Stretches the spring by the last drift `v` along the surface, turns it by half of the drift's
- * `spin` (it is kept in the frame of b), and answers the tangential force; `seen` is what the
- * dashpot sees. */
-static vec3 slide(const slider *law, scree_anchor *anchor, double s, vec3 n, vec3 v, vec3 spin,
-                  vec3 seen, double normal_force, double *energy) {
-  vec3 xi = {0, 0, 0};
-  if (anchor->weight > 0) {
-    vec3 rate = vec3_mad(v, vec3_cross(spin, anchor->stretch), 0.5);
-    xi = vec3_mad(anchor->stretch, rate, law->time_step);
-    xi = vec3_mad(xi, n, -vec3_dot(xi, n));
-    if (s > anchor->weight) xi = vec3_scale(xi, anchor->weight / s);
-  }
-  double k = law->stiffness * s, c = law->damping * s, most = law->friction * normal_force;
-  double length2 = vec3_norm2(xi);
-  if (k * k * length2 > most * most) {
-    xi = vec3_scale(xi, most / (k * sqrt(length2)));
-    length2 = vec3_norm2(xi);
-  }
-  vec3 force = vec3_mad(vec3_scale(xi, -k), seen, -c);
-  double size2 = vec3_norm2(force);
-  if (size2 > most * most) force = vec3_scale(force, most / sqrt(size2));
-  anchor->stretch = xi;
-  *energy += 0.5 * k * length2;
-  return force;
 }
 
 /* Forces on a and their moments about the origin of b, in its frame: normal ones, the dashpots'
@@ -277,7 +203,7 @@ static double inverse_mass(const scree_world *world, const scree_pair *pair,
  * the overlap in a small part of the way: the force must move the bodies by little of that way in a
  * step, by K m dt^2/mu. */
 static double most_resolved(const scree_pair *pair, double step, double inverse, double least) {
-  double moves = spring_at(pair, pair->overlap).force * step * step * inverse;
+  double moves = scree_spring_at(pair, pair->overlap).force * step * step * inverse;
   return scree_max(least, resolved_share * pair->law.reach / moves);
 }
 
@@ -350,73 +276,6 @@ static scree_wrench turned(const scree_wrench *load, const mat3 *rotation) {
   return (scree_wrench){mat3_mul_vec(rotation, load->force), mat3_mul_vec(rotation, load->moment)};
 }
 
-static scree_kept_wrench kept_wrench(const scree_wrench *load) {
-  vec3 f = load->force, m = load->moment;
-  return (scree_kept_wrench){{(float)f.x, (float)f.y, (float)f.z},
-                             {(float)m.x, (float)m.y, (float)m.z}};
-}
-
-/* How the overlap changes: by the last drift's velocities, and by those of the present moment. */
-typedef struct overlap_rate {
-  double drift, now;
-} overlap_rate;
-
-/* What acts in a kick: the spring's force, and this share of what holds the bodies. */
-typedef struct felt {
-  double force, pull;
-  bool whole;
-} felt;
-
-/* In the step in which a touch begins or ends the overlap x is less than the way on the other side.
- * The whole force, acting for the whole kick, would work on that way too. Leapfrog keeps m v2/2 + U
- * from one drift to the next, with U = K x x'/2 - P (x + x')/2 of a linear spring; and so it does
- * from before the touch, or to after it, where the kick's work is this U, with x' the overlap a
- * step further inside. The kick changes the velocity by less than itself, so that one more round
- * finds it. */
-static felt felt_overlap(const scree_world *world, const scree_pair *pair, double x,
-                         overlap_rate rate, const scree_scratch *scratch,
-                         const scree_wrench *slope) {
-  const double drift = scratch->drift, step = scratch->step, kick = 0.5 * (drift + step);
-  const bool begins = rate.now > 0;
-  double speed = fabs(rate.drift), outer = begins ? speed * drift : fabs(rate.now) * step;
-  felt f = {spring_at(pair, x).force, 1, true};
-  if (x >= most_slopes[0] * pair->list.travel || !(outer > x) || !(speed > 0)) return f;
-  const double inverse = inverse_mass(world, pair, &scratch->relative, slope);
-  for (int round = 0; round < 2; round++) {
-    double change = round == 0 ? 0 : (f.force - pair->law.pull * f.pull) * kick * inverse,
-           middle = begins ? speed - 0.5 * change : speed + 0.5 * change,
-           inner = scree_max(0, begins ? (speed - change) * step : speed * drift),
-           way = scree_max(middle, 0.5 * speed) * kick;
-    f = (felt){energy_between(pair, x, x + inner) / way, (x + 0.5 * inner) / way, false};
-  }
-  return f;
-}
-
-/* The spring's force at overlap m, which a linear one feels as `felt` says, less that with which
- * the bodies hold each other, and the energy that comes back from both. */
-static double spring_force(const scree_world *world, scree_pair *pair, double m, const felt *part) {
-  double pull = pair->law.pull, stiffness = pair->law.stiffness;
-  if (world->options.law != SCREE_LAW_HYSTERETIC) {
-    pair->elastic = spring_at(pair, m).energy - pull * m;
-    return part->force - pull * part->pull;
-  }
-  double e2 = pair->law.restitution * pair->law.restitution, unloading = stiffness / e2;
-  pair->largest = scree_max(pair->largest, m);
-  double force = scree_max(0, scree_min(stiffness * m, unloading * (m - (1 - e2) * pair->largest)));
-  pair->elastic = 0.5 * force * force / unloading - pull * m;
-  return force - pull; /* what it loses as it begins it wins in the mean as it ends */
-}
-
-/* By how much the spring's force is changed so that what it has won or lost in this impact by no
- * work comes back with the kick; by no larger share than that is of its energy. Not where a touch
- * begins or ends, which leaves a debt to the next step. */
-static double repaid(const scree_pair *pair, double balance, double kick_work, double stored) {
-  if (!(stored > 0) || kick_work == 0) return 0;
-  double most = scree_min(1, fabs(balance) / stored) * (1 - lasting(pair)),
-         share = -balance / kick_work;
-  return share > most ? most : scree_max(share, -most);
-}
-
 /* One touching feature: its forces, added to the sums. */
 static void contact_force(const scree_pair *pair, const slider *law, double spring,
                           scree_contact_point *contact, const scree_frame *relative, double *energy,
@@ -446,9 +305,9 @@ static void contact_force(const scree_pair *pair, const slider *law, double spri
   sums->dashpot_power += dashpot * approach;
   contact->force = vec3_scale(n, normal);
   if (contact->of_depth) return;
-  const double weight_along = contact->weight * law->grown;
-  vec3 along =
-      slide(law, contact->anchor, weight_along, n, v, relative->spin, seen, pressed, energy);
+  const double weight_along = contact->weight * law->along.grown;
+  vec3 along = scree_slide(&law->along, contact->anchor, weight_along, n, v, relative->spin, seen,
+                           pressed, energy);
   contact->force = vec3_mad(along, n, normal);
   contact->anchor->normal = n;
   contact->anchor->weight = weight_along;
@@ -472,7 +331,8 @@ static void fade(double spring, scree_contact_point *contact, load_sums *sums) {
  */
 static void judge(const scree_world *world, scree_pair *pair, const scree_contact_list *contacts) {
   const scree_particle *b = scree_pair_shape_b(world, pair);
-  bool jammed = pair->overlap > 0.5 * pair->law.reach && lasting(pair) == 1 && !(b && b->sheet),
+  bool jammed =
+           pair->overlap > 0.5 * pair->law.reach && scree_lasting(pair) == 1 && !(b && b->sheet),
        pressed = pair->overlap > pair->law.limit && pair->depth > 0;
   if (!jammed && !pressed && !contacts->items[contacts->count - 1].of_depth)
     return; /* depths come last */
@@ -490,25 +350,16 @@ static void judge(const scree_world *world, scree_pair *pair, const scree_contac
   if (of_depth == 0) pair->depth = -INFINITY;
 }
 
-/* Rolling resistance (Ai and others 2011, type C): a spring and dashpot against the relative
- * turning about axes along the surface, as the tangential ones against sliding: the couple is at
- * most mu_r R times the normal force. */
+/* The couple of rolling resistance. */
 static void roll(scree_pair *pair, const slider *sliding, const scree_frame *relative,
                  double *energy, load_sums *sums) {
-  double arm = pair->law.rolling, size = vec3_norm(sums->normal.force);
-  if (!(arm > 0 && size > 0)) return;
-  double stiffness =
-      pair->law.hertz > 0 ? 1.5 * pair->law.hertz * sqrt(pair->overlap) : pair->law.stiffness;
-  const slider law = {.stiffness = 2.25 * stiffness * arm * arm,
-                      .damping = pair->law.rolling_damping,
-                      .friction = arm,
-                      .time_step = sliding->time_step};
+  double size = vec3_norm(sums->normal.force);
+  if (!(pair->law.rolling > 0 && size > 0)) return;
   vec3 n = vec3_scale(sums->normal.force, 1 / size),
        turning = vec3_mad(relative->spin, n, -vec3_dot(relative->spin, n)),
-       seen = vec3_mad(sliding->spin, n, -vec3_dot(sliding->spin, n));
-  scree_anchor spring = {.stretch = pair->rolled, .weight = 1};
-  vec3 couple = slide(&law, &spring, 1, n, turning, relative->spin, seen, sums->pressed, energy);
-  pair->rolled = spring.stretch;
+       seen = vec3_mad(sliding->spin, n, -vec3_dot(sliding->spin, n)),
+       couple = scree_roll(pair, sliding->along.time_step, n, turning, seen, relative->spin,
+                           sums->pressed, energy);
   sums->tangential.moment = vec3_add(sums->tangential.moment, couple);
   sums->tangential_power += vec3_dot(couple, turning);
 }
@@ -519,8 +370,8 @@ static void store_wrenches(const scree_world *world, const scree_scratch *scratc
   scree_wrench normal = turned(&sums->normal, &b->rotation);
   scree_wrench dashpot = turned(&sums->dashpot, &b->rotation);
   scree_wrench tangential = turned(&sums->tangential, &b->rotation);
-  pair->dashpot = kept_wrench(&dashpot);
-  pair->tangential = kept_wrench(&tangential);
+  pair->dashpot = scree_kept(&dashpot);
+  pair->tangential = scree_kept(&tangential);
   vec3 arm = scree_pair_between(world, pair, a, b);
   vec3 force = vec3_add(normal.force, tangential.force),
        moment = vec3_add(normal.moment, tangential.moment);
@@ -638,34 +489,30 @@ static scree_powers part(const scree_world *world, scree_pair *pair, const scree
   return (scree_powers){force * vec3_dot(v, way), 0};
 }
 
-/* The spring's force, and what its work comes to. The balance is drawn in the midst of the last
- * drift: leapfrog keeps m v2/2 + K x x'/2, with x' the overlap before, also where the way is bent.
- */
-static double press(const scree_world *world, scree_pair *pair, const scree_smooth_maximum *maximum,
+/* The spring's force. */
+static double press(const scree_world *world, scree_pair *pair, double overlap,
                     const overlap_slope *slope, const scree_scratch *scratch) {
   const scree_frame *relative = &scratch->relative;
-  const double drift = scratch->drift, step = scratch->step, m = maximum->value;
-  if (lasting(pair) == 1 && m >= most_slopes[0] * pair->list.travel) { /* nothing is repaid */
-    const felt whole = {spring_at(pair, m).force, 1, true};
+  const bool hysteretic = world->options.law == SCREE_LAW_HYSTERETIC;
+  if (scree_is_settled(pair, overlap)) {
     pair->spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
-    return spring_force(world, pair, m, &whole);
+    return scree_press_settled(hysteretic, pair, overlap);
   }
   const scree_wrench all = {vec3_add(slope->whole.force, slope->fading.force),
                             vec3_add(slope->whole.moment, slope->fading.moment)};
-  const overlap_rate rate = {-along_motion(&all, relative->velocity, relative->spin),
-                             -along_motion(&all, relative->velocity_now, relative->spin_now)};
-  const felt f = felt_overlap(world, pair, m, rate, scratch, &all);
-  double spring = spring_force(world, pair, m, &f);
-  if (world->options.law == SCREE_LAW_HYSTERETIC) return spring;
-  const bool first = scratch->overlap_before == 0 || scratch->was_depenetrating;
-  const double before = first ? scree_max(0, m - rate.drift * drift) : scratch->overlap_before;
-  double half = -0.25 * (drift + step) * rate.drift,
-         stored = energy_between(pair, m, before) - 0.5 * pair->law.pull * (m + before),
-         worked = pair->worked + scratch->spring_work;
-  if (first) worked = before > 0 ? -stored : 0; /* what is there already */
-  if (f.whole)
-    spring *= 1 + repaid(pair, stored + worked, 2 * half * spring, spring_at(pair, m).energy);
-  pair->worked = worked + half * spring;
+  scree_overlap_motion motion = {
+      .overlap = overlap,
+      .before = scratch->overlap_before,
+      .rate = -along_motion(&all, relative->velocity, relative->spin),
+      .rate_now = -along_motion(&all, relative->velocity_now, relative->spin_now),
+      .drift = scratch->drift,
+      .step = scratch->step,
+      .spring_work = scratch->spring_work,
+      .first = scratch->overlap_before == 0 || scratch->was_depenetrating};
+  if (scree_is_edge_of_touch(pair, &motion))
+    motion.inverse = inverse_mass(world, pair, relative, &all);
+  double spring = scree_press_moving(hysteretic, pair, &motion);
+  if (hysteretic) return spring;
   const scree_wrench pressed = {vec3_scale(all.force, spring), vec3_scale(all.moment, spring)};
   pair->spring = turned(&pressed, &scratch->b->rotation);
   return spring;
@@ -685,7 +532,7 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   pair->age += scratch->drift;
   pair->overlap = maximum.value;
   overlap_slope slope = find_slope(world, pair, &maximum, scratch);
-  double spring = press(world, pair, &maximum, &slope, scratch), energy = 0;
+  double spring = press(world, pair, maximum.value, &slope, scratch), energy = 0;
   slider law = make_slider(world, pair, relative, scratch->drift);
   law.normal_damping = damping_at(world, pair, relative, &slope);
   load_sums sums;
