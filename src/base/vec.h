@@ -149,9 +149,10 @@ static inline double quat_chord(quat p, quat q) {
 /* The rotation by the angle |r| about r. */
 static inline quat quat_from_rotation_vector(vec3 r) {
   double angle2 = vec3_norm2(r);
-  if (angle2 < 1e-8) { /* both series are exact to rounding */
-    double s = 0.5 - angle2 / 48;
-    return (quat){1 - angle2 / 8, r.x * s, r.y * s, r.z * s};
+  if (angle2 < 1e-3) { /* both series are exact to rounding */
+    double a = angle2, s = 0.5 - a * (1.0 / 48 - a * (1.0 / 3840 - a * (1.0 / 645120))),
+           w = 1 - a * (1.0 / 8 - a * (1.0 / 384 - a * (1.0 / 46080)));
+    return (quat){w, r.x * s, r.y * s, r.z * s};
   }
   double angle = sqrt(angle2), half = 0.5 * angle, s = scree_sin(half) / angle;
   return (quat){scree_cos(half), r.x * s, r.y * s, r.z * s};

@@ -351,7 +351,8 @@ bool scree_listing_begin(scree_listing *l, const scree_world *world, scree_pair 
   pair->list.next_feature = -INFINITY;
   pair->list.end = pair->list.path + scree_max(apart, l->skin);
   if (apart > l->skin) return false;
-  if (!pair->wall) set_region(l);
+  if (!pair->wall && l->b->measures.kind != SCREE_PARTICLE_SPHERE)
+    set_region(l); /* its frame turns */
   return true;
 }
 

@@ -47,8 +47,7 @@ static void add_later_work(const scree_world *world, const scree_pair *pair, scr
   work->later_tangential += half * power_of(&pair->tangential, u, spin);
 }
 
-/* Of the wall on the body in half a step, by the pair's wrench and the wall's last drift. */
-static double half_work_of_wall(const scree_world *world, const scree_pair *pair) {
+double scree_half_work_of_wall(const scree_world *world, const scree_pair *pair) {
   const scree_wrench all = {pair->wrench.force, vec3_neg(pair->wrench.torque_b)},
                      friction = scree_kept_as_wrench(&pair->tangential);
   return 0.5 * world->time_step * scree_wall_power(&world->walls.items[pair->b], &all, &friction);
@@ -212,9 +211,8 @@ static void clear_results(scree_pair *pair) {
   pair->contact_count = 0;
 }
 
-/* What goes lost when the hysteretic spring is loaded beyond its largest overlap so far: it takes
- * K m^2/2 and gives back e^2 of that. */
-static double hysteresis_loss(const scree_pair *pair, double before) {
+/* It takes K m^2/2 and gives back e^2 of that. */
+double scree_hysteresis_loss(const scree_pair *pair, double before) {
   double e2 = pair->law.restitution * pair->law.restitution;
   return 0.5 * pair->law.stiffness * (1 - e2) * (pair->largest * pair->largest - before * before);
 }
@@ -279,18 +277,23 @@ static void apply_contact_law(const scree_world *world, scree_pair *pair, scree_
   pair->later_dashpot += rest * powers.dashpot;
   pair->later_tangential += rest * powers.tangential;
   if (world->options.law == SCREE_LAW_HYSTERETIC && pair->largest > largest)
-    work->lost = hysteresis_loss(pair, largest);
+    work->lost = scree_hysteresis_loss(pair, largest);
   work->beyond_limit |= !(pair->overlap <= pair->law.limit) && !pair->depenetrating;
+}
+
+void scree_pair_begin_work(const scree_world *world, const scree_pair *pair,
+                           scree_scratch *scratch) {
+  take_places(world, pair, scratch);
+  scratch->work = (scree_pair_work){.later_dashpot = pair->later_dashpot,
+                                    .later_tangential = pair->later_tangential};
+  add_later_work(world, pair, scratch, &scratch->work);
+  if (pair->touching && pair->wall) scratch->work.wall = scree_half_work_of_wall(world, pair);
 }
 
 void scree_pair_relate(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   scratch->before = pair->list;
   scratch->slept = pair->asleep;
-  take_places(world, pair, scratch);
-  scratch->work = (scree_pair_work){.later_dashpot = pair->later_dashpot,
-                                    .later_tangential = pair->later_tangential};
-  add_later_work(world, pair, scratch, &scratch->work);
-  if (pair->touching && pair->wall) scratch->work.wall = half_work_of_wall(world, pair);
+  scree_pair_begin_work(world, pair, scratch);
   double speed = relate(world, pair, scratch);
   pair->list.travel = speed * world->time_step;
   pair->list.path += scratch->slept ? slept_path(world, pair, scratch) : speed * scratch->drift;
@@ -357,7 +360,7 @@ void scree_pair_leave(const scree_world *world, scree_pair *pair, scree_scratch 
   const scree_frame relative = scratch->relative; /* of the step's beginning */
   scree_pair_watch(world, pair, scratch);
   if (scratch->substeps > 1 || pair->substeps > 1) scree_pair_follow(world, pair, scratch);
-  if (pair->touching && pair->wall) scratch->work.wall += half_work_of_wall(world, pair);
+  if (pair->touching && pair->wall) scratch->work.wall += scree_half_work_of_wall(world, pair);
   if (!scree_pair_stays_awake(pair)) fall_asleep(world, pair, scratch->neighbours, &relative);
 }
 

@@ -267,7 +267,15 @@ typedef struct scree_powers {
 scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
                                   const scree_frame *relative, scree_scratch *scratch);
 
-/* contact.c: the whole of a pair's step, its lists being in hand. False where a pool, or the
+/* contact.c: the work of the second half of the last step, where the two are, the spring's work. */
+void scree_pair_begin_work(const scree_world *world, const scree_pair *pair,
+                           scree_scratch *scratch);
+/* Of the wall on the body in half a step, by the pair's wrench and the wall's last drift. */
+double scree_half_work_of_wall(const scree_world *world, const scree_pair *pair);
+/* What goes lost when the hysteretic spring is loaded beyond its largest overlap so far. */
+double scree_hysteresis_loss(const scree_pair *pair, double before);
+
+/* The whole of a pair's step, its lists being in hand. False where a pool, or the
  * scratch, has too little room: the pair is as before, but for lists that are made again. */
 bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
 /* The contact at the present places, without what follows of it: the first part of the step. */

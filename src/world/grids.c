@@ -1,4 +1,4 @@
-/* Which bodies' bounding boxes, grown by a margin, overlap.
+/* Which bodies' bounding boxes and balls, grown by a margin, overlap.
  *
  * Bodies of any mixture of sizes are binned by centre into a hierarchy of grids of cubic cells. The
  * coarsest has cells as wide as the largest grown box, each finer one half as wide; a body is in
@@ -136,6 +136,17 @@ static void note(search *s, uint32_t partner) {
   if (count < SCREE_FOUND) broad->found[SCREE_FOUND * (size_t)s->body + count] = partner;
 }
 
+/* Whether the balls around two bodies, grown as their boxes are, meet: of spheres half of the boxes
+ * that do have none that do. */
+static bool balls_meet(const scree_world *world, size_t i, size_t j) {
+  const scree_bodies *b = &world->bodies;
+  double reach = b->particle[i]->measures.bounding_radius +
+                 b->particle[j]->measures.bounding_radius +
+                 0.5 * (scree_body_margin(world, i) + scree_body_margin(world, j));
+  vec3 between = vec3_sub(b->frame[i].position, b->frame[j].position);
+  return vec3_norm2(scree_nearest_image(world, between)) <= reach * reach;
+}
+
 /* In this box, in one cell; of those in its own grid the ones after it. */
 static void find_in_cell(search *s, const scree_box *box, const scree_cell *c) {
   const scree_broad *broad = s->world->broad;
@@ -145,7 +156,8 @@ static void find_in_cell(search *s, const scree_box *box, const scree_cell *c) {
     const scree_cell_entry *e = &broad->binned[k];
     uint32_t other = e->body;
     if ((own && other <= s->body) || e->at.x != c->x || e->at.y != c->y || e->at.z != c->z ||
-        e->at.grid != c->grid || !scree_box_meets(box, &broad->boxes[other]))
+        e->at.grid != c->grid || !scree_box_meets(box, &broad->boxes[other]) ||
+        !balls_meet(s->world, s->body, other))
       continue;
     note(s, other);
   }

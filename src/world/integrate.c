@@ -58,13 +58,19 @@ static double fastest_point(vec3 spin, const scree_box *box) {
   return vec3_norm((vec3){v * z + w * y, w * x + u * z, u * y + v * x});
 }
 
-/* How far the body's points may move in the coming step; the spin in it is kept for the step. */
+static bool is_sphere(const scree_bodies *b, size_t i) {
+  return b->particle[i]->measures.kind == SCREE_PARTICLE_SPHERE;
+}
+
+/* How far the body's points, of a sphere its centre, may move in the coming step; the spin in it is
+ * kept for the step. */
 static double coming_travel(scree_world *world, size_t i) {
   scree_bodies *b = &world->bodies;
   const scree_frame *frame = &b->frame[i];
   double dt = world->time_step;
   vec3 g = vec3_load(world->options.gravity);
   vec3 v = vec3_mad(frame->velocity, vec3_mad(g, b->force[i], 1 / b->mass[i]), dt);
+  if (is_sphere(b, i)) return vec3_norm(v) * dt;
   vec3 momentum = vec3_mad(b->momentum[i], b->torque[i], dt);
   b->turn[i] = scree_local_spin(b->inertia[i], &frame->rotation, momentum);
   return (vec3_norm(v) + fastest_point(b->turn[i], &b->particle[i]->box)) * dt;
@@ -141,6 +147,32 @@ static void add_applied_work(scree_applied *applied, const scree_frame *frame, d
   applied->last = applied->now;
 }
 
+/* About its momentum, which is no other axis in space than in the body. */
+static void turn_sphere(scree_bodies *b, size_t i, double dt) {
+  scree_frame *frame = &b->frame[i];
+  const double ease = 1 / b->inertia[i].x;
+  vec3 momentum = vec3_mad(b->momentum[i], b->torque[i], dt), spin = vec3_scale(momentum, ease);
+  quat turn = quat_from_rotation_vector(vec3_scale(spin, dt));
+  b->momentum[i] = momentum;
+  b->orientation[i] = quat_unit(quat_mul(turn, b->orientation[i]));
+  frame->rotation = quat_to_mat3(b->orientation[i]);
+  frame->spin = spin;
+  frame->spin_now = vec3_mad(spin, b->torque[i], 0.5 * dt * ease);
+}
+
+static void turn_body(scree_bodies *b, size_t i, double dt) {
+  scree_frame *frame = &b->frame[i];
+  vec3 momentum = vec3_mad(b->momentum[i], b->torque[i], dt);
+  quat q = b->orientation[i];
+  q = scree_turned(&q, b->turn[i], b->inertia[i], momentum, dt);
+  mat3 rotation = quat_to_mat3(q);
+  b->momentum[i] = momentum;
+  b->orientation[i] = q;
+  frame->rotation = rotation;
+  frame->spin = scree_spin_of(b, i, &rotation, momentum);
+  frame->spin_now = scree_spin_of(b, i, &rotation, vec3_mad(momentum, b->torque[i], 0.5 * dt));
+}
+
 void scree_advance_body(scree_world *world, size_t i) {
   scree_bodies *b = &world->bodies;
   scree_frame *frame = &b->frame[i];
@@ -151,15 +183,10 @@ void scree_advance_body(scree_world *world, size_t i) {
   frame->velocity = vec3_mad(frame->velocity, acceleration, dt);
   frame->velocity_now = vec3_mad(frame->velocity, acceleration, 0.5 * dt);
   frame->position = vec3_mad(frame->position, frame->velocity, dt);
-  vec3 momentum = vec3_mad(b->momentum[i], b->torque[i], dt);
-  quat q = b->orientation[i];
-  q = scree_turned(&q, b->turn[i], b->inertia[i], momentum, dt);
-  mat3 rotation = quat_to_mat3(q);
-  b->momentum[i] = momentum;
-  b->orientation[i] = q;
-  frame->rotation = rotation;
-  frame->spin = scree_spin_of(b, i, &rotation, momentum);
-  frame->spin_now = scree_spin_of(b, i, &rotation, vec3_mad(momentum, b->torque[i], 0.5 * dt));
+  if (is_sphere(b, i))
+    turn_sphere(b, i, dt);
+  else
+    turn_body(b, i, dt);
   b->path[i] += b->travel[i];
   scree_set_body_wake_threshold(world, i);
 }

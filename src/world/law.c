@@ -146,7 +146,7 @@ static double weight_of(const scree_contact_point *contact, const scree_smooth_m
 /* What all contacts of the pair share: in sliding, and the motion that their dashpots see. */
 typedef struct slider {
   scree_slider along;
-  double normal_damping; /* C */
+  double time_step, normal_damping; /* dt, C */
   vec3 velocity, spin;
   bool belt; /* b's surface moves along itself so: */
   vec3 belt_velocity, belt_spin;
@@ -157,7 +157,8 @@ static slider make_slider(const scree_world *world, const scree_pair *pair,
   double lasts = scree_lasting(pair), lead = scree_dashpot_lead(lasts);
   vec3 velocity = vec3_sub(relative->velocity_now, relative->velocity),
        spin = vec3_sub(relative->spin_now, relative->spin);
-  slider law = {.along = scree_slider_of(pair, world->options.tangential_ratio, lasts, drift),
+  slider law = {.along = scree_slider_of(pair, world->options.tangential_ratio, lasts),
+                .time_step = drift,
                 .velocity = vec3_mad(relative->velocity, velocity, lead),
                 .spin = vec3_mad(relative->spin, spin, lead)};
   const scree_world_wall *wall = pair->wall ? &world->walls.items[pair->b] : NULL;
@@ -306,8 +307,9 @@ static void contact_force(const scree_pair *pair, const slider *law, double spri
   contact->force = vec3_scale(n, normal);
   if (contact->of_depth) return;
   const double weight_along = contact->weight * law->along.grown;
-  vec3 along = scree_slide(&law->along, contact->anchor, weight_along, n, v, relative->spin, seen,
-                           pressed, energy);
+  vec3 xi = scree_stretched(contact->anchor->stretch, v, relative->spin, law->time_step),
+       along =
+           scree_slide(&law->along, contact->anchor, weight_along, n, xi, seen, pressed, energy);
   contact->force = vec3_mad(along, n, normal);
   contact->anchor->normal = n;
   contact->anchor->weight = weight_along;
@@ -358,8 +360,8 @@ static void roll(scree_pair *pair, const slider *sliding, const scree_frame *rel
   vec3 n = vec3_scale(sums->normal.force, 1 / size),
        turning = vec3_mad(relative->spin, n, -vec3_dot(relative->spin, n)),
        seen = vec3_mad(sliding->spin, n, -vec3_dot(sliding->spin, n)),
-       couple = scree_roll(pair, sliding->along.time_step, n, turning, seen, relative->spin,
-                           sums->pressed, energy);
+       rolled = scree_stretched(pair->rolled, turning, relative->spin, sliding->time_step),
+       couple = scree_roll(pair, n, rolled, seen, sums->pressed, energy);
   sums->tangential.moment = vec3_add(sums->tangential.moment, couple);
   sums->tangential_power += vec3_dot(couple, turning);
 }
@@ -494,7 +496,8 @@ static double press(const scree_world *world, scree_pair *pair, double overlap,
                     const overlap_slope *slope, const scree_scratch *scratch) {
   const scree_frame *relative = &scratch->relative;
   const bool hysteretic = world->options.law == SCREE_LAW_HYSTERETIC;
-  if (scree_is_settled(pair, overlap)) {
+  const double lasts = scree_lasting(pair);
+  if (scree_is_settled(pair, overlap, lasts)) {
     pair->spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
     return scree_press_settled(hysteretic, pair, overlap);
   }
@@ -508,6 +511,7 @@ static double press(const scree_world *world, scree_pair *pair, double overlap,
       .drift = scratch->drift,
       .step = scratch->step,
       .spring_work = scratch->spring_work,
+      .lasts = lasts,
       .first = scratch->overlap_before == 0 || scratch->was_depenetrating};
   if (scree_is_edge_of_touch(pair, &motion))
     motion.inverse = inverse_mass(world, pair, relative, &all);

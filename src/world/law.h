@@ -50,6 +50,7 @@ typedef struct scree_overlap_motion {
   double overlap, before, rate, rate_now, drift, step;
   double inverse;     /* 1/kg, of both bodies along it; where scree_is_edge_of_touch asks for it */
   double spring_work; /* J, of the spring since the last look */
+  double lasts;       /* scree_lasting */
   bool first;         /* in this contact */
 } scree_overlap_motion;
 
@@ -57,8 +58,8 @@ typedef struct scree_overlap_motion {
 static const double scree_steep_overlap = 3;
 
 /* In a contact that lasts, deep beside its way in a step, the balance is not drawn. */
-static inline bool scree_is_settled(const scree_pair *pair, double overlap) {
-  return scree_lasting(pair) == 1 && overlap >= scree_steep_overlap * pair->list.travel;
+static inline bool scree_is_settled(const scree_pair *pair, double overlap, double lasts) {
+  return lasts == 1 && overlap >= scree_steep_overlap * pair->list.travel;
 }
 
 /* The way on the other side of the touch's begin or end. */
@@ -117,11 +118,9 @@ static inline double scree_spring_force(bool hysteretic, scree_pair *pair, doubl
 /* By how much the spring's force is changed so that what it has won or lost in this impact by no
  * work comes back with the kick; by no larger share than that is of its energy. Not where a touch
  * begins or ends, which leaves a debt to the next step. */
-static inline double scree_repaid(const scree_pair *pair, double balance, double kick_work,
-                                  double stored) {
+static inline double scree_repaid(double lasts, double balance, double kick_work, double stored) {
   if (!(stored > 0) || kick_work == 0) return 0;
-  double most = scree_min(1, fabs(balance) / stored) * (1 - scree_lasting(pair)),
-         share = -balance / kick_work;
+  double most = scree_min(1, fabs(balance) / stored) * (1 - lasts), share = -balance / kick_work;
   return share > most ? most : scree_max(share, -most);
 }
 
@@ -148,7 +147,7 @@ static inline double scree_press_moving(bool hysteretic, scree_pair *pair,
          worked = pair->worked + m->spring_work;
   if (m->first) worked = before > 0 ? -stored : 0; /* what is there already */
   if (!edge)
-    spring *= 1 + scree_repaid(pair, stored + worked, 2 * half * spring,
+    spring *= 1 + scree_repaid(m->lasts, stored + worked, 2 * half * spring,
                                scree_spring_at(pair, overlap).energy);
   pair->worked = worked + half * spring;
   return spring;
@@ -156,34 +155,36 @@ static inline double scree_press_moving(bool hysteretic, scree_pair *pair,
 
 /* ---- sliding and rolling ---- */
 
-/* A spring and dashpot along the surface: k_t and c_t over contact weight, mu, dt. */
+/* A spring and dashpot along the surface: k_t and c_t over contact weight, mu. */
 typedef struct scree_slider {
-  double stiffness, damping, friction, time_step;
+  double stiffness, damping, friction;
   double grown; /* by which the contact weights count in sliding */
 } scree_slider;
 
 /* Hertz: K_t and C_t, C by the ratio of tangential and normal stiffness, over the root of the
  * overlap. */
-static inline scree_slider scree_slider_of(const scree_pair *pair, double ratio, double lasts,
-                                           double drift) {
+static inline scree_slider scree_slider_of(const scree_pair *pair, double ratio, double lasts) {
   const scree_pair_law *l = &pair->law;
   if (l->hertz == 0)
-    return (scree_slider){l->stiffness * ratio, lasts * l->damping * sqrt(ratio), l->friction,
-                          drift, 1};
+    return (scree_slider){l->stiffness * ratio, lasts * l->damping * sqrt(ratio), l->friction, 1};
   double grown = sqrt(pair->overlap);
   return (scree_slider){l->mindlin,
                         lasts * l->damping * sqrt(l->mindlin / (1.5 * l->hertz)) / sqrt(grown),
-                        l->friction, drift, grown};
+                        l->friction, grown};
 }
 
-/* Stretches the spring by the last drift `v` along the surface, turns it by half of the drift's
- * `spin`, and answers the tangential force; `seen` is what the dashpot sees. */
+/* A spring after the last drift's velocity v along the surface, turned by half of its spin. */
+static inline vec3 scree_stretched(vec3 xi, vec3 v, vec3 spin, double time_step) {
+  return vec3_mad(xi, vec3_mad(v, vec3_cross(spin, xi), 0.5), time_step);
+}
+
+/* The tangential force; the spring was stretched to xi by the last drift, and is kept in the
+ * anchor; `seen` is what the dashpot sees. */
 static inline vec3 scree_slide(const scree_slider *law, scree_anchor *anchor, double s, vec3 n,
-                               vec3 v, vec3 spin, vec3 seen, double normal_force, double *energy) {
-  vec3 xi = {0, 0, 0};
-  if (anchor->weight > 0) {
-    vec3 rate = vec3_mad(v, vec3_cross(spin, anchor->stretch), 0.5);
-    xi = vec3_mad(anchor->stretch, rate, law->time_step);
+                               vec3 xi, vec3 seen, double normal_force, double *energy) {
+  if (!(anchor->weight > 0)) {
+    xi = (vec3){0, 0, 0};
+  } else {
     xi = vec3_mad(xi, n, -vec3_dot(xi, n));
     if (s > anchor->weight) xi = vec3_scale(xi, anchor->weight / s);
   }
@@ -203,19 +204,18 @@ static inline vec3 scree_slide(const scree_slider *law, scree_anchor *anchor, do
 
 /* Rolling resistance (Ai and others 2011, type C): a spring and dashpot against the relative
  * turning about axes along the surface, as the tangential ones against sliding: the couple is at
- * most mu_r R times the force `pressed` along n. `turning` by the last drift's spins, `seen` by
- * those that dashpots see; `spin` turns the spring, which the pair keeps. */
-static inline vec3 scree_roll(scree_pair *pair, double time_step, vec3 n, vec3 turning, vec3 seen,
-                              vec3 spin, double pressed, double *energy) {
+ * most mu_r R times the force `pressed` along n. The pair keeps the spring, which the last drift
+ * turned to `rolled`; `seen` is the turning that the dashpot sees. */
+static inline vec3 scree_roll(scree_pair *pair, vec3 n, vec3 rolled, vec3 seen, double pressed,
+                              double *energy) {
   double arm = pair->law.rolling;
   double stiffness =
       pair->law.hertz > 0 ? 1.5 * pair->law.hertz * sqrt(pair->overlap) : pair->law.stiffness;
   const scree_slider law = {.stiffness = 2.25 * stiffness * arm * arm,
                             .damping = pair->law.rolling_damping,
-                            .friction = arm,
-                            .time_step = time_step};
-  scree_anchor spring = {.stretch = pair->rolled, .weight = 1};
-  vec3 couple = scree_slide(&law, &spring, 1, n, turning, spin, seen, pressed, energy);
+                            .friction = arm};
+  scree_anchor spring = {.weight = 1};
+  vec3 couple = scree_slide(&law, &spring, 1, n, rolled, seen, pressed, energy);
   pair->rolled = spring.stretch;
   return couple;
 }

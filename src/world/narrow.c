@@ -406,22 +406,17 @@ static double wall_contact(const scree_world *world, const scree_pair *pair,
   vec3 p = vec3_add(mat3_mul_vec(&relative->rotation, a->points[feature->a]), relative->position);
   const scree_world_wall *wall = &world->walls.items[pair->b];
   vec3 c, n;
-  double side = scree_wall_side(wall, p), d = scree_wall_distance(wall, p, side, &c, &n), own;
+  double side;
   if (feature->has_reference) {
-    own = feature->reference.x; /* evaluated a step ago: through the sheet it cannot have come */
+    side = feature->reference.x; /* evaluated a step ago: through the sheet it cannot have come */
   } else if (scree_pair_is_new(pair)) {
-    own = scree_wall_first_side(wall, p, relative->position,
-                                scree_pair_clearance(pair, a, feature->a));
+    side = scree_wall_first_side(wall, p, relative->position,
+                                 scree_pair_clearance(pair, a, feature->a));
   } else { /* the step that woke it may have taken it in */
-    vec3 v = vec3_add(relative->velocity, vec3_cross(relative->spin, p)),
-         before = vec3_mad(p, v, -2 * world->time_step);
-    own = scree_wall_spans(wall, before) ? scree_wall_side(wall, before) : side;
+    vec3 v = vec3_add(relative->velocity, vec3_cross(relative->spin, p));
+    side = scree_wall_side_at(wall, vec3_mad(p, v, -2 * world->time_step));
   }
-  if (own != side) {
-    vec3 c_own, n_own;
-    double d_own = scree_wall_distance(wall, p, own, &c_own, &n_own);
-    if (d_own < 0) side = own, d = d_own, c = c_own, n = n_own; /* else it is past the rim */
-  }
+  double d = scree_wall_distance_from(wall, p, &side, &c, &n);
   feature->reference.x = side;
   feature->has_reference = true;
   const double values[4] = {d, a->point_radii[feature->a], 0, 1};

@@ -66,6 +66,11 @@ scree_checksum scree_world_hash(const scree_world *world) {
   }
   for (size_t k = 0; k < world->neighbours.count; k++) {
     const scree_pair *pair = scree_pair_of(world, k);
+    if (pair && pair->spheres) {
+      const uint32_t names[2] = {pair->a, pair->b};
+      mix(&hash, names, sizeof names);
+      mix(&hash, &pair->slid, sizeof pair->slid);
+    }
     for (uint32_t i = 0; pair && i < pair->active.count; i++) {
       const scree_feature_pair *feature = &world->pools.features[pair->active.first + i];
       const scree_further *further = &world->pools.further[pair->active.first + i];

@@ -4,6 +4,7 @@
 #include "world/grids.h"
 #include "world/materials.h"
 #include "world/pairs.h"
+#include "world/spheres.h"
 
 #include "base/alloc.h"
 #include "base/array.h"
@@ -95,6 +96,7 @@ static void set_up(const scree_world *world, scree_neighbours *n) {
 
 scree_neighbours scree_neighbours_new(const scree_world *world, uint32_t a, uint32_t b, bool wall) {
   scree_neighbours n = {.a = a, .b = b, .wall = wall};
+  n.spheres = scree_are_spheres(world, &n);
   n.list.next_feature = n.list.end = -INFINITY;
   set_up(world, &n);
   return n;
@@ -105,6 +107,7 @@ void scree_pair_begin(scree_pair *pair, const scree_neighbours *n, uint32_t inde
   *pair = (scree_pair){.a = n->a,
                        .b = n->b,
                        .wall = n->wall,
+                       .spheres = n->spheres,
                        .asleep = n->asleep,
                        .list = n->list,
                        .active = place,
@@ -264,7 +267,17 @@ bool scree_copy_pair(const scree_world *world, const scree_pair *pair, scree_pai
   return true;
 }
 
+static bool evaluate_spheres(const scree_world *world, scree_pair_copy *copy) {
+  scree_contact_list *contacts = &copy->scratch.contacts;
+  if (!SCREE_RESERVE(contacts, 1)) return false;
+  scree_take_in_hand(&copy->scratch, &copy->pools, &copy->pair, &copy->neighbours);
+  scree_spheres_evaluate(world, &copy->pair, &copy->scratch, contacts->items);
+  contacts->count = copy->pair.touching;
+  return true;
+}
+
 bool scree_evaluate_copy(const scree_world *world, scree_pair_copy *copy) {
+  if (copy->pair.spheres) return evaluate_spheres(world, copy);
   for (;;) {
     scree_take_in_hand(&copy->scratch, &copy->pools, &copy->pair, &copy->neighbours);
     if (scree_pair_narrow_phase(world, &copy->pair, &copy->scratch)) return true;

@@ -20,7 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 16};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 17};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
@@ -782,7 +782,8 @@ static void load_features(loader *l, scree_pair *pair) {
   scree_range *sleeping_features = &l->world->neighbours.items[pair->neighbours].sleeping;
   uint32_t active = pair->active.count, sleeping = sleeping_features->count;
   pair->active.count = sleeping_features->count = 0;
-  bool awake = active > 0 || pair->depth > 0 || pair->depenetrating || pair->substeps > 1;
+  bool awake = active > 0 || (pair->spheres && pair->touching) || pair->depth > 0 ||
+               pair->depenetrating || pair->substeps > 1;
   if ((pair->asleep || pair->touching) && pair->asleep == awake) l->codec.failed = true;
   if (!good(l)) return;
   if (!make_room(l, pair, active, sleeping)) l->codec.out_of_memory = true;

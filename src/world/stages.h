@@ -10,6 +10,8 @@ enum { SCREE_PAIR_BLOCK = 128 }; /* neighbours: whole words of world->touching *
 
 /* step.c: whether neighbours k are awake or have come to their threshold. */
 bool scree_is_awake(const scree_world *world, size_t k);
+/* Whether neighbours k, which are awake, are spheres apart; then they sleep. */
+bool scree_needs_no_pair(scree_world *world, uint32_t k);
 /* The pair of neighbours k, which may be one that begins; scree_none when there is no spare one. */
 uint32_t scree_pair_at(scree_world *world, uint32_t k);
 /* After its evaluation: whether the pair is given back. */

@@ -7,6 +7,7 @@
 #include "world/integrate.h"
 #include "world/materials.h"
 #include "world/pairs.h"
+#include "world/spheres.h"
 #include "world/stages.h"
 #include "world/walls.h"
 
@@ -56,7 +57,7 @@ static bool may_wake_features(const scree_pair *pair) {
 
 /* The feature pairs of a pair that has come, wherever they are. */
 SCREE_PREFETCHES void fetch_features(const scree_world *world, const scree_pair *pair) {
-  if (!pair) return;
+  if (!pair || pair->spheres) return;
   const scree_feature_pair *features = &world->pools.features[pair->active.first];
   scree_prefetch(features, sizeof *features);
   if (pair->active.count > 1)
@@ -73,7 +74,7 @@ SCREE_PREFETCHES void fetch_faces(const scree_particle *surface,
 
 /* What feature pairs that have come read of their shapes. */
 SCREE_PREFETCHES void fetch_shapes(const scree_world *world, const scree_pair *pair) {
-  if (!pair) return;
+  if (!pair || pair->spheres) return;
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   for (uint32_t i = 0; i < pair->active.count; i++) {
     const scree_feature_pair *feature = &world->pools.features[pair->active.first + i];
@@ -145,12 +146,20 @@ bool scree_settle_pair(scree_world *world, const scree_pair *pair) {
   return true;
 }
 
+bool scree_needs_no_pair(scree_world *world, uint32_t k) {
+  return world->pair_of.items[k] == scree_none && world->neighbours.items[k].spheres &&
+         scree_spheres_stay_apart(world, k);
+}
+
 /* False where a pool has too little room: the pair is to be evaluated again. */
 static bool evaluate_pair(scree_world *world, scree_pair *pair, scree_scratch *scratch,
                           scree_pair_progress *part) {
   uint32_t k = pair->neighbours;
   scree_take_in_hand(scratch, &world->pools, pair, &world->neighbours.items[k]);
-  if (!scree_pair_evaluate(world, pair, scratch)) return false;
+  if (pair->spheres)
+    scree_spheres_evaluate(world, pair, scratch, NULL);
+  else if (!scree_pair_evaluate(world, pair, scratch))
+    return false;
   scree_balance_add(&world->ledger.items[k], &scratch->work);
   scree_note_pair(&part->tally, pair, &scratch->work);
   if (part->tally.trouble.start == k) part->tally.trouble.start_depth = scratch->work.start_depth;
@@ -185,6 +194,7 @@ static void evaluate_blocks(void *context, size_t begin, size_t end, size_t part
   size_t i = progress->done;
   for (; i < count; i++) {
     fetch_ahead(world, awake, i, count);
+    if (scree_needs_no_pair(world, awake[i])) continue;
     uint32_t index = scree_pair_at(world, awake[i]);
     if (index == scree_none) break;
     scree_pair *pair = &world->pairs.items[index];

@@ -323,6 +323,17 @@ double scree_wall_distance(const scree_world_wall *wall, vec3 p, double side, ve
   return d;
 }
 
+double scree_wall_distance_from(const scree_world_wall *wall, vec3 p, double *side, vec3 *closest,
+                                vec3 *normal) {
+  const double from = *side, here = scree_wall_side(wall, p);
+  *side = here;
+  if (from != 0 && from != here) {
+    double d = scree_wall_distance(wall, p, from, closest, normal);
+    if (d < 0) return *side = from, d;
+  }
+  return scree_wall_distance(wall, p, here, closest, normal);
+}
+
 double scree_wall_first_side(const scree_world_wall *wall, vec3 p, vec3 centre, double clearance) {
   double side = scree_wall_side(wall, p), own = scree_wall_side(wall, centre);
   if (own == side || !scree_wall_spans(wall, centre)) return side;

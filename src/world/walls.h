@@ -12,9 +12,17 @@ bool scree_wall_spans(const scree_world_wall *wall, vec3 p);
 /* The side of a point that is seen for the first time: the centre's, where the sheet spans it and p
  * is less than `clearance` behind; else its own. */
 double scree_wall_first_side(const scree_world_wall *wall, vec3 p, vec3 centre, double clearance);
+/* The same of a point where it spans it; else 0, for none. */
+static inline double scree_wall_side_at(const scree_world_wall *wall, vec3 p) {
+  return scree_wall_spans(wall, p) ? scree_wall_side(wall, p) : 0;
+}
 /* Signed distance of p (wall frame) on that side, with the closest point and the normal. */
 double scree_wall_distance(const scree_world_wall *wall, vec3 p, double side, vec3 *closest,
                            vec3 *normal);
+/* The same of a point that came from this side, or 0: from where it is. The side becomes that from
+ * which it is met, another one where it is past the rim. */
+double scree_wall_distance_from(const scree_world_wall *wall, vec3 p, double *side, vec3 *closest,
+                                vec3 *normal);
 
 static inline bool scree_wall_is_belt(const scree_world_wall *wall) {
   return vec3_norm2(wall->surface_velocity) + vec3_norm2(wall->surface_spin) > 0;

@@ -216,42 +216,52 @@ typedef struct scree_watch {
   bool taken;                          /* the pair was looked at */
 } scree_watch;
 
-/* A pair that is awake. What every step touches comes first. Pairs lie together, apart from what
- * is kept of those asleep: a step comes to one pair of neighbours in five, and each would lie on a
- * page of its own. */
+/* A pair that is awake. What every step touches comes first, and of that what spheres need. Pairs
+ * lie together, apart from what is kept of those asleep: a step comes to one pair of neighbours in
+ * five, and each would lie on a page of its own. */
 typedef struct scree_pair {
   _Alignas(64) uint32_t a;
   uint32_t b;
-  bool wall;   /* b is a wall */
+  bool wall;    /* b is a wall */
+  bool spheres; /* as of the neighbours */
   bool asleep; /* no feature pair can touch before the bodies' paths reach the neighbours' `wake` */
   bool touching;
   bool depenetrating, was_depenetrating; /* is moved apart (law.c); was, until the last step */
   uint8_t substeps;                      /* of the last step (substep.c) */
   bool followed; /* the wrench is a mean over those, or holds what was owed: `ahead` counts */
   uint32_t contact_count;
-  float elastic_since;      /* J, by which `elastic` has grown since, where there were sub-steps */
+  uint32_t neighbours;      /* index */
   scree_pair_wrench wrench; /* here: the bodies read it with what is above */
-  scree_list_state list;
-  double age;          /* since the touch began */
-  scree_range active;  /* in the pool of feature pairs */
-  uint32_t neighbours; /* index */
-  double overlap;      /* m */
+  double overlap;           /* m */
+  double age;               /* since the touch began */
   scree_pair_law law;
-  scree_wrench spring;
-  scree_kept_wrench dashpot, tangential; /* parts of the wrench, for the ledger */
-  double elastic, tangential_elastic;    /* U of all springs, and of the tangential ones */
+  double elastic, tangential_elastic; /* U of all springs, and of the tangential ones */
   union {
     double largest; /* m of this contact: hysteresis */
     double worked;  /* J, by the spring in this contact: the other laws */
   };
-  vec3 rolled;  /* the spring of rolling resistance, rad, in the frame of b */
-  double depth; /* no edge lies deeper inside the other body; -INFINITY: not known */
-  double kick;  /* s, for which the last wrench acts; 0: there was none */
+  double kick; /* s, for which the last wrench acts; 0: there was none */
+  scree_wrench spring;
+  scree_kept_wrench dashpot, tangential; /* parts of the wrench, for the ledger */
+  vec3 rolled; /* the spring of rolling resistance, rad, in the frame of b; of spheres in space */
+  union {
+    struct { /* of spheres: the tangential spring, in space; on which side they are of a sheet */
+      vec3 slid;
+      double side;
+    };
+    struct { /* of others: in which they part, in the frame of b, 0: not yet; how deep they were
+                when it was last looked for, m */
+      vec3 separation;
+      double found;
+    };
+  };
+  scree_list_state list;
+  scree_range active;  /* in the pool of feature pairs */
+  float elastic_since; /* J, by which `elastic` has grown since, where there were sub-steps */
+  double depth;        /* no edge lies deeper inside the other body; -INFINITY: not known */
   double later_dashpot,
       later_tangential;   /* J of the last step's sub-steps, not yet entered in the balance */
-  vec3 separation;        /* in which it parts, in the frame of b; 0: not yet */
   vec3 pushed;            /* where, while it parts, in the frame of b */
-  double found;           /* m: the depth there, which is looked for when they have come some way */
   scree_pair_wrench owed; /* impulses and their moments of the last step's sub-steps: substep.c */
   scree_watch watch;
   scree_pair_wrench
@@ -263,7 +273,8 @@ typedef struct scree_pair {
 typedef struct scree_neighbours {
   uint32_t a, b;
   bool wall;
-  bool asleep; /* else awake, or new */
+  bool spheres; /* two spheres, or one and a plane, disc or cylinder: spheres.c */
+  bool asleep;  /* else awake, or new */
   scree_list_state list;
   double wake, asleep_since; /* on path[a] + path[b] */
   vec3 asleep_at;            /* a in the frame of b when they fell asleep */

@@ -1,6 +1,6 @@
 /* The broad phase against all pairs: bodies and a mesh wall, sizes over three decades, at rest and
- * in flight. Listed must be whoever's boxes meet, and nobody whose boxes are farther apart than the
- * margin. */
+ * in flight. Listed must be whoever's boxes and balls meet, and nobody's that are farther apart
+ * than the margin. */
 #include "world/broad.h"
 #include "base/rng.h"
 #include "support/check.h"
@@ -63,7 +63,14 @@ static bool is_listed(const scree_world *world, size_t a, size_t b, bool wall) {
   return false;
 }
 
-/* Counts the pairs whose boxes meet. */
+static bool balls_meet(const scree_world *world, size_t i, size_t j, double margin) {
+  const scree_bodies *b = &world->bodies;
+  return vec3_distance(b->frame[i].position, b->frame[j].position) <=
+         b->particle[i]->measures.bounding_radius + b->particle[j]->measures.bounding_radius +
+             margin;
+}
+
+/* Counts the pairs whose boxes and balls meet. */
 static size_t check_bodies(const scree_world *world) {
   double margin = world->margin;
   size_t meeting = 0, bodies = world->bodies.count;
@@ -80,9 +87,10 @@ static size_t check_bodies(const scree_world *world) {
     for (size_t b = a + 1; b < bodies; b++) {
       if (world->bodies.removed[a] || world->bodies.removed[b]) continue;
       scree_box x = box_of(world, a), y = box_of(world, b), wide = scree_box_grown(x, 3 * margin);
-      bool meet = scree_box_meets(&x, &y);
+      bool meet = scree_box_meets(&x, &y) && balls_meet(world, a, b, 0);
       if (meet) assert_true(listed[a * bodies + b]);
-      if (listed[a * bodies + b]) assert_true(scree_box_meets(&wide, &y));
+      if (listed[a * bodies + b])
+        assert_true(scree_box_meets(&wide, &y) && balls_meet(world, a, b, 3 * margin));
       meeting += meet;
     }
   free(listed);

@@ -7,6 +7,7 @@
 #include "world/device/device.h"
 #include "world/device/threads.h"
 #include "world/pairs.h"
+#include "world/spheres.h"
 #include "world/stages.h"
 #include "world/walls.h"
 
@@ -62,7 +63,7 @@ static bool is_held(const scree_device_step *step) {
 static void do_awake(scree_world *world, scree_device_step *step) {
   if (step->stop || step->resume) return;
   FOR_EACH (k, world->neighbours.count) {
-    if (!scree_is_awake(world, k)) continue;
+    if (!scree_is_awake(world, k) || scree_needs_no_pair(world, (uint32_t)k)) continue;
     uint32_t place = scree_atomic_add(&step->awake_count, 1);
     world->awake.items[place] = (uint32_t)k;
     step->progress[place] = SCREE_PAIR_NEW;
@@ -151,6 +152,7 @@ static void do_relate(scree_world *world, scree_device_step *step) {
       continue;
     }
     scree_pair *pair = take_pair(world, step, place);
+    if (pair->spheres) continue; /* have no lists */
     scree_pair_relate(world, pair, &step->hands[place]);
     if (scree_pair_needs_list(pair))
       begin_list(world, step, pair, place);
@@ -305,6 +307,7 @@ static void do_meet(scree_world *world, scree_device_step *step) {
   if (pairs_wait(step)) return;
   FOR_EACH (place, step->awake_count) {
     scree_pair *pair = take_pair(world, step, place);
+    if (pair->spheres) continue;
     gather_touches(step, pair, &step->hands[place]);
     scree_pair_meet(world, pair, &step->hands[place]);
     ask_for_depths(world, step, pair, place);
@@ -333,8 +336,12 @@ static void do_contact_law(scree_world *world, scree_device_step *step) {
     uint32_t k = pair->neighbours, index = world->pair_of.items[k];
     if (step->progress[place] == SCREE_PAIR_ASKS)
       scree_pair_take_depths(world, pair, step->depths + hand->first_depth, hand, &hand->work);
-    scree_pair_contact_law(world, pair, hand);
-    scree_pair_leave(world, pair, hand);
+    if (pair->spheres) {
+      scree_spheres_evaluate(world, pair, hand, NULL);
+    } else {
+      scree_pair_contact_law(world, pair, hand);
+      scree_pair_leave(world, pair, hand);
+    }
     scree_balance_add(&world->ledger.items[k], &hand->work);
     scree_note_pair(&step->tally, pair, &hand->work);
     if (scree_settle_pair(world, pair)) scree_pair_give_back(world, index);

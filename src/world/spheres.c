@@ -1,0 +1,308 @@
+/* Spheres have one distance, one normal and one feature, which needs no lists, no memory of faces
+ * and no depth: their overlap is that of the pair, and the normal force no moment. All is reckoned
+ * in space, where the springs of sliding and rolling are kept too; they turn with the mean of both
+ * bodies' rotations. Spring, slider and rolling are those of every pair (law.h), and what is left
+ * of the step is a pair's (contact.c).
+ *
+ * There is a pair only while they touch. Neighbours that are apart sleep until the paths of their
+ * centres could have brought them together. */
+#include "world/spheres.h"
+
+#include "world/law.h"
+#include "world/walls.h"
+
+bool scree_are_spheres(const scree_world *world, const scree_neighbours *n) {
+  const scree_particle *const *particles = (const scree_particle *const *)world->bodies.particle;
+  if (particles[n->a]->measures.kind != SCREE_PARTICLE_SPHERE) return false;
+  return n->wall ? scree_wall_is_analytic(&world->walls.items[n->b])
+                 : particles[n->b]->measures.kind == SCREE_PARTICLE_SPHERE;
+}
+
+/* Where they meet: so far from the centres of spheres, a's behind the normal, b's before it; from a
+ * wall's position at `at`. All in space. */
+typedef struct meeting {
+  vec3 normal, at; /* normal: towards a */
+  double of_a, of_b;
+  double overlap; /* not above 0: they are apart, and all else is not known */
+} meeting;
+
+static double radius_of(const scree_world *world, uint32_t body) {
+  return world->bodies.particle[body]->point_radii[0];
+}
+
+static meeting meet_sphere(const scree_world *world, uint32_t a, uint32_t b) {
+  const scree_frame *frames = world->bodies.frame;
+  vec3 between = scree_nearest_image(world, vec3_sub(frames[a].position, frames[b].position));
+  double distance = vec3_norm(between), radius_a = radius_of(world, a),
+         radius_b = radius_of(world, b);
+  meeting m = {.overlap = radius_a + radius_b - distance};
+  if (!(m.overlap > 0)) return m;
+  m.normal = distance > 0 ? vec3_scale(between, 1 / distance) : (vec3){0, 0, 1};
+  m.of_a = radius_a - 0.5 * m.overlap;
+  m.of_b = radius_b - 0.5 * m.overlap;
+  return m;
+}
+
+/* On this side of a sheet, 0: where it is. */
+static meeting meet_wall(const scree_world *world, uint32_t a, const scree_world_wall *wall,
+                         double *side) {
+  const mat3 *turned = &wall->frame.rotation;
+  vec3 p = mat3_tmul_vec(turned, vec3_sub(world->bodies.frame[a].position, wall->frame.position)),
+       c, n;
+  double distance = scree_wall_distance_from(wall, p, side, &c, &n), radius = radius_of(world, a);
+  meeting m = {.overlap = radius - distance};
+  if (!(m.overlap > 0)) return m;
+  m.normal = mat3_mul_vec(turned, n);
+  m.at = vec3_mad(mat3_mul_vec(turned, c), m.normal, -0.5 * m.overlap);
+  m.of_a = radius - 0.5 * m.overlap;
+  return m;
+}
+
+static double path_of(const scree_world *world, const scree_neighbours *n) {
+  const double *path = world->bodies.path;
+  return path[n->a] + (n->wall ? world->walls.items[n->b].path : path[n->b]);
+}
+
+bool scree_spheres_stay_apart(scree_world *world, size_t k) {
+  scree_neighbours *n = &world->neighbours.items[k];
+  double side = 0;
+  meeting m = n->wall ? meet_wall(world, n->a, &world->walls.items[n->b], &side)
+                      : meet_sphere(world, n->a, n->b);
+  if (m.overlap > 0) return false;
+  n->asleep = true;
+  world->slots.items[k].wake = n->wake = path_of(world, n) - m.overlap;
+  return true;
+}
+
+/* Of a sheet: where it was before, since a step by which it woke may have taken it in. */
+static double side_before(const scree_world *world, const scree_pair *pair) {
+  if (!pair->wall) return 0;
+  if (pair->side != 0 || !pair->asleep) return pair->side;
+  const scree_frame *a = &world->bodies.frame[pair->a];
+  const scree_world_wall *wall = &world->walls.items[pair->b];
+  vec3 between = vec3_sub(a->position, wall->frame.position),
+       v = vec3_sub(vec3_sub(a->velocity, wall->frame.velocity),
+                    vec3_cross(wall->frame.spin, between)),
+       before = mat3_tmul_vec(&wall->frame.rotation, vec3_mad(between, v, -2 * world->time_step));
+  return scree_wall_side_at(wall, before);
+}
+
+/* Without what is along n. */
+static vec3 across(vec3 v, vec3 n) {
+  return vec3_mad(v, n, -vec3_dot(v, n));
+}
+
+/* A spring along the surface, turned by the angle r: to second order, by which its length stays. */
+static vec3 turned_by(vec3 spring, vec3 r) {
+  vec3 change = vec3_cross(r, spring);
+  return vec3_add(spring, vec3_mad(change, vec3_cross(r, change), 0.5));
+}
+
+static void let_go(scree_pair *pair) {
+  pair->touching = false;
+  pair->contact_count = 0;
+  pair->elastic = pair->tangential_elastic = pair->overlap = pair->age = pair->kick = 0;
+  pair->largest = 0;
+  pair->spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
+  pair->rolled = pair->slid = (vec3){0, 0, 0};
+}
+
+/* All that the law is told of a touch. The velocities of a against b where they meet: of the last
+ * drift, of the moment, and as dashpots see them. */
+typedef struct touch {
+  meeting at;
+  vec3 drift, now, seen;
+  vec3 turned;   /* rad, by which both turned in the last drift, in the mean */
+  double before; /* overlap */
+  double lead;   /* of what dashpots see */
+  double lasts;  /* scree_lasting */
+} touch;
+
+static vec3 velocity_of(const meeting *m, vec3 slip, vec3 spin_a, vec3 spin_b) {
+  vec3 turning = vec3_mad(vec3_scale(spin_a, m->of_a), spin_b, m->of_b);
+  return vec3_sub(slip, vec3_cross(turning, m->normal));
+}
+
+static vec3 seen_of(const touch *t, vec3 drift, vec3 now) {
+  return vec3_mad(drift, vec3_sub(now, drift), t->lead);
+}
+
+static void find_motions(const scree_world *world, const scree_pair *pair, touch *t) {
+  const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
+  const meeting *at = &t->at;
+  t->drift = velocity_of(at, vec3_sub(a->velocity, b->velocity), a->spin, b->spin);
+  t->now = velocity_of(at, vec3_sub(a->velocity_now, b->velocity_now), a->spin_now, b->spin_now);
+  if (pair->wall) {
+    t->drift = vec3_sub(t->drift, vec3_cross(b->spin, at->at));
+    t->now = vec3_sub(t->now, vec3_cross(b->spin_now, at->at));
+  }
+  t->lasts = scree_lasting(pair);
+  t->lead = scree_dashpot_lead(t->lasts);
+  t->seen = seen_of(t, t->drift, t->now);
+  t->turned = vec3_scale(vec3_add(a->spin, b->spin), 0.5 * world->time_step);
+}
+
+/* How a belt moves along where they meet. */
+static vec3 belt_velocity(const scree_world_wall *wall, const meeting *m) {
+  const mat3 *turned = &wall->frame.rotation;
+  return vec3_add(mat3_mul_vec(turned, wall->surface_velocity),
+                  vec3_cross(mat3_mul_vec(turned, wall->surface_spin), m->at));
+}
+
+static double press(const scree_world *world, scree_pair *pair, const touch *t,
+                    double spring_work) {
+  const bool hysteretic = world->options.law == SCREE_LAW_HYSTERETIC;
+  const double dt = world->time_step;
+  const vec3 n = t->at.normal;
+  if (scree_is_settled(pair, pair->overlap, t->lasts)) {
+    pair->spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
+    return scree_press_settled(hysteretic, pair, pair->overlap);
+  }
+  const double pace = pair->law.contact_time / 3.14159265358979323846;
+  const scree_overlap_motion moves = {.overlap = pair->overlap,
+                                      .before = t->before,
+                                      .rate = -vec3_dot(t->drift, n),
+                                      .rate_now = -vec3_dot(t->now, n),
+                                      .drift = dt,
+                                      .step = dt,
+                                      .inverse = 1 / (pair->law.stiffness * pace * pace),
+                                      .spring_work = spring_work,
+                                      .first = t->before == 0};
+  double spring = scree_press_moving(hysteretic, pair, &moves);
+  if (hysteretic) return spring;
+  pair->spring = (scree_wrench){vec3_scale(n, spring), vec3_cross(t->at.at, vec3_scale(n, spring))};
+  return spring;
+}
+
+/* The couple of rolling resistance. */
+static vec3 roll(const scree_world *world, scree_pair *pair, const touch *t, double pressed,
+                 double *energy, double *power) {
+  if (!(pair->law.rolling > 0)) return (vec3){0, 0, 0};
+  const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
+  const vec3 n = t->at.normal, spin = vec3_sub(a->spin, b->spin),
+             seen = seen_of(t, spin, vec3_sub(a->spin_now, b->spin_now)), turning = across(spin, n),
+             rolled = vec3_mad(turned_by(pair->rolled, t->turned), turning, world->time_step),
+             couple = scree_roll(pair, n, rolled, across(seen, n), pressed, energy);
+  *power += vec3_dot(couple, turning);
+  return couple;
+}
+
+static vec3 slide(const scree_world *world, scree_pair *pair, const touch *t, double pressed,
+                  double *energy, double *power) {
+  const scree_slider law = scree_slider_of(pair, world->options.tangential_ratio, t->lasts);
+  const vec3 n = t->at.normal;
+  vec3 v = across(t->drift, n), seen = across(t->seen, n);
+  if (pair->wall && scree_wall_is_belt(&world->walls.items[pair->b])) {
+    vec3 belt = across(belt_velocity(&world->walls.items[pair->b], &t->at), n);
+    v = vec3_sub(v, belt);
+    seen = vec3_sub(seen, belt);
+  }
+  scree_anchor spring = {.weight = pair->law.hertz > 0 ? sqrt(t->before) : t->before > 0};
+  vec3 xi = vec3_mad(turned_by(pair->slid, t->turned), v, world->time_step),
+       force = scree_slide(&law, &spring, law.grown, n, xi, seen, pressed, energy);
+  pair->slid = spring.stretch;
+  *power += vec3_dot(force, v);
+  return force;
+}
+
+/* The forces along the surface and along the normal, of which the dashpot has its part, and the
+ * couple; the ledger's parts about the position of a wall, without moment between spheres. */
+static void store_wrenches(scree_pair *pair, const meeting *m, vec3 along, vec3 couple,
+                           double normal, double dashpot) {
+  const vec3 force = vec3_mad(along, m->normal, normal), twist = vec3_cross(m->normal, along);
+  scree_wrench damps = {vec3_scale(m->normal, dashpot), {0, 0, 0}}, rubs = {along, {0, 0, 0}};
+  pair->wrench.force = force;
+  pair->wrench.torque_a = vec3_mad(couple, twist, -m->of_a);
+  pair->wrench.torque_b = vec3_neg(vec3_mad(couple, twist, m->of_b));
+  if (pair->wall) {
+    damps.moment = vec3_cross(m->at, damps.force);
+    rubs.moment = vec3_add(vec3_cross(m->at, along), couple);
+    pair->wrench.torque_b = vec3_neg(vec3_add(vec3_cross(m->at, force), couple));
+  }
+  pair->dashpot = scree_kept(&damps);
+  pair->tangential = scree_kept(&rubs);
+}
+
+static void apply_law(const scree_world *world, scree_pair *pair, const touch *t,
+                      scree_scratch *scratch) {
+  const meeting *at = &t->at;
+  const vec3 n = at->normal;
+  scree_pair_work *work = &scratch->work;
+  const double largest = pair->largest, spring = press(world, pair, t, scratch->spring_work),
+               pull = pair->law.pull,
+               damping = pair->law.hertz > 0 ? pair->law.damping * sqrt(sqrt(pair->overlap))
+                                             : pair->law.damping,
+               pressing = spring + pull,
+               pressed = scree_max(0, pressing - damping * vec3_dot(t->seen, n)),
+               dashpot = pressed - pressing, half = 0.5 * world->time_step;
+  double energy = 0, power = 0;
+  vec3 along = slide(world, pair, t, pressed, &energy, &power),
+       couple = roll(world, pair, t, pressed, &energy, &power);
+  store_wrenches(pair, at, along, couple, pressed - pull, dashpot);
+  pair->tangential_elastic = energy;
+  pair->elastic += energy;
+  pair->kick = world->time_step;
+  work->dashpot = half * dashpot * vec3_dot(t->drift, n);
+  work->tangential = half * power;
+  if (world->options.law == SCREE_LAW_HYSTERETIC && pair->largest > largest)
+    work->lost = scree_hysteresis_loss(pair, largest);
+}
+
+static void tell(const scree_world *world, const scree_pair *pair, const meeting *at,
+                 scree_contact_point *contact) {
+  const mat3 *turned = &scree_pair_frame_b(world, pair)->rotation;
+  vec3 place = pair->wall ? at->at : vec3_scale(at->normal, at->of_b);
+  *contact = (scree_contact_point){.at = mat3_tmul_vec(turned, place),
+                                   .normal = mat3_tmul_vec(turned, at->normal),
+                                   .force = mat3_tmul_vec(turned, pair->wrench.force),
+                                   .overlap = at->overlap,
+                                   .taper = 1,
+                                   .weight = 1,
+                                   .gap_gradient = 1};
+}
+
+/* The second half of the last step's work, as scree_pair_begin_work, between spheres: torques come
+ * of tangential forces and couples alone. */
+static void begin_work(const scree_world *world, const scree_pair *pair, scree_scratch *scratch) {
+  scratch->work = (scree_pair_work){0};
+  scratch->spring_work = 0;
+  if (!pair->touching) return;
+  const scree_frame *a = &world->bodies.frame[pair->a], *b = &world->bodies.frame[pair->b];
+  const vec3 slip = vec3_sub(a->velocity, b->velocity);
+  const double half = 0.5 * pair->kick;
+  scratch->spring_work = half * vec3_dot(pair->spring.force, slip);
+  scratch->work.later_dashpot = half * vec3_dot(scree_kept_as_wrench(&pair->dashpot).force, slip);
+  scratch->work.later_tangential =
+      half * (vec3_dot(scree_kept_as_wrench(&pair->tangential).force, slip) +
+              vec3_dot(pair->wrench.torque_a, a->spin) + vec3_dot(pair->wrench.torque_b, b->spin));
+}
+
+void scree_spheres_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                            scree_contact_point *contact) {
+  if (pair->wall)
+    scree_pair_begin_work(world, pair, scratch);
+  else
+    begin_work(world, pair, scratch);
+  double side = side_before(world, pair);
+  touch t = {.before = pair->overlap};
+  t.at = pair->wall ? meet_wall(world, pair->a, &world->walls.items[pair->b], &side)
+                    : meet_sphere(world, pair->a, pair->b);
+  pair->side = side;
+  pair->asleep = !(t.at.overlap > 0);
+  if (pair->asleep) {
+    let_go(pair);
+    scratch->neighbours->wake = path_of(world, scratch->neighbours) - t.at.overlap;
+    return;
+  }
+  pair->touching = true;
+  pair->contact_count = 1;
+  pair->age += world->time_step;
+  pair->overlap = t.at.overlap;
+  find_motions(world, pair, &t);
+  pair->list.travel = vec3_norm(t.drift) * world->time_step;
+  apply_law(world, pair, &t, scratch);
+  scratch->work.beyond_limit = !(pair->overlap <= pair->law.limit);
+  scratch->work.too_fast = !pair->wall && !(pair->list.travel <= 2 * pair->law.thin);
+  if (pair->wall) scratch->work.wall += scree_half_work_of_wall(world, pair);
+  if (contact) tell(world, pair, &t.at, contact);
+}

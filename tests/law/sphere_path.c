@@ -1,0 +1,143 @@
+/* Pairs of spheres against the pairs of features: a clump of one sphere takes the general path.
+ * Both are hit at random, on each other, planes, discs, cylinders and belts, by all laws; and both
+ * fall asleep, wake, roll and stick alike. */
+#include "support/law.h"
+
+#include "base/rng.h"
+
+static const double radius = 0.01;
+
+typedef struct place_and_motion {
+  double position[3], velocity[3], spin[3];
+} place_and_motion;
+
+static double between(scree_rng *rng, double low, double high) {
+  return low + (high - low) * scree_rng_uniform(rng);
+}
+
+static scree_body moved(const place_and_motion *m) {
+  scree_body body = scree_default_body();
+  for (int k = 0; k < 3; k++) {
+    body.position[k] = m->position[k];
+    body.velocity[k] = m->velocity[k];
+    body.angular_velocity[k] = m->spin[k];
+  }
+  return body;
+}
+
+/* A kind of partner: a body, or a wall. */
+enum { BODY, PLANE, DISC, DISC_FROM_BELOW, TUBE, TUBE_FROM_OUTSIDE, BELT, TURNTABLE, PARTNERS };
+
+static void add_wall(scree_world *world, int partner) {
+  scree_error error;
+  scree_wall wall = {.kind = SCREE_WALL_PLANE, .axis = {0, 0, 1}};
+  if (partner == DISC || partner == DISC_FROM_BELOW || partner == TURNTABLE) {
+    wall.kind = SCREE_WALL_DISC;
+    wall.radius = 1;
+  } else if (partner == TUBE || partner == TUBE_FROM_OUTSIDE) {
+    wall.kind = SCREE_WALL_CYLINDER;
+    wall.axis[0] = 1, wall.axis[2] = 0;
+    wall.radius = 0.05;
+    wall.position[0] = -1;
+    wall.length = 2;
+    wall.position[2] = partner == TUBE ? 0.05 : -0.05;
+  }
+  if (partner == BELT) wall.surface_velocity[0] = 0.3;
+  if (partner == TURNTABLE) wall.angular_velocity[2] = 5;
+  CHECK_OK(scree_world_add_wall(world, &wall, NULL, &error), error);
+}
+
+/* What becomes of them after some contact times. */
+static void run(const scree_world_options *options, const scree_material *material, int partner,
+                const place_and_motion two[2], bool clump, size_t steps, place_and_motion after[2],
+                scree_observation *o) {
+  static const double origin[3] = {0, 0, 0};
+  scree_error error;
+  scree_world *world;
+  scree_particle *sphere, *particle;
+  CHECK_OK(scree_world_create(options, &world, &error), error);
+  CHECK_OK(scree_world_add_material(world, material, NULL, &error), error);
+  CHECK_OK(scree_particle_sphere(radius, &sphere, &error), error);
+  CHECK_OK(scree_particle_clump(origin, &radius, 1, sphere, &particle, &error), error);
+  size_t count = partner == BODY ? 2 : 1;
+  if (partner != BODY) add_wall(world, partner);
+  for (size_t i = 0; i < count; i++) {
+    scree_body body = moved(&two[i]);
+    CHECK_OK(scree_world_add_body(world, clump ? particle : sphere, 0, &body, NULL, &error), error);
+  }
+  CHECK_OK(scree_world_step(world, steps, &error), error);
+  for (size_t i = 0; i < count; i++) {
+    scree_body body;
+    scree_world_get_body(world, i, &body);
+    for (int k = 0; k < 3; k++) {
+      after[i].position[k] = body.position[k];
+      after[i].velocity[k] = body.velocity[k];
+      after[i].spin[k] = body.angular_velocity[k];
+    }
+  }
+  scree_world_observe(world, o);
+  scree_world_free(world);
+  scree_particle_free(particle);
+  scree_particle_free(sphere);
+}
+
+/* One above the other, or above the wall, or below it, about to meet. */
+static void start(scree_rng *rng, int partner, place_and_motion two[2]) {
+  const bool below = partner == DISC_FROM_BELOW;
+  for (int i = 0; i < 2; i++) {
+    const double side = (i == 0) == below ? -1 : 1;
+    for (int k = 0; k < 3; k++) {
+      two[i].position[k] = k == 2 ? side * radius * between(rng, 1.0005, 1.01) : 0;
+      two[i].velocity[k] = k == 2 ? -side * between(rng, 0.2, 1.5) : between(rng, -1, 1);
+      two[i].spin[k] = between(rng, -60, 60);
+    }
+    if (partner == BODY) two[i].position[0] = side * radius * between(rng, 0, 0.3);
+  }
+}
+
+static double compare(const place_and_motion *a, const place_and_motion *b) {
+  double worst = 0;
+  for (int k = 0; k < 3; k++) {
+    worst = fmax(worst, fabs(a->velocity[k] - b->velocity[k]));
+    worst = fmax(worst, radius * fabs(a->spin[k] - b->spin[k]));
+  }
+  return worst;
+}
+
+static void as_features(void **state) {
+  (void)state;
+  static const scree_law laws[] = {SCREE_LAW_LINEAR, SCREE_LAW_HYSTERETIC, SCREE_LAW_HERTZ};
+  scree_rng rng = {17, 0, 0};
+  size_t contacts = 0;
+  double worst = 0, ledger = 0;
+  for (int law = 0; law < 3; law++)
+    for (int partner = 0; partner < PARTNERS; partner++)
+      for (int try = 0; try < 20; try++) {
+        scree_world_options options = scree_default_world_options();
+        scree_material material = scree_default_material();
+        place_and_motion two[2], after[2][2];
+        scree_observation o[2];
+        options.law = laws[law];
+        options.steps_per_contact = 100;
+        material.restitution = between(&rng, 0.2, 1);
+        material.friction = between(&rng, 0, 0.8);
+        material.surface_energy = try % 4 == 0 ? 0.5 : 0;
+        start(&rng, partner, two);
+        const size_t steps = (size_t)between(&rng, 20, 1500);
+        for (int i = 0; i < 2; i++)
+          run(&options, &material, partner, two, i, steps, after[i], &o[i]);
+        for (int i = 0; i < (partner == BODY ? 2 : 1); i++)
+          worst = fmax(worst, compare(&after[0][i], &after[1][i]));
+        assert_int_equal(o[0].pair_count, o[1].pair_count);
+        contacts += o[0].pair_count;
+        ledger = fmax(ledger, fabs(o[0].dissipated_friction - o[1].dissipated_friction));
+      }
+  assert_true(contacts > 50);
+  LAW_BELOW("spheres", "velocity, sphere against a clump of one, m/s", worst, 1e-5);
+  LAW_BELOW("spheres", "dissipated by friction, likewise, J", ledger, 1e-7);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(as_features)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
