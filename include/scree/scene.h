@@ -127,10 +127,11 @@ typedef struct scree_scene_forecast {
   double frame_bytes; /* of one, at most */
 } scree_scene_forecast;
 SCREE_API void scree_scene_foretell(const scree_scene *scene, scree_scene_forecast *forecast);
-/* What is probably a slip, as a sentence that begins with the field: a density that is not given, a
- * mesh in another unit, an inlet without room, frames by the million. To be called with 0, 1, 2,
+/* What is probably a slip, as a sentence: contacts too soft for how fast bodies will hit, a density
+ * that is not given, a mesh in another unit, an inlet without room, frames by the million. To be
+ * called with 0, 1, 2,
  * ... until it is false. */
-enum { SCREE_REMARK = 400 };
+enum { SCREE_REMARK = 600 };
 SCREE_API bool scree_scene_remark(const scree_scene *scene, size_t index, char text[SCREE_REMARK]);
 
 /* Names belong to the scene; NULL past the last. */
@@ -157,20 +158,6 @@ typedef struct scree_scene_book {
   double ledger; /* energy unaccounted for, as a share of all that was turned over */
 } scree_scene_book;
 SCREE_API void scree_scene_get_book(const scree_scene *scene, scree_scene_book *book);
-/* The contact that may be pressed beyond its limit the most, by the speed of an inlet, the fall
- * from it to the lowest geometry and the motion of walls. */
-typedef struct scree_scene_softness {
-  size_t inlet, shape, other;   /* whose bodies; against a shape, or a geometry */
-  bool is_wall;                 /* other: a geometry */
-  double speed, overlap, limit; /* m/s; m: v sqrt(m/K), and what the law reads */
-  double size;                  /* m, of the smaller */
-  double stiffer; /* so many times as stiff it would hold, in the root as many steps */
-} scree_scene_softness;
-/* False where none may. The sentence that says so is put into text. */
-SCREE_API bool scree_scene_soft(const scree_scene *scene, scree_scene_softness *softness);
-SCREE_API void scree_scene_describe_softness(const scree_scene *scene,
-                                             const scree_scene_softness *softness, char *text,
-                                             size_t size);
 
 /* The same of one inlet, of one outlet; the outlet past the last is the domain's rim. */
 SCREE_API size_t scree_scene_inlet_count(const scree_scene *scene, size_t index, double *mass,

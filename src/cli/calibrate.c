@@ -35,17 +35,6 @@ const cli_option calibrate_options[CALIBRATE_OPTIONS] = {
 const study_arguments calibrate_defaults = {.lease = 300};
 enum { MOST_JOBS = 1000, SLURM_TASKS = 8 };
 
-static const char *default_folder(const char *path, const char *verb, char *buffer, size_t size) {
-  const char *slash = strrchr(path, '/');
-  snprintf(buffer, size, "%s", slash ? slash + 1 : path);
-  char *dot = strrchr(buffer, '.');
-  if (dot && dot != buffer)
-    *dot = 0;
-  else
-    snprintf(buffer, size, "%s", verb);
-  return buffer;
-}
-
 static scree_status report(const cli_call *call, scree_calibration *c, const char *folder,
                            bool files, scree_error *error) {
   const study_arguments *a = call->options;
@@ -112,27 +101,19 @@ static int work(const cli_call *call, scree_calibration *c, const char *folder) 
 }
 
 int calibrate_run(const cli_call *call, bool search) {
-  const study_arguments *a = call->options;
   scree_calibration *c = NULL;
   scree_error error;
   char folder[256];
-  if (a->json && a->csv) return cli_misuse(call->verb, "--json and --csv exclude each other");
-  if (a->slurm && a->worker)
-    return cli_misuse(call->verb, "--slurm and --worker exclude each other");
+  int code = study_check_call(call);
+  if (code) return code;
   if (!strcmp(call->inputs[0], "status")) return show_status(call);
-  if (call->input_count > 1)
-    return cli_misuse(call->verb, "one file at a time; '%s' is one too many", call->inputs[1]);
   if (scree_calibration_read(call->inputs[0], &c, &error) != SCREE_OK) return cli_fail(&error);
-  int code = 1;
   if (scree_calibration_is_search(c) != search)
     code = cli_misuse(call->verb,
                       search ? "the file has no minimise or maximise: `scree calibrate` is for it"
                              : "the file has minimise or maximise: `scree optimise` is for it");
   else
-    code =
-        work(call, c,
-             a->output ? a->output
-                       : default_folder(call->inputs[0], call->verb->name, folder, sizeof folder));
+    code = work(call, c, study_folder(call, call->verb->name, folder, sizeof folder));
   scree_calibration_free(c);
   return code;
 }

@@ -176,12 +176,6 @@ static scree_status on_begin(void *context, scree_scene *scene, bool resumed, sc
   cli_terminal_end();
   if (!resumed && !r->states) remark_values(scree_scene_text(scene));
   if (!resumed) remark_sizes(scene);
-  scree_scene_softness soft;
-  char sentence[600];
-  if (!resumed && scree_scene_soft(scene, &soft)) {
-    scree_scene_describe_softness(scene, &soft, sentence, sizeof sentence);
-    fprintf(stderr, "scree: %s\n", sentence);
-  }
   char remark[SCREE_REMARK];
   for (size_t i = 0; !resumed && scree_scene_remark(scene, i, remark); i++)
     fprintf(stderr, "scree: %s\n", remark);

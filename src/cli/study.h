@@ -27,6 +27,12 @@ typedef struct study_crew {
                        const scree_progress *progress, scree_error *error);
 } study_crew;
 
+/* What calls of study, calibrate and optimise have in common: options that exclude each other, one
+ * file. Returns an exit code. */
+int study_check_call(const cli_call *call);
+/* The folder by -o, else the file's name without its ending, else `usual`. */
+const char *study_folder(const cli_call *call, const char *usual, char *buffer, size_t size);
+
 /* How a worker takes part, by its options. */
 scree_study_options study_work_options(const study_arguments *arguments);
 

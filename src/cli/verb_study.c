@@ -41,14 +41,26 @@ static const cli_option options[] = {
 static const study_arguments defaults = {.lease = 300};
 enum { RUNS_ON_DEVICE = 80 };
 
-static const char *default_folder(const char *path, char *buffer, size_t size) {
-  const char *slash = strrchr(path, '/');
-  snprintf(buffer, size, "%s", slash ? slash + 1 : path);
+int study_check_call(const cli_call *call) {
+  const study_arguments *a = call->options;
+  if (a->json && a->csv) return cli_misuse(call->verb, "--json and --csv exclude each other");
+  if (a->slurm && a->worker)
+    return cli_misuse(call->verb, "--slurm and --worker exclude each other");
+  if (strcmp(call->inputs[0], "status") != 0 && call->input_count > 1)
+    return cli_misuse(call->verb, "one file at a time; '%s' is one too many", call->inputs[1]);
+  return 0;
+}
+
+const char *study_folder(const cli_call *call, const char *usual, char *buffer, size_t size) {
+  const study_arguments *a = call->options;
+  const char *slash = strrchr(call->inputs[0], '/');
+  if (a->output) return a->output;
+  snprintf(buffer, size, "%s", slash ? slash + 1 : call->inputs[0]);
   char *dot = strrchr(buffer, '.');
   if (dot && dot != buffer)
     *dot = 0;
   else
-    snprintf(buffer, size, "study");
+    snprintf(buffer, size, "%s", usual);
   return buffer;
 }
 
@@ -178,19 +190,13 @@ static int run(const cli_call *call) {
   scree_study *study = NULL;
   scree_error error;
   char folder[256];
-  if (a->json && a->csv) return cli_misuse(call->verb, "--json and --csv exclude each other");
-  if (a->slurm && a->worker)
-    return cli_misuse(call->verb, "--slurm and --worker exclude each other");
+  int code = study_check_call(call);
+  if (code) return code;
   if (!strcmp(call->inputs[0], "status")) return show_status(call);
-  if (call->input_count > 1)
-    return cli_misuse(call->verb, "one study at a time; '%s' is one too many", call->inputs[1]);
   if (scree_study_read(call->inputs[0], &study, &error) != SCREE_OK) return cli_fail(&error);
-  int code = a->dry_run && !a->slurm
-                 ? list_runs(study)
-                 : run_study(call, study,
-                             a->output ? a->output
-                                       : default_folder(call->inputs[0], folder, sizeof folder),
-                             &error);
+  code = a->dry_run && !a->slurm
+             ? list_runs(study)
+             : run_study(call, study, study_folder(call, "study", folder, sizeof folder), &error);
   scree_study_free(study);
   return code;
 }

@@ -20,6 +20,8 @@ static double region_volume(const scree_plan_inlet *inlet, double *height, vec3 
     *height = c->length * cosine + 2 * c->radius * sine;
     return 3.141592653589793 * c->radius * c->radius * c->length;
   }
+  *height = 0;
+  if (!inlet->box) return 0; /* layers in a geometry */
   vec3 sides = vec3_sub(vec3_load(inlet->box->max), vec3_load(inlet->box->min));
   *height = fabs(along.x) * sides.x + fabs(along.y) * sides.y + fabs(along.z) * sides.z;
   return sides.x * sides.y * sides.z;
@@ -158,8 +160,15 @@ static void remark_frames(const scree_scene *scene, remarks *r) {
              1e-9 * f.frame_count * f.frame_bytes);
 }
 
+static void remark_softness(const scree_scene *scene, remarks *r) {
+  scree_scene_softness soft;
+  if (scree_scene_soft(scene, &soft) && is_asked(r))
+    scree_scene_describe_softness(scene, &soft, r->text, SCREE_REMARK);
+}
+
 bool scree_scene_remark(const scree_scene *scene, size_t index, char text[SCREE_REMARK]) {
   remarks r = {.wanted = index, .text = text};
+  remark_softness(scene, &r);
   remark_densities(scene, &r);
   remark_units(scene, &r);
   remark_inlets(scene, &r);

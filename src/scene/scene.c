@@ -496,11 +496,8 @@ static scree_status advance(scree_scene *scene, size_t step_count, scree_error *
 
 /* A world counts its walls; a scene's have names. */
 static void name_wall(const scree_scene *scene, scree_error *error) {
-  const char *found = error ? strstr(error->message, " wall ") : NULL;
-  char *end;
-  if (!found) return;
-  size_t index = strtoul(found + 6, &end, 10), used = strlen(error->message);
-  if (end == found + 6 || index >= scree_world_wall_count(scene->world)) return;
+  size_t used = error ? strlen(error->message) : 0, index = scene->world->failed_wall - 1;
+  if (!error || scene->world->failed_wall == 0) return;
   snprintf(error->message + used, sizeof error->message - used, "; wall %zu is '%s'", index,
            scree_scene_geometry_name(scene, scree_scene_wall_geometry(scene, index)));
 }

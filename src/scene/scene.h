@@ -255,6 +255,19 @@ double scree_scene_phase_end(const scree_scene *scene);
 double scree_scene_phase_times(const scree_scene *scene);
 bool scree_scene_is_in_phase(const scree_scene *scene, const scree_texts *names);
 
+/* softness.c: the contact that may be pressed beyond its limit the most, by the speed of an inlet,
+ * the fall from it to the lowest geometry and the motion of walls. */
+typedef struct scree_scene_softness {
+  size_t inlet, shape, other;   /* whose bodies; against a shape, or a geometry */
+  bool is_wall;                 /* other: a geometry */
+  double speed, overlap, limit; /* m/s; m: v sqrt(m/K), and what the law reads */
+  double size;                  /* m, of the smaller */
+  double stiffer; /* so many times as stiff it would hold, in the root as many steps */
+} scree_scene_softness;
+/* False where none may. The sentence that says so is put into text. */
+bool scree_scene_soft(const scree_scene *scene, scree_scene_softness *softness);
+void scree_scene_describe_softness(const scree_scene *scene, const scree_scene_softness *softness,
+                                   char *text, size_t size);
 /* softness.c: refuses inlets so fast that bodies would pass what they hit. */
 scree_status scree_scene_check_softness(const scree_scene *scene, scree_error *error);
 /* outlets.c: takes out what is in an outlet or left the domain. */

@@ -114,6 +114,7 @@ static void gather_block(void *context, size_t begin, size_t end, size_t block, 
 
 scree_status scree_describe_offender(scree_world *world, size_t i) {
   double travel = world->bodies.travel[i];
+  world->failed_wall = 0;
   if (!isfinite(travel))
     return scree_fail(&world->failure, SCREE_DIVERGED,
                       "world: step %llu, body %zu: the forces on it are not finite",

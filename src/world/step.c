@@ -356,6 +356,12 @@ static scree_status describe_start(scree_world *world, const scree_trouble *trou
 }
 
 scree_status scree_describe_trouble(scree_world *world, const scree_trouble *trouble) {
+  const uint32_t found[] = {trouble->start, trouble->beyond_limit, trouble->passed,
+                            trouble->too_fast};
+  size_t first = 0;
+  while (first < 3 && found[first] == scree_none) first++;
+  const scree_neighbours *n = &world->neighbours.items[found[first]];
+  world->failed_wall = n->wall ? (size_t)n->b + 1 : 0;
   if (trouble->start != scree_none) return describe_start(world, trouble);
   if (trouble->beyond_limit != scree_none) return describe_overlap(world, trouble->beyond_limit);
   if (trouble->passed != scree_none) return describe_passed(world, trouble->passed);

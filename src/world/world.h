@@ -430,7 +430,8 @@ struct scree_world {
   double largest_overlap;
   bool diverged;
   scree_error failure;
-  struct { /* scree_world_keep; path NULL: nothing is kept */
+  size_t failed_wall; /* 1 and the index of the wall that the failure names; 0: none */
+  struct {            /* scree_world_keep; path NULL: nothing is kept */
     char *path;
     scree_packer *pack;
     const void *what;

@@ -1,6 +1,7 @@
 /* Whether contacts are stiff enough is told before the first step: what is foretold is what a hit
  * comes to, the stiffness that is named holds, the motion of walls counts, and an inlet whose
  * bodies would pass what they hit is refused. Templates keep to it. */
+#include "scene/scene.h"
 #include "scree.h"
 #include "support/check.h"
 
