@@ -1,0 +1,112 @@
+"""What the cases share: where the program, the library and the folder of measurements are, tables that grow, statistics."""
+import csv
+import math
+import os
+import pathlib
+import random
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+BUILD = pathlib.Path(os.environ.get("SCREE_BUILD", ROOT / "build" / "release"))
+PROGRAM = os.environ.get("SCREE", str(BUILD / "bin" / "scree"))
+WORK = pathlib.Path(os.environ.get("SCREE_EVIDENCE_WORK", ROOT / "build" / "evidence"))
+DATA = pathlib.Path(os.environ.get("SCREE_EVIDENCE_DIR", ROOT.parent / "shared" / "evidence"))
+
+
+def data(folder):
+    """The folder of a case's measurements; without it the case is skipped."""
+    path = DATA / folder
+    if not path.is_dir():
+        print(f"skipped: there is no folder {path}; SCREE_EVIDENCE_DIR names another")
+        sys.exit(0)
+    return path
+
+
+def library():
+    """The Python module of this checkout, on one thread: the runs are processes."""
+    sys.path.insert(0, str(ROOT / "python"))
+    for name in ("libscree.so", "libscree.dylib"):
+        for path in BUILD.rglob(name):
+            os.environ.setdefault("SCREE_LIBRARY", str(path))
+    import scree
+    scree.set_threads(1)
+    return scree
+
+
+def run(*words, folder=None):
+    return subprocess.run([PROGRAM, *map(str, words)], check=True, cwd=folder, stdout=subprocess.PIPE, text=True).stdout
+
+
+def commit():
+    return subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], stdout=subprocess.PIPE, text=True).stdout.strip()
+
+
+class Table:
+    """A CSV that grows by a row at a time: a run that was broken off goes on behind its last whole row."""
+
+    def __init__(self, path, columns, key_count):
+        self.path, self.columns, self.key_count, self.rows = pathlib.Path(path), columns, key_count, []
+        if self.path.exists():
+            lines = self.path.read_text().splitlines(keepends=True)
+            whole = [line for line in lines if line.endswith("\n")]
+            self.rows = list(csv.DictReader(line for line in whole if not line.startswith("#")))
+            if len(whole) < len(lines):
+                self.path.write_text("".join(whole))
+        else:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            words = " ".join([pathlib.Path(sys.argv[0]).name, *sys.argv[1:]])
+            self.path.write_text(f"# commit {commit()}; {words}\n" + ",".join(columns) + "\n")
+        self.done = {self.key(row.values()) for row in self.rows}
+
+    def key(self, values):
+        return tuple(map(str, values))[:self.key_count]
+
+    def add(self, *values):
+        with open(self.path, "a") as out:
+            out.write(",".join(f"{v:.6g}" if isinstance(v, float) else str(v) for v in values) + "\n")
+        self.rows.append(dict(zip(self.columns, map(str, values))))
+        self.done.add(self.key(values))
+
+
+def read(path):
+    with open(path) as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def mean(values):
+    return sum(values) / len(values)
+
+
+def deviation(values):
+    m = mean(values)
+    return math.sqrt(sum((v - m) ** 2 for v in values) / (len(values) - 1))
+
+
+def kolmogorov(a, b):
+    """The largest distance between both distribution functions."""
+    a, b, i, j, most = sorted(a), sorted(b), 0, 0, 0.0
+    while i < len(a) and j < len(b):
+        x = min(a[i], b[j])
+        while i < len(a) and a[i] == x:
+            i += 1
+        while j < len(b) and b[j] == x:
+            j += 1
+        most = max(most, abs(i / len(a) - j / len(b)))
+    return most
+
+
+def kolmogorov_p(d, n, m):
+    """Asymptotic p of two samples of one distribution (Stephens's correction)."""
+    k = math.sqrt(n * m / (n + m))
+    x = (k + 0.12 + 0.11 / k) * d
+    return min(1.0, 2 * sum((-1) ** (i - 1) * math.exp(-2 * i * i * x * x) for i in range(1, 101))) if x > 0.2 else 1.0
+
+
+def bootstrap(statistic, *samples, rounds=1000, level=0.9, seed=1):
+    """Percentile interval; every sample is drawn anew, each by itself."""
+    rng = random.Random(seed)
+    values = sorted(statistic(*([s[rng.randrange(len(s))] for _ in s] for s in samples)) for _ in range(rounds))
+    low = (1 - level) / 2
+    return values[int(low * rounds)], values[min(rounds - 1, int((1 - low) * rounds))]
