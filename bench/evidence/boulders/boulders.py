@@ -103,31 +103,31 @@ class Quarry:
             self.fields[f"geometry.{zone}.file"] = str(self.folder / f"DTM_{zone.capitalize()}_zone.stl")
         self.shapes, self.scratch = {}, tempfile.TemporaryDirectory()
 
+    def closed(self, scan):
+        mesh = self.scree.load(str(scan), "m").repair()
+        return mesh[0] if isinstance(mesh, tuple) else mesh
+
     def shape(self, variant, name):
         """Fields of the scene, and how the particle's axes stand in the scan's coordinates. The files are made once."""
         if (variant, name) in self.shapes:
             return self.shapes[variant, name]
-        scan = self.folder / f"{name}.stl"
-        mesh = self.scree.load(str(scan), "m").repair()
-        mesh = mesh[0] if isinstance(mesh, tuple) else mesh
-        whole = self.scree.Particle(mesh)
-        folder = WORK / "boulders" / variant
+        scan, folder = self.folder / f"{name}.stl", WORK / "boulders" / variant
         folder.mkdir(parents=True, exist_ok=True)
         if variant == "sphere":
-            fields, particle = {"sphere": whole.measure().size}, None
-            fields.update(file=None, unit=None, triangles=None)
+            fields, particle = {"sphere": self.scree.Particle(self.closed(scan)).measure().size, "file": None, "unit": None,
+                                "triangles": None}, None
         elif variant.startswith("clump"):
             path = folder / f"{name}.csv"
             if not path.exists():
                 run("clump", scan, "--unit", "m", "-n", variant[5:], "-o", folder, "-q", "-f")
-            fields, particle = {"clump": str(path), "file": None, "triangles": None}, whole
+            fields, particle = {"clump": str(path), "file": None, "triangles": None}, self.scree.Particle(self.closed(scan))
         else:
-            factor = 1.0 if variant == "recommended" else float(variant[:-1])
             path = folder / f"{name}.stl"
-            curve = mesh.curve()
-            count = curve.choose().recommended.triangle_count
-            level = curve.mesh(curve.find(max(4, round(factor * count)))) if factor * count < len(mesh.triangles) else mesh
             if not path.exists():
+                mesh = self.closed(scan)
+                curve = mesh.curve()
+                count = curve.choose().recommended.triangle_count * (1.0 if variant == "recommended" else float(variant[:-1]))
+                level = curve.mesh(curve.find(max(4, round(count)))) if count < len(mesh.triangles) else mesh
                 level.write(str(path), "m")
             fields, particle = {"file": str(path)}, self.scree.Particle(self.scree.load(str(path), "m"))
         turn = particle.measure().orientation if particle else (1, 0, 0, 0)

@@ -1,0 +1,52 @@
+"""Figures as SVG: distribution functions, lines and points on two axes."""
+import math
+
+COLOURS = ["#000000", "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#8c564b"]
+
+
+def ticks(low, high):
+    step = 10 ** math.floor(math.log10((high - low) / 4))
+    step *= next(m for m in (1, 2, 5, 10) if (high - low) / (m * step) <= 6)
+    first = math.ceil(low / step)
+    return [k * step for k in range(first, math.floor(high / step + 1e-9) + 1)]
+
+
+def distribution(values):
+    """The points of a sample's distribution function, as a staircase."""
+    values, points = sorted(values), []
+    for k, v in enumerate(values):
+        points += [(v, k / len(values)), (v, (k + 1) / len(values))]
+    return points
+
+
+def write(path, series, x_name, y_name, box=None):
+    """series: name, points, and whether they are "line" or "points"; box: x and y from, to."""
+    width, height, left, bottom, top, right = 640, 400, 60, 50, 15, 15
+    every = [p for _, points, _ in series for p in points]
+    x0, x1, y0, y1 = box or (min(p[0] for p in every), max(p[0] for p in every), min(p[1] for p in every), max(p[1] for p in every))
+
+    def at(x, y):
+        return (left + (x - x0) / (x1 - x0) * (width - left - right), height - bottom - (y - y0) / (y1 - y0) * (height - bottom - top))
+
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="13">',
+           f'<rect width="{width}" height="{height}" fill="white"/>',
+           f'<clipPath id="in"><rect x="{left}" y="{top}" width="{width - left - right}" height="{height - bottom - top}"/></clipPath>']
+    for v in ticks(x0, x1):
+        x, y = at(v, y0)
+        out.append(f'<path d="M{x:.1f} {y:.1f}V{top}" stroke="#ddd"/><text x="{x:.1f}" y="{y + 18:.1f}" text-anchor="middle">{v:g}</text>')
+    for v in ticks(y0, y1):
+        x, y = at(x0, v)
+        out.append(f'<path d="M{x:.1f} {y:.1f}H{width - right}" stroke="#ddd"/><text x="{x - 6:.1f}" y="{y + 4:.1f}" text-anchor="end">{v:g}</text>')
+    out.append(f'<text x="{(left + width - right) / 2:.0f}" y="{height - 10}" text-anchor="middle">{x_name}</text>')
+    out.append(f'<text transform="translate(16 {(height - bottom + top) / 2:.0f}) rotate(-90)" text-anchor="middle">{y_name}</text>')
+    for k, (name, points, kind) in enumerate(series):
+        colour = COLOURS[k % len(COLOURS)]
+        if kind == "line":
+            way = "L".join("{:.1f} {:.1f}".format(*at(*p)) for p in points)
+            out.append(f'<path d="M{way}" fill="none" stroke="{colour}" stroke-width="1.6" clip-path="url(#in)"/>')
+        else:
+            out += ['<circle cx="{:.1f}" cy="{:.1f}" r="3" fill="{}"/>'.format(*at(*p), colour) for p in points]
+        y = top + 16 + 17 * k
+        out.append(f'<path d="M{left + 10} {y - 4}h18" stroke="{colour}" stroke-width="3"/><text x="{left + 34}" y="{y}">{name}</text>')
+    with open(path, "w") as file:
+        file.write("\n".join([*out, "</svg>"]) + "\n")
