@@ -22,7 +22,7 @@ from common import Table, data, library, mean, read  # noqa: E402
 RADIUS, DEPTH = 42.0, 20.0  # mm
 COLUMNS = 100               # over the diameter: 0.84 mm each
 USED = 0.9                  # of the radius: beyond it a column is all wall
-SOLID = 28600.0             # mm3 of particles; 440 spheres of 5 mm show as much powder as the picture
+SOLID = 24700.0             # mm3 of particles: spheres of 5 mm show as much powder as the picture
 
 
 def place(column):
@@ -105,8 +105,8 @@ def simulate(options):
     scree, camera = library(), Camera()
     speed, sizes = options.rpm * 2 * math.pi / 60, [0.86 * options.size, options.size, 1.14 * options.size]
     count = round(SOLID / (math.pi / 6 * mean([s ** 3 for s in sizes])))
-    begin = 0.2 + 1.75 / speed          # a bed that lay level has yielded after 100 degrees
-    end = begin + max(1.25 / speed, 0.4)
+    begin = 0.2 + max(1.2 / speed, 0.4)     # a bed that lay level has yielded after 70 degrees
+    end = begin + max(0.8 / speed, 0.4)
     fields = {"seed": options.seed, "time": end, "materials.grain.friction": options.friction,
               "materials.grain.rolling_friction": options.rolling, "inlets.feed.count": count}
     fields.update({f"geometry.{wall}.motion.0.rotate.speed": speed for wall in ("shell", "near", "far")})
