@@ -7,6 +7,7 @@
 #   make deb     Debian packages in build/deb
 #   make wheel   a Python wheel for any Linux in build/wheel
 #   make docs    builds the manual as a site that works from disk: build/docs/index.html
+#   make evidence  runs scree beside measurements and other codes, hours that resume (docs/background/evidence.md)
 #   make install, make uninstall    DESTDIR=... stages below a folder
 # PRESET=asan|debug|tsan|clang for another build; DATA_DIR=... for a folder of real scans that some tests
 # read; LABELS="-LE slow" and the like are passed to ctest; JOBS=N.
@@ -16,7 +17,7 @@ LABELS ?=
 JOBS ?= $(shell nproc)
 DEMO_DIR ?= demo
 
-.PHONY: all build packages demo test docs page npm deb wheel install uninstall clean
+.PHONY: all build packages demo test docs evidence page npm deb wheel install uninstall clean
 all: build
 
 packages:
@@ -53,6 +54,9 @@ wheel:
 
 docs: build
 	@tools/site/build.sh build/$(PRESET) build/docs
+
+evidence: build
+	@bench/evidence/run.sh
 
 install: build
 	@cmake --install build/$(PRESET)

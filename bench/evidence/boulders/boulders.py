@@ -6,7 +6,7 @@
   boulders.py grid FILE.csv --profile P --variant V,... [--every N] ZONE.restitution=X ...
                         all shapes, places and every Nth orientation; adds to the table what it lacks
   boulders.py measured  the numbers of the 41 boulders and their standard errors by bootstrap
-  boulders.py fitted FIT.json    its means, as words for `grid`
+  boulders.py fitted FIT.csv     its means, as words for `grid`
 
 Variants: recommended, 0.0625x, 0.25x, 4x (of the recommended count), sphere, clump5, clump20, clump50.
 Environment: SCREE_EVIDENCE_DIR, the folder of measurements."""
@@ -21,7 +21,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import DATA, WORK, Table, bootstrap, data, deviation, library, mean, run  # noqa: E402
+from common import WORK, Table, bootstrap, data, deviation, library, mean, read, run  # noqa: E402
 
 SHAPES, ZONES = ("SP1A", "SP2A", "SP2B", "SP3A"), ("blue", "gray", "red")
 FAR = 45  # m: on profile 1 the pit's floor begins there
@@ -210,8 +210,9 @@ def measured(_options):
 
 
 def fitted(options):
-    for name, parameter in json.loads(pathlib.Path(options.file).read_text())["parameters"].items():
-        print(f"{name.replace('_', '.')}={parameter['mean']:.4f}")
+    for row in read(options.file):
+        if row["kind"] == "parameter":
+            print(f"{row['name'].replace('_', '.')}={row['mean']}")
 
 
 def main():

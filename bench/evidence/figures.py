@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""The figures of docs/background/evidence.md, from the tables in results/ that are there."""
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "boulders"))
+from boulders import measured_rows  # noqa: E402
+from common import DATA, HERE, ROOT, read  # noqa: E402
+from compare import rockable, simulated  # noqa: E402
+from figure import distribution, write  # noqa: E402
+
+RESULTS, FIGURES = HERE / "results", ROOT / "docs" / "figures"
+
+
+def boulders():
+    grid = RESULTS / "boulders-grid.csv"
+    if not grid.exists() or not (DATA / "authume").is_dir():
+        return
+    samples = [("measured, 41 boulders", measured_rows()), ("Rockable", rockable()), ("scree, fitted", simulated(grid))]
+    write(FIGURES / "evidence-boulders.svg", [(name, distribution([r[0] for r in rows]), "line") for name, rows in samples],
+          "run-out along the fall line, m", "share that stopped before", (-5, 115, 0, 1))
+    variants = ("4x", "recommended", "0.25x", "0.0625x", "clump50", "clump20", "clump5", "sphere")
+    write(FIGURES / "evidence-shapes.svg",
+          [(v, distribution([r[0] for r in simulated(grid, v)]), "line") for v in variants if simulated(grid, v)],
+          "run-out along the fall line, m", "share that stopped before", (-5, 115, 0, 1))
+
+
+def drum():
+    table = RESULTS / "drum-measured.csv"
+    if not table.exists():
+        return
+    series = []
+    for rpm in (15, 45):
+        series.append((f"measured, {rpm} rpm", surface(read(table), f"length_{rpm}_mm"), "points"))
+    for rpm in (10, 15, 30, 45):
+        path = RESULTS / f"drum-{rpm}.csv"
+        if path.exists():
+            series.append((f"scree, {rpm} rpm", surface(read(path), "length_mm"), "line"))
+    write(FIGURES / "evidence-drum.svg", series, "x, mm", "height of the surface, mm", (-42, 42, -42, 42))
+
+
+def surface(rows, column):
+    points = [(float(r["x_mm"]), float(r[column])) for r in rows]
+    return [(x, length - (42 * 42 - x * x) ** 0.5) for x, length in points if abs(x) < 0.9 * 42]
+
+
+def penetration():
+    table = RESULTS / "penetration.csv"
+    if table.exists():
+        rows = read(table)
+        write(FIGURES / "evidence-penetration.svg",
+              [(name, [(1e3 * float(r["time"]), 1e3 * float(r[f"{column}_z"])) for r in rows], "line")
+               for name, column in (("LIGGGHTS", "liggghts"), ("scree", "scree"))], "time, ms", "height of the ball, mm")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1:
+        sys.exit(__doc__)
+    boulders()
+    drum()
+    penetration()

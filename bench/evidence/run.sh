@@ -1,0 +1,62 @@
+#!/bin/bash
+# Evidence: cases beside measurements and other codes, docs/background/evidence.md.
+#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration; all without a name
+# Each piece goes on where it was broken off; what is done is not done again (delete its table in results/ to repeat it).
+# SCREE_EVIDENCE_DIR names the folder of measurements (default ../shared/evidence); a case without its folder is skipped.
+# One process at a time: nice -n 15 bench/evidence/run.sh runs beside other work. Some hours of one core in all.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+export SCREE_EVIDENCE_DIR=${SCREE_EVIDENCE_DIR:-$root/../shared/evidence}
+scree=${SCREE:-$root/build/release/bin/scree}
+work=${SCREE_EVIDENCE_WORK:-$root/build/evidence}
+results=$here/results
+mkdir -p "$work" "$results"
+[ $# -gt 0 ] || set -- boulders drum penetration
+
+# fitted CASE: its calibration and both tables of it.
+fitted() {
+  [ -s "$results/$1-fit.csv" ] && return
+  "$scree" calibrate "$here/$1/fit.yaml" -o "$work/$1-fit" --jobs 1 -j 1
+  "$here/fit_table.py" "$work/$1-fit" "$results/$1-fit.csv" "$results/$1-runs.csv"
+}
+
+boulders() {
+  [ -s "$results/boulders-measured.csv" ] || "$here/boulders/boulders.py" measured >"$results/boulders-measured.csv"
+  fitted boulders
+  local words
+  words=$("$here/boulders/boulders.py" fitted "$results/boulders-fit.csv")
+  # shellcheck disable=SC2086 # many words
+  "$here/boulders/boulders.py" grid "$results/boulders-grid.csv" --every 4 \
+    --variant recommended,4x,0.25x,0.0625x,sphere,clump5,clump20,clump50 $words
+  "$here/boulders/compare.py" places "$results/boulders-grid.csv" "$results/boulders-places.csv"
+  "$here/boulders/compare.py" shapes "$results/boulders-grid.csv" "$results/boulders-shapes.csv"
+}
+
+drum() {
+  "$here/drum/drum.py" outlines "$results/drum-measured.csv"
+  fitted drum
+  local rpm friction rolling
+  friction=$(awk -F, '$2 == "friction" { print $4 }' "$results/drum-fit.csv")
+  rolling=$(awk -F, '$2 == "rolling" { print $4 }' "$results/drum-fit.csv")
+  for rpm in 10 15 30 45; do
+    [ -s "$results/drum-$rpm.csv" ] || "$here/drum/drum.py" one --rpm $rpm --friction "$friction" --rolling "$rolling" \
+      --profile "$results/drum-$rpm.csv"
+  done
+}
+
+penetration() {
+  [ -s "$results/penetration.csv" ] || "$here/penetration/penetration.py" run "$results/penetration.csv"
+  "$here/penetration/penetration.py" compare "$results/penetration.csv"
+}
+
+for case in "$@"; do
+  case $case in
+  boulders) folder=authume ;;
+  drum) folder=granudrum ;;
+  penetration) folder=bulk ;;
+  *) echo "run.sh: no case '$case'; there are boulders, drum and penetration" >&2 && exit 2 ;;
+  esac
+  if [ -d "$SCREE_EVIDENCE_DIR/$folder" ]; then $case; else echo "$case: skipped, there is no folder $SCREE_EVIDENCE_DIR/$folder"; fi
+done
+"$here/figures.py"
