@@ -37,12 +37,14 @@ def picture(path):
     if raw[:2] != b"BM" or bits != 8 or height < 1:
         sys.exit(f"{path}: no 8-bit BMP from the bottom up")
     palette, stride, middle = raw[54:start], (width + 3) // 4 * 4, width / 2
-    lengths = [0.0] * COLUMNS
+    lengths, counts = [0.0] * COLUMNS, [0] * COLUMNS
     for x in range(width):
         half = math.sqrt(max(0, middle * middle - (x + 0.5 - middle) ** 2))
         dark = sum(1 for y in range(height) if abs(y + 0.5 - height / 2) < half and palette[4 * raw[start + y * stride + x]] < 128)
-        lengths[int(x * COLUMNS / width)] += dark * (2 * RADIUS / width) * COLUMNS / width
-    return lengths
+        column = int((x + 0.5) * COLUMNS / width)
+        lengths[column] += dark * (2 * RADIUS / width)
+        counts[column] += 1
+    return [length / count for length, count in zip(lengths, counts)]
 
 
 def surface(lengths):

@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""The scripts of bench/evidence on inputs whose answers are known: statistics against counting and random samples, a table
+that was broken off, a drawn picture, a camera over one sphere, and a cube dropped on a slope of three sheets.
+usage: check.py ROOT, with SCREE_LIBRARY and PYTHONPATH"""
+import math
+import os
+import pathlib
+import random
+import struct
+import sys
+import tempfile
+from types import SimpleNamespace
+
+ROOT, SCRATCH = pathlib.Path(sys.argv[1]), tempfile.TemporaryDirectory()
+HOME = pathlib.Path(SCRATCH.name)
+os.environ["SCREE_EVIDENCE_DIR"], os.environ["SCREE_EVIDENCE_WORK"] = str(HOME), str(HOME / "work")
+for folder in ("", "boulders", "drum"):
+    sys.path.insert(0, str(ROOT / "bench" / "evidence" / folder))
+import boulders  # noqa: E402
+import common  # noqa: E402
+import drum  # noqa: E402
+
+wrong = []
+
+
+def check(true, what):
+    if not true:
+        wrong.append(what)
+
+
+def statistics():
+    rng = random.Random(1)
+    for _ in range(300):
+        a, b = ([rng.randrange(8) for _ in range(rng.randrange(1, 12))] for _ in range(2))
+        slow = max(abs(sum(v <= x for v in a) / len(a) - sum(v <= x for v in b) / len(b)) for x in a + b)
+        check(abs(common.kolmogorov(a, b) - slow) < 1e-12, f"the distance of {a} and {b}")
+    hits = sum(common.kolmogorov_p(common.kolmogorov(*([rng.random() for _ in range(n)] for n in (41, 60))), 41, 60) < 0.1
+               for _ in range(1000))
+    check(60 < hits < 130, f"{hits} of 1000 samples of one distribution have p below 0.1")
+    held = 0
+    for k in range(200):
+        low, high = common.bootstrap(common.mean, [rng.gauss(0, 1) for _ in range(40)], rounds=300, seed=k)
+        held += low < 0 < high
+    check(165 < held < 195, f"{held} of 200 intervals of 90 % hold the mean")
+
+
+def table():
+    path = HOME / "table.csv"
+    common.Table(path, ["a", "b"], 1).add("x", 0.5)
+    with open(path, "a") as file:
+        file.write("y,0.")                      # broken off
+    again = common.Table(path, ["a", "b"], 1)
+    check(again.done == {("x",)}, "a row that was broken off counts as done")
+    again.add("y", 0.25)
+    check([tuple(row.values()) for row in common.read(path)] == [("x", "0.5"), ("y", "0.25")], "a table that goes on")
+
+
+def profiles():
+    size, slope, radius = 406, math.radians(37), drum.RADIUS
+    stride = (size + 3) // 4 * 4
+    palette = b"".join(bytes([k, k, k, 0]) for k in range(256))
+    rows = bytearray(stride * size)
+    for y in range(size):
+        for x in range(size):
+            dark = y + 0.5 - size / 2 < -math.tan(slope) * (x + 0.5 - size / 2)
+            rows[y * stride + x] = 10 if dark else 240
+    head = struct.pack("<2sIHHI", b"BM", 1078 + len(rows), 0, 0, 1078)
+    head += struct.pack("<IiiHHIIiiII", 40, size, size, 1, 8, 0, len(rows), 0, 0, 256, 0)
+    path = HOME / "drawn.bmp"
+    path.write_bytes(head + palette + rows)
+    lengths = drum.picture(path)
+    check(abs(drum.angle(lengths) - 37) < 0.2, f"a surface of 37 degrees is read as {drum.angle(lengths)}")
+    area = sum(lengths) * 2 * radius / drum.COLUMNS
+    check(abs(area - math.pi * radius * radius / 2) < 20, f"half a drum has {area} mm2")
+    used = sum(1 for c in range(drum.COLUMNS) if abs(drum.place(c)) < drum.USED * radius) * 2 * radius / drum.COLUMNS
+    check(abs(drum.error(lengths, [v + 0.5 for v in lengths]) - 0.5 * used) < 1e-9, "the area between two profiles")
+    camera = drum.Camera()
+    for x in (5, 5, 30):
+        camera.look([(x, -7, 6)])
+    seen = camera.lengths()
+    for c in range(drum.COLUMNS):
+        chord = 2 * math.sqrt(max(0, 36 - (drum.place(c) - 5) ** 2))
+        check(abs(seen[c] - chord) <= 2 * radius / drum.COLUMNS, f"a sphere's column at {drum.place(c)} mm: {seen[c]}, not {chord}")
+
+
+def facets(path, triangles):
+    with open(path, "w") as file:
+        file.write("solid s\n")
+        for t in triangles:
+            file.write("facet normal 0 0 0\nouter loop\n" + "".join("vertex {} {} {}\n".format(*v) for v in t) + "endloop\nendfacet\n")
+        file.write("endsolid s\n")
+
+
+def quarry():
+    """A slope of 1 to 2 down +x, then two level sheets."""
+    folder = HOME / "authume"
+    folder.mkdir()
+    for zone, x0, x1 in (("Blue", -10, 20), ("Gray", 20, 60), ("Red", 60, 100)):
+        height = {x: max(0, 20 - x) / 2 + 160 for x in (x0, x1)}
+        a, b, c, d = ((x, height[x], z) for x, z in ((x0, 305), (x1, 305), (x1, 335), (x0, 335)))
+        facets(folder / f"DTM_{zone}_zone.stl", [(a, c, b), (a, d, c)])
+    corner = [(x, y, z) for x in (-0.4, 0.4) for y in (-0.4, 0.4) for z in (-0.4, 0.4)]
+    sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    facets(folder / "SP3A.stl", [tuple(corner[q[k]] for k in t) for q in sides for t in ((0, 1, 2), (0, 2, 3))])
+    (folder / "positions_P1.xyz").write_text("0 170.45 320\n" * 4)
+    (folder / "orientations.txt").write_text("q0\tq1\tq2\tq3\n" + "0.9732489895\t0\t0\t-0.2297529205\n" * 64)
+    words = [f"{zone}.{what}={value}" for zone in boulders.ZONES for what, value in (("restitution", 0.2), ("friction", 0.3))]
+    yard = boulders.Quarry(1, words)
+    check([yard.terrain.zone(x, 320) for x in (3, 30, 70, 200)] == ["blue", "gray", "red", "off"], "zones of places")
+    check(yard.terrain.down[0] > 0.999, f"the fall line is {yard.terrain.down}")
+    check(all(abs(p - q) < 1e-9 for p, q in zip(yard.terrain.seen(7, 323), (7, 3))), "along and sideways")
+    end = yard.fall("4x", "SP3A", 0, 0)
+    # It slides until m g h is lost to 0.3 m g times its horizontal way, or before, as it hits the level.
+    check(end[5] == "gray" and 20 < end[3] < 10.1 / 0.3 and abs(end[1] - 160.4) < 0.05, f"a cube ends at {end}")
+    words[1] = "blue.friction=1.5"
+    stuck = boulders.Quarry(1, words).fall("4x", "SP3A", 0, 0)
+    check(stuck[5] == "blue", f"a cube on a slope below its friction ends at {stuck}")
+
+
+def turns():
+    rng = random.Random(2)
+
+    def matrix(q):
+        w, x, y, z = q
+        return [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+
+    for _ in range(50):
+        a, b = ([v / math.hypot(*q) for v in q] for q in ([rng.gauss(0, 1) for _ in range(4)] for _ in range(2)))
+        product, left, right = matrix(boulders.times(a, b)), matrix(a), matrix(b)
+        check(all(abs(product[i][j] - sum(left[i][k] * right[k][j] for k in range(3))) < 1e-12 for i in range(3) for j in range(3)),
+              "the product of two turns")
+
+
+def speed():
+    """The drum carries the powder up on the left: its surface falls to the right."""
+    lengths, scene = drum.simulate(SimpleNamespace(rpm=45, friction=0.5, rolling=0.2, seed=1, size=9.0))
+    check(len(scene.world) > 30 and 20 < drum.angle(lengths) < 75, f"{len(scene.world)} spheres stand at {drum.angle(lengths)} degrees")
+
+
+for part in (statistics, table, profiles, turns, quarry, speed):
+    part()
+print("\n".join(wrong) or "the scripts of bench/evidence give what is known")
+sys.exit(bool(wrong))
