@@ -22,7 +22,7 @@ from common import Table, data, library, mean, read  # noqa: E402
 RADIUS, DEPTH = 42.0, 20.0  # mm
 COLUMNS = 100               # over the diameter: 0.84 mm each
 USED = 0.9                  # of the radius: beyond it a column is all wall
-SOLID = 24700.0             # mm3 of particles: spheres of 5 mm show as much powder as the picture
+SOLID = 23400.0             # mm3 of particles: spheres of 6 mm show as much powder as the picture
 
 
 def place(column):
@@ -150,7 +150,7 @@ def main():
     for name in ("rpm", "friction", "rolling"):
         run.add_argument(f"--{name}", type=float, required=True)
     run.add_argument("--seed", type=int, default=1)
-    run.add_argument("--size", type=float, default=5.0, help="mean diameter, mm")
+    run.add_argument("--size", type=float, default=6.0, help="mean diameter, mm")
     run.add_argument("--measured")
     run.add_argument("--profile")
     options = parser.parse_args()
