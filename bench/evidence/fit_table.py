@@ -26,7 +26,10 @@ def runs(folder, path):
     names, planned = [], []
     for file in sorted((folder / "rounds").glob("*.yaml")):
         text = file.read_text()
-        names = re.findall(r'"([^"]*)"', re.search(r"^parameters: (.*)$", text, re.MULTILINE)[1])
+        head = re.search(r"^parameters: (.*)$", text, re.MULTILINE)
+        if not head:                                # the last says why there are no more
+            continue
+        names = re.findall(r'"([^"]*)"', head[1])
         planned += [(e, int(s), re.findall(r'"([^"]*)"', v)) for e, s, v in
                     re.findall(r'experiment: "([^"]*)", seed: (\d+), values: \[(.*?)\]', text)]
     answers, found = [], {}
