@@ -27,8 +27,8 @@ boulders() {
   local words
   words=$("$here/boulders/boulders.py" fitted "$results/boulders-fit.csv")
   # shellcheck disable=SC2086 # many words
-  "$here/boulders/boulders.py" grid "$results/boulders-grid.csv" --every 4 \
-    --variant recommended,4x,0.25x,0.0625x,sphere,clump5,clump20,clump50 $words
+  "$here/boulders/boulders.py" grid "$results/boulders-grid.csv" $words --every 4 \
+    --variant recommended,4x,0.25x,0.0625x,sphere,clump5,clump20,clump50
   "$here/boulders/compare.py" places "$results/boulders-grid.csv" "$results/boulders-places.csv"
   "$here/boulders/compare.py" shapes "$results/boulders-grid.csv" "$results/boulders-shapes.csv"
 }

@@ -3,7 +3,7 @@
 
   boulders.py drop --profile P --count N --seed S [--variant V] ZONE.restitution=X ZONE.friction=X ...
                         N boulders drawn at random; prints lines NAME: NUMBER, as `scree calibrate` asks
-  boulders.py grid FILE.csv --profile P --variant V,... [--every N] ZONE.restitution=X ...
+  boulders.py grid FILE.csv ZONE.restitution=X ... [--profile P] [--variant V,...] [--every N]
                         all shapes, places and every Nth orientation; adds to the table what it lacks
   boulders.py measured  the numbers of the 41 boulders and their standard errors by bootstrap
   boulders.py fitted FIT.csv     its means, as words for `grid`

@@ -46,7 +46,8 @@ def with_liggghts(grains, folder, program):
     text = (HERE / "liggghts.in").read_text().replace("BALL", str(count)).replace("SPEED", f"-{SPEED}")
     (folder / "liggghts.in").write_text(text)
     subprocess.run([program, "-in", "liggghts.in"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
-    return [float(line.split()[1]) for line in open(folder / "heights.txt") if not line.startswith("#")]
+    # Its first row is that of the first interval.
+    return [START, *(float(line.split()[1]) for line in open(folder / "heights.txt") if not line.startswith("#"))]
 
 
 def run(path):
@@ -56,10 +57,10 @@ def run(path):
         return
     folder, grains = WORK / "penetration", bed()
     folder.mkdir(parents=True, exist_ok=True)
+    theirs = with_liggghts(grains, folder, program)
     begun = time.process_time()
     ours, ledger = with_scree(grains, folder)
     spent = time.process_time() - begun
-    theirs = with_liggghts(grains, folder, program)
     pathlib.Path(path).unlink(missing_ok=True)
     table = Table(path, COLUMNS, 1)
     for k, (a, b) in enumerate(zip(ours, theirs)):
