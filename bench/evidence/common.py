@@ -40,7 +40,10 @@ def run(*words, folder=None):
 
 
 def commit():
-    return subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], stdout=subprocess.PIPE, text=True).stdout.strip()
+    """Of this checkout; of a copy without its history what .commit says."""
+    told = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                          text=True).stdout.strip()
+    return told or (ROOT / ".commit").read_text().strip()
 
 
 class Table:

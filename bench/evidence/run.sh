@@ -47,7 +47,7 @@ drum() {
 
 penetration() {
   [ -s "$results/penetration.csv" ] || "$here/penetration/penetration.py" run "$results/penetration.csv"
-  "$here/penetration/penetration.py" compare "$results/penetration.csv"
+  "$here/penetration/penetration.py" compare "$results/penetration.csv" >"$results/penetration.txt"
 }
 
 for case in "$@"; do
