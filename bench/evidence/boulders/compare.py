@@ -31,6 +31,12 @@ def simulated(path, variant="recommended"):
     return [(float(r["along"]), float(r["sideways"]), r["zone"]) for r in read(path) if r["variant"] == variant and r["zone"] != "none"]
 
 
+def distance_interval(d, a, b):
+    """Basic bootstrap: samples drawn anew lie farther apart than those they are drawn from, by what 2 d - q takes away."""
+    low, high = bootstrap(kolmogorov, a, b)
+    return max(0.0, 2 * d - high), min(1.0, max(0.0, 2 * d - low))
+
+
 def places(grid, out):
     samples = {"measured": measured_rows(), "rockable": rockable(), "scree": simulated(grid)}
     table = Table(out, ["sample", "beside", "count", "along_mean", "along_sd", "sideways_mean", "sideways_sd", *ZONES, "off",
@@ -44,7 +50,7 @@ def places(grid, out):
         for k in (0, 1) if beside else ():
             a, b = [r[k] for r in rows], [r[k] for r in samples[beside]]
             d = kolmogorov(a, b)
-            p, (low, high) = kolmogorov_p(d, len(a), len(b)), bootstrap(kolmogorov, a, b)
+            p, (low, high) = kolmogorov_p(d, len(a), len(b)), distance_interval(d, a, b)
             line += [d, low, high, p]
             if k == 0:
                 verdict = "differs" if p < 0.05 else "agrees" if high < FIT else "open"
@@ -68,7 +74,8 @@ def shapes(grid, out):
         differences = [x - y for x, y in zip(a, b)]
         half = 1.645 * deviation(differences) / math.sqrt(len(keys))
         low, high = mean(differences) - half, mean(differences) + half
-        d, (d_low, d_high) = kolmogorov(a, b), bootstrap(kolmogorov, a, b)
+        d = kolmogorov(a, b)
+        d_low, d_high = distance_interval(d, a, b)
         misled = low > SPAN or high < -SPAN or d_low > NEAR
         same = low > -SPAN and high < SPAN and d_high < FAR
         table.add(variant, len(keys), mean(a), deviation(a), mean(differences), low, high, deviation(differences), d, d_low, d_high,
