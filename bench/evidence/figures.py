@@ -13,15 +13,15 @@ RESULTS, FIGURES = HERE / "results", ROOT / "docs" / "figures"
 
 
 def boulders():
-    grid = RESULTS / "boulders-grid.csv"
-    if not grid.exists() or not (DATA / "authume").is_dir():
+    corner, fit = RESULTS / "boulders-corner.csv", RESULTS / "boulders-grid.csv"
+    if not corner.exists() or not fit.exists() or not (DATA / "authume").is_dir():
         return
-    samples = [("measured, 41 boulders", measured_rows()), ("Rockable", rockable()), ("scree, fitted", simulated(grid))]
+    samples = [("measured, 41 boulders", measured_rows()), ("Rockable", rockable()), ("scree, most dissipative", simulated(corner)),
+               ("scree, first fit", simulated(fit))]
     write(FIGURES / "evidence-boulders.svg", [(name, distribution([r[0] for r in rows]), "line") for name, rows in samples],
           "run-out along the fall line, m", "share that stopped before", (-5, 115, 0, 1))
     variants = ("4x", "recommended", "0.25x", "0.0625x", "clump50", "clump20", "clump5", "sphere")
-    write(FIGURES / "evidence-shapes.svg",
-          [(v, distribution([r[0] for r in simulated(grid, v)]), "line") for v in variants if simulated(grid, v)],
+    write(FIGURES / "evidence-shapes.svg", [(v, distribution([r[0] for r in simulated(corner, v)]), "line") for v in variants],
           "run-out along the fall line, m", "share that stopped before", (-5, 115, 0, 1))
 
 

@@ -11,6 +11,7 @@ export SCREE_EVIDENCE_DIR=${SCREE_EVIDENCE_DIR:-$root/../shared/evidence}
 scree=${SCREE:-$root/build/release/bin/scree}
 work=${SCREE_EVIDENCE_WORK:-$root/build/evidence}
 results=$here/results
+shapes=recommended,4x,0.25x,0.0625x,sphere,clump5,clump20,clump50
 mkdir -p "$work" "$results"
 [ $# -gt 0 ] || set -- boulders drum penetration
 
@@ -23,18 +24,24 @@ fitted() {
 
 boulders() {
   [ -s "$results/boulders-measured.csv" ] || "$here/boulders/boulders.py" measured >"$results/boulders-measured.csv"
+  [ -s "$results/boulders-used.csv" ] || "$here/boulders/boulders.py" used --variant $shapes >"$results/boulders-used.csv"
   fitted boulders
-  local words
+  local words corner=() zone table
   words=$("$here/boulders/boulders.py" fitted "$results/boulders-fit.csv")
+  for zone in blue gray red; do corner+=("$zone.restitution=0.05" "$zone.friction=1"); done
   # shellcheck disable=SC2086 # many words
-  "$here/boulders/boulders.py" grid "$results/boulders-grid.csv" $words --every 4 \
-    --variant recommended,4x,0.25x,0.0625x,sphere,clump5,clump20,clump50
-  "$here/boulders/compare.py" places "$results/boulders-grid.csv" "$results/boulders-places.csv"
-  "$here/boulders/compare.py" shapes "$results/boulders-grid.csv" "$results/boulders-shapes.csv"
+  "$here/boulders/boulders.py" grid "$results/boulders-grid.csv" $words --every 16 --variant $shapes
+  "$here/boulders/boulders.py" grid "$results/boulders-corner.csv" "${corner[@]}" --every 4 --variant $shapes
+  for table in grid corner; do
+    "$here/boulders/compare.py" places "$results/boulders-$table.csv" "$results/boulders-$table-places.csv"
+    "$here/boulders/compare.py" shapes "$results/boulders-$table.csv" "$results/boulders-$table-shapes.csv"
+  done
 }
 
 drum() {
   "$here/drum/drum.py" outlines "$results/drum-measured.csv"
+  "$here/drum/drum.py" acces >"$results/drum-acces.csv"
+  "$here/drum/drum.py" sizes "$results/drum-sizes.csv" 6.0 4.5 3.5 --measured "$results/drum-measured.csv"
   fitted drum
   local rpm friction rolling
   friction=$(awk -F, '$2 == "friction" { print $4 }' "$results/drum-fit.csv")

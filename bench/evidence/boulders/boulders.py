@@ -5,6 +5,7 @@
                         N boulders drawn at random; prints lines NAME: NUMBER, as `scree calibrate` asks
   boulders.py grid FILE.csv ZONE.restitution=X ... [--profile P] [--variant V,...] [--every N]
                         all shapes, places and every Nth orientation; adds to the table what it lacks
+  boulders.py used [--variant V,...]     triangles or spheres of every shape
   boulders.py measured  the numbers of the 41 boulders and their standard errors by bootstrap
   boulders.py fitted FIT.csv     its means, as words for `grid`
 
@@ -60,7 +61,8 @@ class Terrain:
     def span(*values):
         return math.floor(min(values) / 4), math.floor(max(values) / 4) + 1
 
-    def zone(self, x, z):
+    def below(self, x, z):
+        """Height and zone of the highest sheet at a place; None off the terrain."""
         best = None
         for zone, a, b, c in self.cells.get((math.floor(x / 4), math.floor(z / 4)), []):
             d = (b[2] - c[2]) * (a[0] - c[0]) + (c[0] - b[0]) * (a[2] - c[2])
@@ -71,6 +73,10 @@ class Terrain:
             if min(u, v, 1 - u - v) >= 0:
                 y = u * a[1] + v * b[1] + (1 - u - v) * c[1]
                 best = max(best, (y, zone)) if best else (y, zone)
+        return best
+
+    def zone(self, x, z):
+        best = self.below(x, z)
         return best[1] if best else "off"
 
     def seen(self, x, z):
@@ -207,6 +213,20 @@ def measured(_options):
     for name, value in told(rows).items():
         low, high = bootstrap(lambda sample: told(sample)[name], rows, level=0.6827)
         print(f"{name},{value:.4g},{(high - low) / 2:.3g}")
+    terrain, places = Terrain(data("authume"), 1), numbers(data("authume") / "Endpoints_P1.txt")
+    above = sorted(y - terrain.below(x, z)[0] for x, y, z, *_ in places)
+    print(f"above_terrain_median_m,{above[len(above) // 2]:.4g},")
+
+
+def used(options):
+    """How many triangles or spheres each description of each shape has."""
+    quarry = Quarry(1, [])
+    print("variant,shape,triangles,spheres")
+    for variant in options.variant.split(","):
+        for name in SHAPES:
+            fields, _ = quarry.shape(variant, name)
+            spheres = 1 if variant == "sphere" else int(variant[5:]) if variant.startswith("clump") else ""
+            print(f"{variant},{name},{'' if spheres else len(quarry.scree.load(fields['file'], 'm').triangles)},{spheres}")
 
 
 def fitted(options):
@@ -218,15 +238,16 @@ def fitted(options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     verbs = parser.add_subparsers(dest="verb", required=True)
-    for name, function in (("drop", drop), ("grid", grid), ("measured", measured), ("fitted", fitted)):
+    for name, function in (("drop", drop), ("grid", grid), ("used", used), ("measured", measured), ("fitted", fitted)):
         verb = verbs.add_parser(name)
         verb.set_defaults(function=function)
         if name in ("grid", "fitted"):
             verb.add_argument("file")
         if name in ("drop", "grid"):
             verb.add_argument("--profile", type=int, default=1)
-            verb.add_argument("--variant", default="recommended")
             verb.add_argument("words", nargs="*")
+        if name in ("drop", "grid", "used"):
+            verb.add_argument("--variant", default="recommended")
         if name == "drop":
             verb.add_argument("--count", type=int, required=True)
             verb.add_argument("--seed", type=int, default=1)

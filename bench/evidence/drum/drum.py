@@ -5,6 +5,10 @@
   drum.py one --rpm N --friction X --rolling Y [--seed S] [--size MM] [--measured FILE.csv] [--profile FILE.csv]
                                 one run; prints lines NAME: NUMBER, as `scree calibrate` asks: angle_deg of the middle,
                                 area of powder mm2 and, with measured profiles, error_mm2 between the two
+  drum.py sizes FILE.csv --measured FILE.csv MM...
+                                angle and error at 15 and 45 rpm of spheres of several mean diameters, at the parameters
+                                that ACCES ended at; adds to the table what it lacks
+  drum.py acces                 the errors of ACCES's best after so many of its evaluations, as CSV
 
 A column's height is the length of powder in it. A simulated picture is dark where a sphere stands in the line of sight,
 in more than half of the moments, as the averaged picture. Environment: SCREE_EVIDENCE_DIR."""
@@ -22,6 +26,7 @@ from common import Table, data, library, mean, read  # noqa: E402
 RADIUS, DEPTH = 42.0, 20.0  # mm
 COLUMNS = 100               # over the diameter: 0.84 mm each
 USED = 0.9                  # of the radius: beyond it a column is all wall
+ACCES = 0.5613, 0.2931      # sliding, rolling
 SOLID = 23400.0             # mm3 of particles: spheres of 6 mm show as much powder as the picture
 
 
@@ -142,6 +147,24 @@ def one(options):
             table.add(place(c), length)
 
 
+def sizes(options):
+    table, measured = Table(options.file, ["size_mm", "rpm", "bodies", "angle_deg", "area_mm2", "error_mm2"], 2), read(options.measured)
+    for size in options.sizes:
+        for rpm in (15, 45):
+            if table.key((size, rpm)) not in table.done:
+                lengths, scene = simulate(argparse.Namespace(rpm=rpm, friction=ACCES[0], rolling=ACCES[1], seed=1, size=float(size)))
+                seen = [float(row[f"length_{rpm}_mm"]) for row in measured]
+                table.add(size, rpm, len(scene.world), angle(lengths), sum(lengths) * 2 * RADIUS / COLUMNS, error(lengths, seen))
+
+
+def acces(_options):
+    rows = [{k: float(v) for k, v in row.items()} for row in read(data("granudrum") / "acces_240_evaluations.csv")]
+    print("evaluations,sliding,rolling,error_15_mm2,error_45_mm2")
+    for count in (6, 12, 26, 60, 120, len(rows)):
+        best = min(rows[:count], key=lambda r: r["error_product"])
+        print(f"{count},{best['sliding']:.4f},{best['rolling']:.4f},{best['error_15rpm_mm2']:.0f},{best['error_45rpm_mm2']:.0f}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     verbs = parser.add_subparsers(dest="verb", required=True)
@@ -153,8 +176,13 @@ def main():
     run.add_argument("--size", type=float, default=6.0, help="mean diameter, mm")
     run.add_argument("--measured")
     run.add_argument("--profile")
+    verbs.add_parser("acces")
+    several = verbs.add_parser("sizes")
+    several.add_argument("file")
+    several.add_argument("sizes", nargs="+")
+    several.add_argument("--measured", required=True)
     options = parser.parse_args()
-    outlines(options.file) if options.verb == "outlines" else one(options)
+    {"outlines": lambda o: outlines(o.file), "one": one, "sizes": sizes, "acces": acces}[options.verb](options)
 
 
 if __name__ == "__main__":

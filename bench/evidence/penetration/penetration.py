@@ -45,7 +45,7 @@ def with_liggghts(grains, folder, program):
     (folder / "bed.data").write_text("\n".join(lines) + "\n")
     text = (HERE / "liggghts.in").read_text().replace("BALL", str(count)).replace("SPEED", f"-{SPEED}")
     (folder / "liggghts.in").write_text(text)
-    subprocess.run([program, "-in", "liggghts.in"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([program, "-in", "liggghts.in", "-log", "none"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
     # Its first row is that of the first interval.
     return [START, *(float(line.split()[1]) for line in open(folder / "heights.txt") if not line.startswith("#"))]
 
