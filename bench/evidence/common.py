@@ -59,7 +59,7 @@ class Table:
                 self.path.write_text("".join(whole))
         else:
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            words = " ".join([pathlib.Path(sys.argv[0]).name, *sys.argv[1:]])
+            words = " ".join([pathlib.Path(sys.argv[0]).name, *sys.argv[1:]]).replace(f"{ROOT}/", "")
             self.path.write_text(f"# commit {commit()}; {words}\n" + ",".join(columns) + "\n")
         self.done = {self.key(row.values()) for row in self.rows}
 

@@ -21,7 +21,7 @@ def distribution(values):
 
 def write(path, series, x_name, y_name, box=None):
     """series: name, points, and whether they are "line" or "points"; box: x and y from, to."""
-    width, height, left, bottom, top, right = 640, 400, 60, 50, 15, 15
+    width, height, left, bottom, top, right = 820, 400, 60, 50, 15, 195
     every = [p for _, points, _ in series for p in points]
     x0, x1, y0, y1 = box or (min(p[0] for p in every), max(p[0] for p in every), min(p[1] for p in every), max(p[1] for p in every))
 
@@ -47,6 +47,6 @@ def write(path, series, x_name, y_name, box=None):
         else:
             out += ['<circle cx="{:.1f}" cy="{:.1f}" r="3" fill="{}"/>'.format(*at(*p), colour) for p in points]
         y = top + 16 + 17 * k
-        out.append(f'<path d="M{left + 10} {y - 4}h18" stroke="{colour}" stroke-width="3"/><text x="{left + 34}" y="{y}">{name}</text>')
+        out.append(f'<path d="M{width - right + 10} {y - 4}h18" stroke="{colour}" stroke-width="3"/><text x="{width - right + 34}" y="{y}">{name}</text>')
     with open(path, "w") as file:
         file.write("\n".join([*out, "</svg>"]) + "\n")
