@@ -194,15 +194,17 @@ static int read_words(drop *d) {
   const char **words = calloc(count + 1, sizeof *words);
   int code = 0;
   scree_status status = SCREE_OK;
-  if (!d->names || !d->counts || !words)
-    status = cli_refuse(&d->error, SCREE_OUT_OF_MEMORY, "shapes", "out of memory");
-  for (size_t i = 0; status == SCREE_OK && code == 0 && i < count; i++) {
+  if (!d->names || !d->counts || !words) {
+    free(words);
+    cli_refuse(&d->error, SCREE_OUT_OF_MEMORY, "shapes", "out of memory");
+    return cli_fail(&d->error);
+  }
+  for (size_t i = 0; code == 0 && i < count; i++) {
     code = read_count(d, i);
     if (code == 0) code = check_sphere(d, i);
     words[i] = d->names[i];
   }
-  if (status == SCREE_OK && code == 0 && count)
-    status = cli_make_poured(words, d->counts, count, &d->poured, &d->error);
+  if (code == 0 && count) status = cli_make_poured(words, d->counts, count, &d->poured, &d->error);
   free(words);
   return status == SCREE_OK ? code : cli_fail(&d->error);
 }

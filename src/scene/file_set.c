@@ -249,7 +249,8 @@ scree_status scree_scene_file_template(const char *name, scree_scene_file **file
   size_t count = 0;
   while (count < MOST_NAMES && (names[count] = scree_scene_template_name(count))) count++;
   scree_reader reader = {"", NULL, error, ""};
-  return scree_fail_name(&reader, &(scree_place){.path = ""}, "template", name, names, count);
+  (void)scree_fail_name(&reader, &(scree_place){.path = ""}, "template", name, names, count);
+  return SCREE_BAD_FILE;
 }
 
 scree_status scree_scene_file_read_over(const char *path, const char *template_name,

@@ -405,7 +405,7 @@ def a_pour(browser, folder):
     check(abs(end - pour["time"]) < 1e-9, "the page does not begin at the end")
     check(int(browser.run("return document.body.dataset.shownBodies")) == 9, "a particle is missing")
     last = painted(browser, 0)
-    check(last["covered"] > 300 and last["colors"] > 5, f"no pour to be seen: {last}")
+    check(last["covered"] > 100 and last["colors"] > 5, f"no pour to be seen: {last}")
     start = seek(browser, 0)
     check(start[0] == 0 and start[1] < 9, f"the slider does not go to the start: {start}")
     redrawn(browser, 0, last, "the slider does not change the view")
