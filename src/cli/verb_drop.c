@@ -204,7 +204,11 @@ static int read_words(drop *d) {
     if (code == 0) code = check_sphere(d, i);
     words[i] = d->names[i];
   }
-  if (code == 0 && count) status = cli_make_poured(words, d->counts, count, &d->poured, &d->error);
+  cli_poured made = {0};
+  scree_error error = {0};
+  if (code == 0 && count) status = cli_make_poured(words, d->counts, count, &made, &error);
+  d->poured = made;
+  d->error = error;
   free(words);
   return status == SCREE_OK ? code : cli_fail(&d->error);
 }
