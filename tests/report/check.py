@@ -448,7 +448,8 @@ def a_study_of_a_scene(browser, folder):
     ready(browser, os.path.join(folder, "rains", "report.html"))
     check(browser.run("return document.querySelectorAll('.uplot canvas').length") == 2, "not a chart of each answer")
     text = browser.text("main")
-    for part in ("inlets.feed.rate", "inlets.feed.orientation fixed", "load.force_z", "Bars: the interval of the mean"):
+    for part in ("inlets.feed.rate", "inlets.feed.orientation fixed", "load.force_z", "all alike",
+                 "inlets.feed.rate with inlets.feed.orientation"):
         check(part in text, f"the scene's study does not say: {part}")
     no_complaints(browser, "a study of a scene")
     pictures(browser, "scene-study")
@@ -465,7 +466,8 @@ def made_up_study():
         "label": f"shapes {shapes}, rp {rp}", "rp": rp, "shapes": shapes, "heap_count": 8, "triangle_count": 100 * i,
         "runs": {"done": 8, "failed": 1, "running": 0, "leased": 0, "waiting": 1},
         **{key: summary(30 + i, 1) for key in ("angle_deg", "seconds", "height", "run_out", "coordination",
-                                              "packing_fraction", "left", "peak_rotation")},
+                                              "left", "peak_rotation")},
+        "packing_fraction": summary(0.5, 0),
         "rotation": {"time": [0, 1, 2], "mean": [0, 5 + i, 1], "low": [0, 4, 0], "high": [1, 9, 2]},
     } for shapes in ("a", "b") for i, rp in enumerate(("spheres", "1e-4", "1e-3", "scan"))]
     families = [{
@@ -491,7 +493,7 @@ def a_study(browser, folder):
     ready(browser, os.path.join(folder, "study.html"))
     text = browser.text("main")
     for part in (f"Study {HOSTILE}", "shapes a: from Rp = 1.0e-3 on", "64 of 80 runs", "Angle of repose against Rp",
-                 "coefficient of variation", "Rotational velocity", "Computation time", "cannot be told yet"):
+                 "coefficient of variation", "Rotational velocity", "Computation time", "cannot be told yet", "all alike"):
         check(part in text, f"the study does not say: {part}")
     bars = re.findall("Bars: (.*)", text)
     check(["confidence" in said for said in bars] == [False, True, False], f"not said of each chart what its bars are: {bars}")

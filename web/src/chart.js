@@ -102,6 +102,7 @@ export class Chart {
 
   drawMarks(plot) {
     const { ctx, bbox } = plot;
+    const labels = []; // where they lie, so that none lies on another
     for (const mark of this.marks?.() ?? []) {
       const at = Math.round(plot.valToPos(mark.x, 'x', true));
       if (!(at >= bbox.left && at <= bbox.left + bbox.width)) continue;
@@ -117,7 +118,11 @@ export class Chart {
         const right = at > bbox.left + bbox.width / 2;
         ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
         ctx.textAlign = right ? 'right' : 'left';
-        ctx.fillText(mark.label, at + (right ? -6 : 6) * devicePixelRatio, bbox.top + 14 * devicePixelRatio);
+        const width = ctx.measureText(mark.label).width, from = right ? at - 6 * devicePixelRatio - width : at + 6 * devicePixelRatio;
+        let row = 0;
+        while (labels.some((other) => other.row === row && other.from < from + width && from < other.to)) row++;
+        labels.push({ row, from, to: from + width });
+        ctx.fillText(mark.label, at + (right ? -6 : 6) * devicePixelRatio, bbox.top + (14 + 16 * row) * devicePixelRatio);
       }
       ctx.restore();
     }

@@ -43,8 +43,10 @@ export class ClumpSection {
     for (const body of bodies) {
       const { chosen, recommended } = body;
       const name = bodies.length > 1 ? `${body.name}: ` : '';
+      const most = body.clumps.at(-1).sphere_count;
+      const last = recommended === most && most > 1 ? ` That is the largest number tried: more spheres may do better.` : '';
       const other = chosen === recommended ? '' : ` Recommended, of those tried: ${coverage(body, recommended)}.`;
-      element('p', `${name}${coverage(body, chosen)}.${other}`, host, { class: 'answer' });
+      element('p', `${name}${coverage(body, chosen)}.${other}${last}`, host, { class: 'answer' });
     }
     element('p', `Recommended: the least 1 − IoU + n/200. Mass, centre and inertia that go with a clump are the surface's own, whatever those of the spheres' union. Method: ${first.method}.`, host, { class: 'soft' });
     const iou = (body) => body.clumps.find((c) => c.sphere_count === body.recommended).iou;

@@ -72,7 +72,8 @@ export class SceneSection extends PlayedSection {
 
   tellTables() {
     const { scene } = this;
-    this.values('The sensors at the end', scene.columns.filter(({ name }) => name.includes('.')).map(({ name, unit, last }) => [`${name}${unit ? ` / ${unit}` : ''}`, last]), 'sensors');
+    const read = scene.columns.filter(({ name }) => name.includes('.'));
+    if (read.length) this.values('The sensors at the end', read.map(({ name, unit, last }) => [`${name}${unit ? ` / ${unit}` : ''}`, last]), 'sensors');
     for (const p of scene.piles) {
       this.values(`The heap ${p.name}`, [
         ['angle by sectors / °', p.sectors.angle_deg], ['its standard deviation / °', p.sectors.sd_deg], ['sectors with a flank', p.sectors.count],

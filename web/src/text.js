@@ -58,8 +58,11 @@ export function saveButton(host, label, file, rows) {
     .addEventListener('click', () => saveAs(file, 'text/csv', csvText(rows())));
 }
 
-// columns: [{head, value(row) for the file, text(row) for the eye}]; the first is the row's name.
-export function table(host, columns, rows, file, caption) {
+// columns: [{head, value(row) for the file, text(row) for the eye}]; the first is the row's name. Columns that say nothing
+// of any row are left out.
+export function table(host, all, rows, file, caption) {
+  const says = (x) => x !== null && x !== undefined && x !== '';
+  const columns = all.filter(({ value }, i) => i === 0 || rows.some((row) => says(value(row))));
   const made = element('table', null, element('div', null, host, { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': caption }));
   element('caption', caption, made);
   const top = element('tr', null, element('thead', null, made));
