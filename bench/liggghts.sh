@@ -1,0 +1,155 @@
+#!/bin/bash
+# Spheres beside LIGGGHTS on one core, with the same places, stiffness, damping, friction and step on both sides:
+# a lifted tube, flow through an orifice, a sphere that rolls out.
+#
+#   bench/liggghts.sh [SEEDS]
+#
+# SEEDS (default 10) runs a scene and engine, of half a minute at most; needs liggghts (apt-get install liggghts).
+# Writes results/liggghts.md. LIGGGHTS has its rolling model CDT, a constant couple; here it is a spring and dashpot
+# up to the same couple.
+set -euo pipefail
+. "$(dirname "$0")/lib.sh"
+seeds=${1:-10}
+cmake -S "$root" --preset release -B "$build" -DSCREE_BENCH=ON -DBUILD_TESTING=OFF >/dev/null
+cmake --build "$build" --target bench_spheres ${SCREE_BENCH_JOBS:+-j "$SCREE_BENCH_JOBS"} >/dev/null
+scenes=$work/liggghts
+mkdir -p "$scenes"
+
+# places SEED: 800 centres in a column of 36 mm, a line each.
+places() {
+  awk -v seed="$1" 'BEGIN {
+    srand(seed); p = 0.0066; left = 800
+    for (z = 0.004; left > 0; z += p)
+      for (i = -5; i <= 5; i++)
+        for (j = -5; j <= 5; j++) {
+          x = i * p + (rand() - 0.5) * 5e-4; y = j * p + (rand() - 0.5) * 5e-4
+          if (x * x + y * y < 0.0328 ^ 2 && left-- > 0)
+            printf "%.9g %.9g %.9g\n", x, y, z + (rand() - 0.5) * 5e-4
+        }
+  }'
+}
+# sheet R0 Z0 R1 Z1: the surface of revolution between two circles, as STL.
+sheet() {
+  awk -v r0="$1" -v z0="$2" -v r1="$3" -v z1="$4" '
+    function corner(r, z, k) { printf "vertex %.9g %.9g %.9g\n", r * cos(w * k), r * sin(w * k), z }
+    BEGIN {
+      w = 2 * 3.14159265358979 / 90; print "solid sheet"
+      for (k = 0; k < 90; k++) {
+        print "facet normal 0 0 0\nouter loop"; corner(r0, z0, k); corner(r1, z1, k); corner(r1, z1, k + 1)
+        print "endloop\nendfacet\nfacet normal 0 0 0\nouter loop"; corner(r0, z0, k); corner(r1, z1, k + 1)
+        corner(r0, z0, k + 1); print "endloop\nendfacet"
+      }
+      print "endsolid sheet"
+    }'
+}
+sheet 0.036 0 0.036 0.14 >"$scenes/tube.stl"
+sheet 0.015 0 0.036 0 >"$scenes/ring.stl"
+
+# property NAME PAIR WALL: of sphere and sphere, sphere and wall.
+property() { echo "fix $1 all property/global $1 peratomtypepair 2 $2 $3 $3 $2"; }
+# lammps SCENE PLACES: the input; damping 2 eta sqrt(m K) of e = 0.3, force cut off at 0.
+lammps() {
+  local options='absolute_damping on limitForce on' model='model hooke/stiffness tangential history rolling_friction cdt'
+  cat <<I
+atom_style granular
+atom_modify map array
+boundary f f f
+newton off
+communicate single vel yes
+units si
+region box block -0.2 0.2 -0.2 0.2 -0.02 0.2 units box
+create_box 2 box
+neighbor 0.001 bin
+neigh_modify delay 0
+I
+  echo 'fix youngs all property/global youngsModulus peratomtype 5.e6 5.e6'
+  echo 'fix poisson all property/global poissonsRatio peratomtype 0.3 0.3'
+  property kn 1000 1000
+  property kt 1000 1000
+  property gamman_abs 0.373919 0.528802
+  property gammat_abs 0.373919 0.528802
+  property coefficientFriction 0.5 0.5
+  property coefficientRollingFriction 0.2 0.2
+  property coefficientRestitution 0.3 0.3
+  echo "pair_style gran $model $options"
+  echo 'pair_coeff * *'
+  echo 'timestep 2.5e-5'
+  echo 'fix weight all gravity 9.81 vector 0 0 -1'
+  local floor="fix floor all wall/gran $model primitive type 2 zplane 0.0 $options"
+  case $1 in
+  orifice)
+    echo "fix bin all mesh/surface file $scenes/tube.stl type 2"
+    echo "fix ring all mesh/surface file $scenes/ring.stl type 2"
+    echo "fix walls all wall/gran $model mesh n_meshes 2 meshes bin ring $options"
+    ;;
+  *) echo "$floor" ;;
+  esac
+  if [ "$1" = tube ]; then
+    echo "fix tube all mesh/surface file $scenes/tube.stl type 2"
+    echo "fix walls all wall/gran $model mesh n_meshes 1 meshes tube $options"
+  fi
+  if [ "$1" = roll ]; then
+    echo 'create_atoms 1 single 0 0 0.003 units box'
+  else
+    awk '{ print "create_atoms 1 single", $1, $2, $3, "units box" }' "$2"
+  fi
+  echo 'set group all diameter 0.006 density 2500'
+  [ "$1" != roll ] || echo 'velocity all set 0.5 0 0 units box'
+  echo 'fix motion all nve/sphere'
+  echo 'thermo_modify lost ignore' # what has fallen out of the box
+  echo "dump places all custom 1000000 $scenes/places.txt id x y z"
+  local write="undump places
+dump places all custom 1 $scenes/places.txt id x y z
+run 0
+undump places
+shell mv $scenes/places.txt $scenes"
+  case $1 in
+  tube) printf 'run 14000\nfix lift all move/mesh mesh tube linear 0. 0. 0.1\nrun 38000\n%s/last.txt\n' "$write" ;;
+  orifice) printf 'run 10000\n%s/first.txt\ndump places all custom 1000000 %s id x y z\nrun 20000\n%s/last.txt\n' \
+    "$write" "$scenes/places.txt" "$write" ;;
+  roll) printf 'run 40000\n%s/last.txt\n' "$write" ;;
+  esac
+}
+# of_places SCENE FILE...: the value that bench_spheres prints.
+of_places() {
+  awk -v scene="$1" 'FNR == 1 { file++; atoms = 0 } /ITEM: ATOMS/ { atoms = 1; next } !atoms { next }
+    { n++; r2 += $2 * $2 + $3 * $3; x = $2; if ($4 >= -0.01) above[file]++ }
+    END { print scene == "tube" ? 1000 * sqrt(r2 / n) : scene == "roll" ? 1000 * x : above[1] - above[2] }' "${@:2}"
+}
+# peer SCENE PLACES: value and CPU seconds.
+peer() {
+  rm -f "$scenes"/{places,first,last}.txt
+  lammps "$1" "$2" >"$scenes/in"
+  local TIMEFORMAT=%U seconds
+  seconds=$({ time (cd "$scenes" && exec liggghts -in in -log log) >"$scenes/screen" 2>&1; } 2>&1) || tail -3 "$scenes/screen" >&2
+  local files=("$scenes/last.txt")
+  [ "$1" != orifice ] || files=("$scenes/first.txt" "$scenes/last.txt")
+  echo "$(of_places "$1" "${files[@]}") $seconds"
+}
+rows=$scenes/rows
+: >"$rows"
+for ((seed = 1; seed <= seeds; seed++)); do
+  places "$seed" >"$scenes/at"
+  for scene in tube orifice roll; do
+    [ $scene != roll ] || [ "$seed" = 1 ] || continue
+    echo "$scene scree $("$bin/bench_spheres" $scene "$scenes/at")" >>"$rows"
+    echo "$scene liggghts $(peer $scene "$scenes/at")" >>"$rows"
+  done
+done
+
+{
+  echo '# Spheres beside LIGGGHTS'
+  echo
+  provenance "bench/liggghts.sh $seeds" | sed 's/^# /    /'
+  echo "    $(liggghts -h 2>/dev/null | grep -m1 -o 'PUBLIC [0-9.]*' | sed 's/^/LIGGGHTS-/' || true), one core each, in turns"
+  echo
+  echo '| scene | engine | n | mean | standard error | CPU s a run |'
+  echo '|---|---|--:|--:|--:|--:|'
+  awk 'BEGIN { what["tube"] = "lifted tube, rms radius of the heap (mm)"; what["orifice"] = "through a hole of 30 mm in 0.5 s"
+      what["roll"] = "a sphere of 0.5 m/s stops after (mm)" }
+    { k = $1 " " $2; if (!(k in n)) order[++m] = k; n[k]++; s[k] += $3; q[k] += $3 * $3; t[k] += $4 }
+    END { for (i = 1; i <= m; i++) { k = order[i]; split(k, name, " "); mean = s[k] / n[k]
+      v = n[k] > 1 ? (q[k] - n[k] * mean * mean) / (n[k] - 1) : 0
+      printf "| %s | %s | %d | %.2f | %s | %.1f |\n", what[name[1]], name[2], n[k], mean,
+        (n[k] > 1 ? sprintf("%.2f", sqrt((v > 0 ? v : 0) / n[k])) : "-"), t[k] / n[k] } }' "$rows"
+} >"$results/liggghts.md"
