@@ -121,7 +121,7 @@ peer() {
   rm -f "$scenes"/{places,first,last}.txt
   lammps "$1" "$2" >"$scenes/in"
   local TIMEFORMAT=%U seconds
-  seconds=$({ time (cd "$scenes" && exec liggghts -in in -log log) >"$scenes/screen" 2>&1; } 2>&1) || tail -3 "$scenes/screen" >&2
+  seconds=$({ time liggghts -in "$scenes/in" -log "$scenes/log" >"$scenes/screen" 2>&1; } 2>&1) || tail -3 "$scenes/screen" >&2
   local files=("$scenes/last.txt")
   [ "$1" != orifice ] || files=("$scenes/first.txt" "$scenes/last.txt")
   echo "$(of_places "$1" "${files[@]}") $seconds"
@@ -141,7 +141,7 @@ done
   echo '# Spheres beside LIGGGHTS'
   echo
   provenance "bench/liggghts.sh $seeds" | sed 's/^# /    /'
-  echo "    $(liggghts -h 2>/dev/null | grep -m1 -o 'PUBLIC [0-9.]*' | sed 's/^/LIGGGHTS-/' || true), one core each, in turns"
+  echo "    $(cd "$scenes" && liggghts -h 2>/dev/null | grep -m1 -o 'PUBLIC [0-9.]*' | sed 's/^/LIGGGHTS-/' || true), one core each, in turns"
   echo
   echo '| scene | engine | n | mean | standard error | CPU s a run |'
   echo '|---|---|--:|--:|--:|--:|'
