@@ -52,6 +52,7 @@ piece() {
   timeout -s INT -k $((limit / 8)) $(($(left) - limit / 8)) "$bin/scree" study "$2" -o "$folder" --backend "$1" \
     --jobs "${SCREE_BENCH_RUNS:-21}" >&2 || code=$?
   [ $code = 0 ] || [ $code = 124 ] || exit $code
+  [ -f "$folder/study.sqlite" ] || exit 3 # the time was over before its runs were listed
   if command -v sqlite3 >/dev/null; then
     {
       origin "bench/device.sh study $1"
