@@ -167,6 +167,7 @@ static double press(const scree_world *world, scree_pair *pair, const touch *t,
                                       .step = dt,
                                       .inverse = 1 / (pair->law.stiffness * pace * pace),
                                       .spring_work = spring_work,
+                                      .lasts = t->lasts,
                                       .first = t->before == 0};
   double spring = scree_press_moving(hysteretic, pair, &moves);
   if (hysteretic) return spring;
