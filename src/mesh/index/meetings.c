@@ -56,9 +56,10 @@ static void list_near(const scree_facet_tree *t, const scree_facet_node *leaf, c
                       crowd *near) {
   near->count = 0;
   for (uint32_t i = leaf->begin; i < leaf->begin + leaf->count; i++) {
-    near->facet[near->count] = t->order[i];
-    near->box[near->count] = scree_facet_box(t->mesh, t->order[i]);
-    near->count += scree_box_meets(&near->box[near->count], box);
+    scree_box of = scree_facet_box(t->mesh, t->order[i]);
+    if (!scree_box_meets(&of, box)) continue;
+    near->box[near->count] = of;
+    near->facet[near->count++] = t->order[i];
   }
 }
 
