@@ -50,7 +50,7 @@ unshare --mount --pid --fork --kill-child sh -euc '
     mkdir "$system/data"
     mount --bind -o ro "$DATA_DIR" "$system/data"
   fi
-  exec chroot "$system" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 \
+  exec chroot "$system" /usr/bin/env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 \
     ${http_proxy:+http_proxy="$http_proxy"} ${https_proxy:+https_proxy="$https_proxy"} \
     sh -c "cd /scree && $command"' || code=$?
 rm -rf "$system"
