@@ -154,7 +154,7 @@ static void run(const equipment *e) {
   scree_rng rng = {.seed = 53};
   law_setup setup = law_default();
   setup.gravity = 9.81;
-  setup.stiffness = 6e6;
+  setup.stiffness = 4e6;
   setup.steps_per_contact = 20;
   scree_world *world = law_world(&setup);
   add_equipment(world, e->make, e->turns);

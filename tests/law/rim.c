@@ -12,7 +12,7 @@ enum { SIDES = 24, CUTS = 64, SAMPLES = 16 };
 static const double pi = 3.14159265358979;
 static const double half_width = 0.06, tall = 0.12, radius = 0.05, thickness = 3e-3;
 static const double stiffness = 1e7;
-static const double in_wall = 0.01; /* of the size: no body may be left deeper in a sheet */
+static const double in_wall = 0.005; /* of the size: no body may be left deeper in a sheet */
 static int more = 1;
 
 typedef enum wall_kind { FLAT, ROUND, TUBE, WALLS } wall_kind; /* two meshes, and a cylinder */
@@ -409,7 +409,7 @@ static void bodies_on_rims(void **state) {
       }
       print_message("%s, a body %s, %zu times\n", wall_names[kind], motion_names[how], t.runs);
       if (how != PRESS) { /* what two springs shoot away keeps no ledger */
-        LAW_BELOW("L17", "ledger over what came in, worst", t.worst, 5e-2);
+        LAW_BELOW("L17", "ledger over what came in, worst", t.worst, kind == TUBE ? 5e-2 : 3e-2);
         LAW_BELOW("L17", "the same, mean", t.mean / (double)t.runs, 1.5e-3);
       }
       LAW_BELOW("-", "depth in the sheet in the end, over the size", t.deepest, in_wall);
