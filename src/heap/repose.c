@@ -8,6 +8,8 @@
  * as much as the band is wide, and who leaves out what is too high or too low for the band fits a
  * flank that is too flat. Everything between the flank's ends counts, gaps between particles down
  * to the floor included. */
+#include "heap/repose.h"
+
 #include "base/alloc.h"
 #include "base/vec.h"
 
@@ -29,6 +31,21 @@ enum { CONE_ROUNDS = 50, CHOICES = 6 };
 scree_repose_options scree_default_repose_options(void) {
   return (scree_repose_options){
       .sector_count = 36, .silhouette_count = 18, .band_low = 0.2, .band_high = 0.8};
+}
+
+scree_repose scree_no_repose(void) {
+  return (scree_repose){.sector_deg = NAN,
+                        .sector_sd_deg = NAN,
+                        .cone_deg = NAN,
+                        .cone_rms = NAN,
+                        .silhouette_deg = NAN,
+                        .silhouette_sd_deg = NAN,
+                        .spread_deg = NAN,
+                        .volume_deg = NAN,
+                        .height = NAN,
+                        .peak = NAN,
+                        .base_radius = NAN,
+                        .run_out = NAN};
 }
 
 /* ---- straight lines ---- */

@@ -2,6 +2,7 @@
 #include "scene/scene.h"
 
 #include "base/alloc.h"
+#include "heap/repose.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -116,18 +117,7 @@ static scree_pile pile_of(const scree_scene_heap *heap, double size) {
   /* plates side by side fill what is under them: there the field's own error may pass 1 */
   p.packing_fraction = r->envelope_volume > 0 ? fmin(1, heap->solid / r->envelope_volume) : NAN;
   if (heap->body_count) return p;
-  p.repose = (scree_repose){.sector_deg = NAN,
-                            .sector_sd_deg = NAN,
-                            .cone_deg = NAN,
-                            .cone_rms = NAN,
-                            .silhouette_deg = NAN,
-                            .silhouette_sd_deg = NAN,
-                            .spread_deg = NAN,
-                            .volume_deg = NAN,
-                            .height = NAN,
-                            .peak = NAN,
-                            .base_radius = NAN,
-                            .run_out = NAN};
+  p.repose = scree_no_repose();
   snprintf(p.repose.reason, sizeof p.repose.reason, "there are no bodies");
   return p;
 }

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/yaml.h"
+#include "heap/repose.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -88,16 +89,8 @@ void scree_study_record_free(scree_study_record *record) {
 }
 
 scree_record_result scree_no_result(void) {
-  return (scree_record_result){.repose = {.sector_deg = NAN,
-                                          .sector_sd_deg = NAN,
-                                          .cone_deg = NAN,
-                                          .silhouette_deg = NAN,
-                                          .silhouette_sd_deg = NAN,
-                                          .height = NAN,
-                                          .base_radius = NAN,
-                                          .run_out = NAN},
-                               .packing_fraction = NAN,
-                               .particle_size = NAN};
+  return (scree_record_result){
+      .repose = scree_no_repose(), .packing_fraction = NAN, .particle_size = NAN};
 }
 
 /* ---- writing ---- */

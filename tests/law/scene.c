@@ -1,20 +1,10 @@
 /* Scenes against closed forms: a belt, a tilted plate, a shaken plate, a hopper that runs out, the
  * surface of a bed
  * (docs/background/verification.md). */
+#include "support/scene.h"
 #include "scree.h"
-#include "support/check.h"
 
 static const double g = 9.81;
-
-static scree_scene *create(const char *text) {
-  scree_error error;
-  scree_scene_file *file = NULL;
-  scree_scene *scene = NULL;
-  CHECK_OK(scree_scene_file_parse(text, strlen(text), "test.yaml", &file, &error), error);
-  CHECK_OK(scree_scene_create(file, NULL, &scene, &error), error);
-  scree_scene_file_free(file);
-  return scene;
-}
 
 /* Up to a time; false where the scene ended before. */
 static bool run_until(scree_scene *scene, double time) {

@@ -1,19 +1,9 @@
 /* Frames of instances: what a reader finds at the offsets that the file names, against the world;
  * the force and the stress of a ball at rest; the size of a file. */
-#include "support/check.h"
 #include "support/folder.h"
+#include "support/scene.h"
 
 #include "scree.h"
-
-static scree_scene *create(const char *text) {
-  scree_error error;
-  scree_scene_file *file = NULL;
-  scree_scene *scene = NULL;
-  CHECK_OK(scree_scene_file_parse(text, strlen(text), "test.yaml", &file, &error), error);
-  CHECK_OK(scree_scene_create(file, NULL, &scene, &error), error);
-  scree_scene_file_free(file);
-  return scene;
-}
 
 typedef struct content {
   char *bytes;
