@@ -1,120 +1,190 @@
 #!/usr/bin/env python3
-"""Twin experiments of scree calibrate: parameters are drawn from their ranges, "measurements" simulated with fresh seeds,
-and the intervals that the calibration gives are compared with the truth. Prints a row a twin and the table of how many
-intervals hold the truth. With --small heaps of 120 spheres.
+"""Twin experiments of scree calibrate: two parameters are drawn from their ranges, a heap and a drawdown "measured" by one
+run of each with fresh seeds, and what an estimator makes of these is compared with the truth.
 
-usage: twins.py PROGRAM [--twins N] [--runs N] [--jobs N] [--angle-only] [--small] [--folder DIR]"""
+usage: twins.py METHOD TABLE [--twins FROM:TO]
+  calibrate  scree calibrate, at growing budgets; the answer is the posterior's mean
+  angle      the same with nothing measured but the heap's angle
+  latin      one Latin design for all twins: its run nearest to the measurements, and the least of a quadratic surface
+  cma        CMA-ES of DEAP (Debian: python3-deap) on the distance to the measurements
+  report     what the table says
+A row a twin and budget; a run that was broken off goes on. Runs of both experiments count."""
 import argparse
 import json
+import math
 import pathlib
 import random
-import subprocess
-import tempfile
+import sys
 
-HEAP = """
-time: 1.2
-materials:
-  grain: {{young: 5e5, density: 2500, restitution: 0.3, friction: 0.5, rolling_friction: 0.1}}
-shapes: {{ball: {{sphere: {size}}}}}
-geometry:
-  plate: {{disc: {{radius: 0.12}}, material: grain}}
-  cylinder: {{cylinder: {{radius: 0.03, length: 0.3}}, material: grain, motion: [{{translate: {{velocity: [0, 0, 0.25]}}, from: 0.4}}]}}
-inlets:
-  feed:
-    cylinder: {{at: [0, 0, 0.1], axis: [0, 0, 1], radius: 0.029, length: 0.18}}
-    shapes: ball
-    count: {count}
-    layers: {{packed: grid, above: 0.01}}
-    velocity: [0, 0, -0.3]
-domain: {{min: [-0.2, -0.2, -0.02], max: [0.2, 0.2, 0.6]}}
-sensors: {{pile: {{pile: {{floor: 0}}}}}}
-output: {{frames: 0, series: 0.2}}
-"""
-DRUM = """
-time: 2.5
-gravity: [0, 0, -9.81]
-materials:
-  grain: {{young: 5e5, density: 2500, restitution: 0.3, friction: 0.5, rolling_friction: 0.1}}
-shapes: {{ball: {{sphere: {size}}}}}
-geometry:
-  shell: {{cylinder: {{radius: 0.04, axis: [0, 1, 0], length: 0}}, material: grain, motion: [{{rotate: {{axis: [0, 1, 0], speed: 3}}}}]}}
-inlets: {{feed: {{box: {{min: [-0.02, 0, -0.02], max: [0.02, 0.03, 0.02]}}, shapes: ball, count: {drum}, rate: 2000}}}}
-domain: {{min: [-0.05, 0, -0.05], max: [0.05, 0.03, 0.05], periodic: [y]}}
-sensors: {{bed: {{slope: {{axis: [0, 1, 0]}}}}, torque: {{wall: shell}}}}
-output: {{frames: 0, series: 0.1}}
-"""
-PARAMETERS = {"friction": ("materials.grain.friction", 0.1, 0.9), "rolling": ("materials.grain.rolling_friction", 0.01, 0.3),
-              "restitution": ("materials.grain.restitution", 0.1, 0.8)}
-ANSWERS = {"angle": ("heap", "pile.sector_deg", "", 0.5), "height": ("heap", "pile.height", "", 0.0005),
-           "slope": ("drum", "bed.angle_deg", "from: 1", 0.5), "power": ("drum", "torque.power", "from: 1", 2e-5)}
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "evidence"))
+import common  # noqa: E402
+
+FIELDS = {"friction": "materials.grain.friction", "rolling": "materials.grain.rolling_friction"}
+RANGES = {"friction": (0.1, 0.9), "rolling": (0.1, 0.5)}
+# experiment, answer, where, uncertainty of measuring, scatter of a run (for the distance of latin and cma)
+TARGETS = {"angle": ("heap", "pile.volume_deg", "", 0.3, 1.5), "height": ("heap", "pile.height", "", 0.0003, 0.0015),
+           "left": ("drawdown", "above.count", "", 0.5, 2), "early": ("drawdown", "above.count", "at: 0.4", 0.5, 2.5)}
+BUDGETS = (24, 36, 48)
+COLUMNS = ["method", "twin", "runs", "friction", "friction_mean", "friction_low", "friction_high", "friction_identified", "rolling",
+           "rolling_mean", "rolling_low", "rolling_high", "rolling_identified", "distance", "seconds"]
 
 
-def study(program, folder, scene, values, seed, answers):
-    """One run of a scene at the truth: what is measured of it."""
-    lines = "\n".join(f"  - {a}: {{{w}}}" if w else f"  - {a}" for _, a, w, _ in answers)
-    settings = "".join(f"  {PARAMETERS[name][0]}: {value!r}\n" for name, value in values.items())
-    (folder / "truth.yaml").write_text(f"base:\n  scene: {scene}\n{settings}seed: {seed}\nreplicates: 1\nanswers:\n{lines}\n")
-    out = subprocess.run([program, "study", "truth.yaml", "-o", f"truth-{scene}", "-q", "--json"], cwd=folder, check=True,
-                         stdout=subprocess.PIPE, text=True).stdout
-    return [row["mean"] for row in json.loads(out)["points"][0]["answers"].values()]
-
-
-def twin(program, folder, index, options):
-    rng = random.Random(index)
-    size = {"size": 0.008, "count": 120, "drum": 120} if options.small else {"size": 0.006, "count": 300, "drum": 400}
-    answers = {name: row for name, row in ANSWERS.items() if not options.angle_only or name == "angle"}
-    scenes = {row[0] for row in answers.values()}
+def work(name):
+    folder = common.WORK / "twins" / name
     folder.mkdir(parents=True, exist_ok=True)
-    for name, text in (("heap", HEAP), ("drum", DRUM)):
-        (folder / f"{name}.yaml").write_text(text.format(**size))
-    names = ["friction", "rolling"] if options.angle_only else list(PARAMETERS)
-    truth = {name: rng.uniform(*PARAMETERS[name][1:]) for name in names}
-    measured = {}
-    for scene in sorted(scenes):
-        of_scene = [row for row in answers.values() if row[0] == scene]
-        values = study(program, folder, f"{scene}.yaml", truth, 1000000 + index, of_scene)
-        measured.update(zip([name for name, row in answers.items() if row[0] == scene], values))
-    lines = ["seed: %d" % (1 + 10000 * index), "experiments:"]
-    lines += [f"  {scene}: {{scene: {scene}.yaml}}" for scene in sorted(scenes)]
-    lines += ["parameters:"] + [f"  {n}: {{field: {PARAMETERS[n][0]}, from: {PARAMETERS[n][1]}, to: {PARAMETERS[n][2]}}}" for n in names]
-    lines += ["targets:"]
-    for name, (scene, answer, window, uncertainty) in answers.items():
-        if measured[name] is not None:
-            lines.append(f"  {name}: {{experiment: {scene}, answer: {answer}, value: {measured[name]!r}, "
-                         f"uncertainty: {uncertainty}{', ' + window if window else ''}}}")
-    lines += [f"budget: {{runs: {options.runs}}}"]
-    (folder / "calibrate.yaml").write_text("\n".join(lines) + "\n")
-    out = subprocess.run([program, "calibrate", "calibrate.yaml", "-o", "out", "-q", "--json", "--jobs", str(options.jobs)], cwd=folder,
-                         check=True, stdout=subprocess.PIPE, text=True).stdout
-    return truth, json.loads(out)
+    return folder
+
+
+def runs(folder, rows):
+    """Answers of a heap and a drawdown at every row (friction, rolling, seed): {target: [number or None]}, seconds."""
+    answers, seconds = {}, 0
+    for experiment in ("heap", "drawdown"):
+        targets = {name: t for name, t in TARGETS.items() if t[0] == experiment}
+        lines = [f"base: {{scene: {HERE / experiment}.yaml}}", "design: list", "replicates: 1", "factors:"]
+        for k, field in enumerate([*FIELDS.values(), "seed"]):
+            lines.append(f"  {field}: [{', '.join(repr(row[k]) for row in rows)}]")
+        lines += ["answers:"] + [f"  - {a}: {{{where}}}" if where else f"  - {a}" for _, a, where, _, _ in targets.values()]
+        (folder / f"{experiment}.yaml").write_text("\n".join(lines) + "\n")
+        told = json.loads(common.run("study", folder / f"{experiment}.yaml", "-o", folder / experiment, "-q", "--json", "-j", 1))
+        for k, name in enumerate(targets):
+            answers[name] = [list(point["answers"].values())[k]["mean"] for point in told["points"]]
+        seconds += sum(point["processor_seconds"] for point in told["points"] if point.get("processor_seconds"))
+    return answers, seconds
+
+
+def twin(index):
+    """Truth, and what was measured of it."""
+    rng = random.Random(index)
+    truth = {name: rng.uniform(*ends) for name, ends in RANGES.items()}
+    answers, _ = runs(work(f"twin-{index}/truth"), [(truth["friction"], truth["rolling"], 1000000 + index)])
+    return truth, {name: values[0] for name, values in answers.items()}
+
+
+def unit(name, value):
+    low, high = RANGES[name]
+    return (value - low) / (high - low)
+
+
+def distance(truth, found):
+    """Root mean square over parameters, in shares of their ranges; two points at random are 0.38 apart in the mean."""
+    return math.sqrt(common.mean([(unit(n, truth[n]) - unit(n, found[n])) ** 2 for n in truth]))
+
+
+def calibrate(index, table, method):
+    truth, measured = twin(index)
+    chosen = {n: t for n, t in TARGETS.items() if measured[n] is not None and (method == "calibrate" or n == "angle")}
+    if not chosen:
+        return print(f"twin {index}: no heap, no angle")
+    experiments = sorted({t[0] for t in chosen.values()})
+    folder = work(f"twin-{index}")
+    for budget in BUDGETS if method == "calibrate" else BUDGETS[:1]:
+        if (method, str(index), str(budget)) in table.done:
+            continue
+        lines = [f"seed: {1 + 10000 * index}", "experiments:"] + [f"  {e}: {{scene: {HERE / e}.yaml}}" for e in experiments]
+        lines += ["parameters:"] + [f"  {n}: {{field: {FIELDS[n]}, from: {low}, to: {high}}}" for n, (low, high) in RANGES.items()]
+        lines += ["targets:"]
+        for name, (experiment, answer, where, uncertainty, _) in chosen.items():
+            lines.append(f"  {name}: {{experiment: {experiment}, answer: {answer}, value: {measured[name]!r}, "
+                         f"uncertainty: {uncertainty}{', ' + where if where else ''}}}")
+        lines += [f"budget: {{runs: {budget}}}", "start: {points: 8}"]
+        (folder / f"{method}.yaml").write_text("\n".join(lines) + "\n")
+        r = json.loads(common.run("calibrate", folder / f"{method}.yaml", "-o", folder / method, "-q", "--json", "-j", 1))
+        found = {p["name"]: p for p in r["parameters"]}
+        cells = [x for n in RANGES for p in [found[n]] for x in (truth[n], p["mean"], p["low"], p["high"], int(p["identified"]))]
+        table.add(method, index, budget, *cells, distance(truth, {n: p["mean"] for n, p in found.items()}), r["seconds"])
+
+
+def misfit(answers, measured, row):
+    """Sum of squares in units of a run's scatter; a heap too low to have an angle has none, 0 degrees."""
+    return sum((((answers[n][row] or 0) - measured[n]) / math.hypot(t[3], t[4])) ** 2
+               for n, t in TARGETS.items() if measured[n] is not None)
+
+
+def add_point(table, method, index, budget, truth, found, seconds):
+    table.add(method, index, budget, *[x for n in RANGES for x in (truth[n], found[n], "", "", "")], distance(truth, found), seconds)
+
+
+def latin(index, table):
+    import numpy
+    from scipy.stats import qmc
+    truth, measured = twin(index)
+    for budget in BUDGETS:
+        count = budget // 2
+        places = qmc.scale(qmc.LatinHypercube(2, seed=budget).random(count), *zip(*RANGES.values())).tolist()
+        answers, seconds = runs(work(f"latin-{budget}"), [(*p, 5000 + i) for i, p in enumerate(places)])
+        misfits = [misfit(answers, measured, i) for i in range(count)]
+        nearest = dict(zip(RANGES, places[min(range(count), key=misfits.__getitem__)]))
+        add_point(table, "latin-nearest", index, budget, truth, nearest, seconds)
+
+        def terms(u, v):
+            return numpy.array([numpy.ones_like(u), u, v, u * u, u * v, v * v]).T
+        u, v = (numpy.array([2 * unit(n, p[k]) - 1 for p in places]) for k, n in enumerate(RANGES))
+        grid = numpy.linspace(-1, 1, 81)
+        gu, gv = (g.ravel() for g in numpy.meshgrid(grid, grid))
+        surfaces = {n: [terms(gu, gv) @ numpy.linalg.lstsq(terms(u, v), numpy.array([a or 0 for a in answers[n]]), rcond=None)[0]]
+                    for n in TARGETS}
+        least = min(range(len(gu)), key=[misfit({n: [s[0][i]] for n, s in surfaces.items()}, measured, 0)
+                                         for i in range(len(gu))].__getitem__)
+        found = {n: low + (high - low) * 0.5 * (1 + g[least]) for (n, (low, high)), g in zip(RANGES.items(), (gu, gv))}
+        add_point(table, "latin-surface", index, budget, truth, found, seconds)
+
+
+def cma(index, table):
+    import numpy
+    from deap import base, cma as deap_cma, creator
+    if not hasattr(creator, "Place"):
+        creator.create("Least", base.Fitness, weights=(-1.0,))
+        creator.create("Place", list, fitness=creator.Least)
+    truth, measured = twin(index)
+    numpy.random.seed(index)
+    strategy = deap_cma.Strategy(centroid=[0.5, 0.5], sigma=0.3, lambda_=6)
+    done, rows, seconds = 0, [], 0
+    while done < BUDGETS[-1]:
+        people = strategy.generate(creator.Place)
+        inside = [[min(1.0, max(0.0, x)) for x in person] for person in people]
+        rows = [[low + x * (high - low) for x, (low, high) in zip(p, RANGES.values())] for p in inside]
+        answers, used = runs(work(f"twin-{index}/cma-{done}"), [(*row, 9000 + done + i) for i, row in enumerate(rows)])
+        for i, person in enumerate(people):  # beyond the ranges it is as bad as it is far
+            outside = sum((x - y) ** 2 for x, y in zip(person, inside[i]))
+            person.fitness.values = (misfit(answers, measured, i) + 100 * outside,)
+        strategy.update(people)
+        done += 2 * len(people)
+        seconds += used
+        if done in BUDGETS and ("cma", str(index), str(done)) not in table.done:
+            found = {n: low + min(1, max(0, x)) * (high - low) for x, (n, (low, high)) in zip(strategy.centroid, RANGES.items())}
+            add_point(table, "cma", index, done, truth, found, seconds)
+
+
+def report(table):
+    print("method,runs,twins,distance,sd,friction_held,rolling_held,friction_identified,rolling_identified,friction_width,rolling_width")
+    for method, budget in sorted({(r["method"], int(r["runs"])) for r in table.rows}):
+        rows = [r for r in table.rows if (r["method"], int(r["runs"])) == (method, budget)]
+        far = [float(r["distance"]) for r in rows]
+        cells = [f"{common.mean(far):.3f}", f"{common.deviation(far):.3f}" if len(far) > 1 else ""]
+        if rows[0]["friction_low"]:
+            cells += [sum(float(r[f"{n}_low"]) <= float(r[n]) <= float(r[f"{n}_high"]) for r in rows) for n in RANGES]
+            cells += [sum(int(r[f"{n}_identified"]) for r in rows) for n in RANGES]
+            cells += [f"{common.mean([float(r[f'{n}_high']) - float(r[f'{n}_low']) for r in rows]):.3f}" for n in RANGES]
+        else:
+            cells += [""] * 6
+        print(",".join(map(str, [method, budget, len(rows), *cells])))
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("program")
-    parser.add_argument("--twins", type=int, default=20)
-    parser.add_argument("--runs", type=int, default=60)
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--angle-only", action="store_true")
-    parser.add_argument("--small", action="store_true")
-    parser.add_argument("--folder", type=pathlib.Path)
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("method", choices=["calibrate", "angle", "latin", "cma", "report"])
+    parser.add_argument("table")
+    parser.add_argument("--twins", default="0:20")
     options = parser.parse_args()
-    folder = options.folder or pathlib.Path(tempfile.mkdtemp())
-    program = str(pathlib.Path(options.program).resolve())
-    held, said, share, count = {}, {}, 0.0, 0
-    for index in range(options.twins):
-        truth, result = twin(program, folder / f"twin-{index}", index, options)
-        count += 1
-        share += result["planning_seconds"] / result["seconds"]
-        for p in result["parameters"]:
-            inside = p["low"] <= truth[p["name"]] <= p["high"]
-            held.setdefault(p["name"], []).append(inside)
-            said.setdefault(p["name"], []).append(p["identified"])
-            print(f"{index} {p['name']} truth {truth[p['name']]:.3f} interval {p['low']:.3f} to {p['high']:.3f} narrowed "
-                  f"{p['narrowed']:.2f} {'held' if inside else 'MISSED'}", flush=True)
-    for name, row in held.items():
-        print(f"{name}: {sum(row)} of {count} intervals hold the truth; identified in {sum(said[name])}")
-    print(f"planning took {100 * share / count:.2f} % of the runs' processor time")
+    table = common.Table(options.table, COLUMNS, 3)
+    if options.method == "report":
+        return report(table)
+    for index in range(*map(int, options.twins.split(":"))):
+        if options.method in ("calibrate", "angle"):
+            calibrate(index, table, options.method)
+        elif (options.method if options.method == "cma" else "latin-surface", str(index), str(BUDGETS[-1])) not in table.done:
+            (latin if options.method == "latin" else cma)(index, table)
 
 
 main()
