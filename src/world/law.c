@@ -492,27 +492,19 @@ static scree_powers part(const scree_world *world, scree_pair *pair, const scree
 }
 
 /* The spring's force. */
-static double press(const scree_world *world, scree_pair *pair, double overlap,
-                    const overlap_slope *slope, const scree_scratch *scratch) {
+static double press(const scree_world *world, scree_pair *pair, const overlap_slope *slope,
+                    const scree_scratch *scratch) {
   const scree_frame *relative = &scratch->relative;
   const bool hysteretic = world->options.law == SCREE_LAW_HYSTERETIC;
-  const double lasts = scree_lasting(pair);
-  if (scree_is_settled(pair, overlap, lasts)) {
+  if (scree_is_settled(pair, scree_lasting(pair))) {
     pair->spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
-    return scree_press_settled(hysteretic, pair, overlap);
+    return scree_press_settled(hysteretic, pair);
   }
   const scree_wrench all = {vec3_add(slope->whole.force, slope->fading.force),
                             vec3_add(slope->whole.moment, slope->fading.moment)};
-  scree_overlap_motion motion = {
-      .overlap = overlap,
-      .before = scratch->overlap_before,
-      .rate = -along_motion(&all, relative->velocity, relative->spin),
-      .rate_now = -along_motion(&all, relative->velocity_now, relative->spin_now),
-      .drift = scratch->drift,
-      .step = scratch->step,
-      .spring_work = scratch->spring_work,
-      .lasts = lasts,
-      .first = scratch->overlap_before == 0 || scratch->was_depenetrating};
+  scree_overlap_motion motion =
+      scree_overlap_moves(pair, scratch, -along_motion(&all, relative->velocity, relative->spin),
+                          -along_motion(&all, relative->velocity_now, relative->spin_now));
   if (scree_is_edge_of_touch(pair, &motion))
     motion.inverse = inverse_mass(world, pair, relative, &all);
   double spring = scree_press_moving(hysteretic, pair, &motion);
@@ -536,7 +528,7 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   pair->age += scratch->drift;
   pair->overlap = maximum.value;
   overlap_slope slope = find_slope(world, pair, &maximum, scratch);
-  double spring = press(world, pair, maximum.value, &slope, scratch), energy = 0;
+  double spring = press(world, pair, &slope, scratch), energy = 0;
   slider law = make_slider(world, pair, relative, scratch->drift);
   law.normal_damping = damping_at(world, pair, relative, &slope);
   load_sums sums;

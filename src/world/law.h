@@ -3,7 +3,7 @@
 #ifndef SCREE_WORLD_LAW_H
 #define SCREE_WORLD_LAW_H
 
-#include "world/world.h"
+#include "world/contact.h"
 
 /* Of the pair's spring, at an overlap of 0 or more. */
 typedef struct scree_spring_state {
@@ -54,12 +54,28 @@ typedef struct scree_overlap_motion {
   bool first;         /* in this contact */
 } scree_overlap_motion;
 
+/* From the last look to this one, by the rates. */
+static inline scree_overlap_motion scree_overlap_moves(const scree_pair *pair,
+                                                       const scree_scratch *scratch, double rate,
+                                                       double rate_now) {
+  return (scree_overlap_motion){.overlap = pair->overlap,
+                                .before = scratch->overlap_before,
+                                .rate = rate,
+                                .rate_now = rate_now,
+                                .drift = scratch->drift,
+                                .step = scratch->step,
+                                .spring_work = scratch->spring_work,
+                                .lasts = scree_lasting(pair),
+                                .first =
+                                    scratch->overlap_before == 0 || scratch->was_depenetrating};
+}
+
 /* Ways in a step below an overlap in which the spring is seen well. */
 static const double scree_steep_overlap = 3;
 
 /* In a contact that lasts, deep beside its way in a step, the balance is not drawn. */
-static inline bool scree_is_settled(const scree_pair *pair, double overlap, double lasts) {
-  return lasts == 1 && overlap >= scree_steep_overlap * pair->list.travel;
+static inline bool scree_is_settled(const scree_pair *pair, double lasts) {
+  return lasts == 1 && pair->overlap >= scree_steep_overlap * pair->list.travel;
 }
 
 /* The way on the other side of the touch's begin or end. */
@@ -124,9 +140,9 @@ static inline double scree_repaid(double lasts, double balance, double kick_work
   return share > most ? most : scree_max(share, -most);
 }
 
-static inline double scree_press_settled(bool hysteretic, scree_pair *pair, double overlap) {
-  return scree_spring_force(hysteretic, pair, overlap,
-                            (scree_felt){scree_spring_at(pair, overlap).force, 1});
+static inline double scree_press_settled(bool hysteretic, scree_pair *pair) {
+  return scree_spring_force(hysteretic, pair, pair->overlap,
+                            (scree_felt){scree_spring_at(pair, pair->overlap).force, 1});
 }
 
 /* The spring's force in a contact that is not settled. The balance of its work is drawn in the

@@ -112,10 +112,9 @@ static void let_go(scree_pair *pair) {
 typedef struct touch {
   meeting at;
   vec3 drift, now, seen;
-  vec3 turned;   /* rad, by which both turned in the last drift, in the mean */
-  double before; /* overlap */
-  double lead;   /* of what dashpots see */
-  double lasts;  /* scree_lasting */
+  vec3 turned;  /* rad, by which both turned in the last drift, in the mean */
+  double lead;  /* of what dashpots see */
+  double lasts; /* scree_lasting */
 } touch;
 
 static vec3 velocity_of(const meeting *m, vec3 slip, vec3 spin_a, vec3 spin_b) {
@@ -150,25 +149,17 @@ static vec3 belt_velocity(const scree_world_wall *wall, const meeting *m) {
 }
 
 static double press(const scree_world *world, scree_pair *pair, const touch *t,
-                    double spring_work) {
+                    const scree_scratch *scratch) {
   const bool hysteretic = world->options.law == SCREE_LAW_HYSTERETIC;
-  const double dt = world->time_step;
   const vec3 n = t->at.normal;
-  if (scree_is_settled(pair, pair->overlap, t->lasts)) {
+  if (scree_is_settled(pair, t->lasts)) {
     pair->spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
-    return scree_press_settled(hysteretic, pair, pair->overlap);
+    return scree_press_settled(hysteretic, pair);
   }
   const double pace = pair->law.contact_time / 3.14159265358979323846;
-  const scree_overlap_motion moves = {.overlap = pair->overlap,
-                                      .before = t->before,
-                                      .rate = -vec3_dot(t->drift, n),
-                                      .rate_now = -vec3_dot(t->now, n),
-                                      .drift = dt,
-                                      .step = dt,
-                                      .inverse = 1 / (pair->law.stiffness * pace * pace),
-                                      .spring_work = spring_work,
-                                      .lasts = t->lasts,
-                                      .first = t->before == 0};
+  scree_overlap_motion moves =
+      scree_overlap_moves(pair, scratch, -vec3_dot(t->drift, n), -vec3_dot(t->now, n));
+  moves.inverse = 1 / (pair->law.stiffness * pace * pace);
   double spring = scree_press_moving(hysteretic, pair, &moves);
   if (hysteretic) return spring;
   pair->spring = (scree_wrench){vec3_scale(n, spring), vec3_cross(t->at.at, vec3_scale(n, spring))};
@@ -188,8 +179,8 @@ static vec3 roll(const scree_world *world, scree_pair *pair, const touch *t, dou
   return couple;
 }
 
-static vec3 slide(const scree_world *world, scree_pair *pair, const touch *t, double pressed,
-                  double *energy, double *power) {
+static vec3 slide(const scree_world *world, scree_pair *pair, const touch *t, double before,
+                  double pressed, double *energy, double *power) {
   const scree_slider law = scree_slider_of(pair, world->options.tangential_ratio, t->lasts);
   const vec3 n = t->at.normal;
   vec3 v = across(t->drift, n), seen = across(t->seen, n);
@@ -198,7 +189,7 @@ static vec3 slide(const scree_world *world, scree_pair *pair, const touch *t, do
     v = vec3_sub(v, belt);
     seen = vec3_sub(seen, belt);
   }
-  scree_anchor spring = {.weight = pair->law.hertz > 0 ? sqrt(t->before) : t->before > 0};
+  scree_anchor spring = {.weight = pair->law.hertz > 0 ? sqrt(before) : before > 0};
   vec3 xi = vec3_mad(turned_by(pair->slid, t->turned), v, world->time_step),
        force = scree_slide(&law, &spring, law.grown, n, xi, seen, pressed, energy);
   pair->slid = spring.stretch;
@@ -229,7 +220,7 @@ static void apply_law(const scree_world *world, scree_pair *pair, const touch *t
   const meeting *at = &t->at;
   const vec3 n = at->normal;
   scree_pair_work *work = &scratch->work;
-  const double largest = pair->largest, spring = press(world, pair, t, scratch->spring_work),
+  const double largest = pair->largest, spring = press(world, pair, t, scratch),
                pull = pair->law.pull,
                damping = pair->law.hertz > 0 ? pair->law.damping * sqrt(sqrt(pair->overlap))
                                              : pair->law.damping,
@@ -237,7 +228,7 @@ static void apply_law(const scree_world *world, scree_pair *pair, const touch *t
                pressed = scree_max(0, pressing - damping * vec3_dot(t->seen, n)),
                dashpot = pressed - pressing, half = 0.5 * world->time_step;
   double energy = 0, power = 0;
-  vec3 along = slide(world, pair, t, pressed, &energy, &power),
+  vec3 along = slide(world, pair, t, scratch->overlap_before, pressed, &energy, &power),
        couple = roll(world, pair, t, pressed, &energy, &power);
   store_wrenches(pair, at, along, couple, pressed - pull, dashpot);
   pair->tangential_elastic = energy;
@@ -267,6 +258,7 @@ static void tell(const scree_world *world, const scree_pair *pair, const meeting
 static void begin_work(const scree_world *world, const scree_pair *pair, scree_scratch *scratch) {
   scratch->work = (scree_pair_work){0};
   scratch->spring_work = 0;
+  scratch->drift = world->time_step;
   if (!pair->touching) return;
   const scree_frame *a = &world->bodies.frame[pair->a], *b = &world->bodies.frame[pair->b];
   const vec3 slip = vec3_sub(a->velocity, b->velocity);
@@ -284,8 +276,11 @@ void scree_spheres_evaluate(const scree_world *world, scree_pair *pair, scree_sc
     scree_pair_begin_work(world, pair, scratch);
   else
     begin_work(world, pair, scratch);
+  scratch->step = scratch->drift;
+  scratch->overlap_before = pair->overlap;
+  scratch->was_depenetrating = false;
   double side = side_before(world, pair);
-  touch t = {.before = pair->overlap};
+  touch t = {0};
   t.at = pair->wall ? meet_wall(world, pair->a, &world->walls.items[pair->b], &side)
                     : meet_sphere(world, pair->a, pair->b);
   pair->side = side;
