@@ -191,6 +191,17 @@ SCREE_API scree_status scree_scene_measure(const scree_scene *scene, double *val
  * and one at the end. The scene's own; valid until it is advanced. */
 SCREE_API const double *scree_scene_series(const scree_scene *scene, size_t *row_count);
 
+/* A column over the rows of the series in a window of time that have a number. */
+typedef struct scree_scene_summary {
+  double last;                      /* of all rows; NaN where there is no such number, or no row */
+  double mean, sd, least, greatest; /* of single rows; NaN of none, sd of one too */
+  double from, until;               /* s: the window; until infinite: to the end */
+  size_t count;                     /* of rows */
+} scree_scene_summary;
+/* from, until (s): NaN: as the column's sensor has it. */
+SCREE_API scree_scene_summary scree_scene_summarise(const scree_scene *scene, size_t column,
+                                                    double from, double until);
+
 /* J of sliding work on each triangle of a wall that a wall sensor looks at (of one that is no mesh,
  * one number): what wears it. NULL for other walls. The scene's own; valid until it is advanced. */
 SCREE_API const double *scree_scene_wear(const scree_scene *scene, size_t wall,

@@ -28,6 +28,7 @@ typedef struct scree_plan_quantity {
   scree_place place;
   const char *experiment, *answer, *curve;
   double at, from, until;
+  int take; /* 0 the last value, 1 the mean, 2 the standard deviation over the sensor's window */
   double value, uncertainty;
   const scree_yaml *measured;
   size_t repeats;

@@ -45,8 +45,9 @@ static const scree_record parameter_record = {"a parameter", FIELDS(parameter_ta
   {"experiment", SCREE_FIELD_TEXT, AT(experiment), 0, 0, "", "", NULL},                            \
       {"answer", SCREE_FIELD_TEXT, AT(answer), 0, 0, "", "column of a sensor, or outline", NULL},  \
       {"at", SCREE_FIELD_REAL, AT(at), -1e9, 1e9, "", "s; of an outline m", NULL},                 \
-      {"from", SCREE_FIELD_REAL, AT(from), 0, 1e9, "s", "of the mean over a window", NULL}, {      \
-    "until", SCREE_FIELD_REAL, AT(until), 0, 1e9, "s", "", NULL                                    \
+      {"from", SCREE_FIELD_REAL, AT(from), 0, 1e9, "s", "of the mean over a window", NULL},        \
+      {"until", SCREE_FIELD_REAL, AT(until), 0, 1e9, "s", "", NULL}, {                             \
+    "take", SCREE_FIELD_WORD, AT(take), 0, 0, "last|mean|sd", "over the sensor's window", NULL     \
   }
 #define MEASURED                                                                                   \
   {"value", SCREE_FIELD_REAL, AT(value), -1e300, 1e300, "", "measured", NULL},                     \
@@ -390,13 +391,16 @@ static scree_status check_answer(const reader *r, const scree_quantity *q) {
   const scree_experiment_plan *e = &r->c->experiments[q->experiment];
   bool outline = !strcmp(p->answer, "outline");
   if (is_command(e->plan))
-    return isnan(p->at) && isnan(p->from) && isnan(p->until) && !p->curve
+    return isnan(p->at) && isnan(p->from) && isnan(p->until) && !p->take && !p->curve
                ? SCREE_OK
                : scree_fail_place(&r->in, &p->place, "what a command prints has no times");
   if (outline && isnan(p->at) && !p->curve)
     return scree_fail_place(&r->in, &p->place, "an outline needs a curve, or at");
   if (!isnan(p->at) && (!isnan(p->from) || !isnan(p->until)))
     return scree_fail_place(&r->in, &p->place, "needs at, or from and until");
+  if (p->take && (!isnan(p->at) || !isnan(p->from) || !isnan(p->until) || outline || p->curve))
+    return scree_fail_place(&r->in, &p->place,
+                            "take is over the sensor's window: without at, from, until, curve");
   if (outline) return SCREE_OK;
   scree_scene_file *file;
   char name[96] = "?";
@@ -437,7 +441,8 @@ static scree_status add_answers(const reader *r, scree_quantity *q) {
       scree_number_format(isnan(p->until) ? 1e9 : p->until, number[1]);
       fprintf(stream, "  - \"%s\": {from: %s, until: %s}\n", p->answer, number[0], number[1]);
     } else {
-      fprintf(stream, "  - \"%s\"\n", p->answer);
+      static const char *const takes[] = {"", ": mean", ": sd"};
+      fprintf(stream, "  - \"%s\"%s\n", p->answer, takes[p->take]);
     }
   }
   e->answer_count += q->answer_count;

@@ -207,22 +207,27 @@ static const char *value_text(double value, char text[32]) {
   return text;
 }
 
+/* " from 2 s on", " from 2 to 6 s"; "" of all times. */
+static const char *window_text(const scree_scene_summary *s, char text[64]) {
+  if (isfinite(s->until))
+    snprintf(text, 64, " from %g to %g s", s->from, s->until);
+  else
+    snprintf(text, s->from > 0 ? 64 : 1, " from %g s on", s->from);
+  return text;
+}
+
 static void print_sensors(FILE *stream, const scree_scene *scene) {
   size_t rows, columns = scree_scene_column_count(scene), first = 0;
-  const double *series = scree_scene_series(scene, &rows);
+  (void)scree_scene_series(scene, &rows);
   while (first < columns && !strchr(scree_scene_column_name(scene, first), '.')) first++;
   if (!rows || first == columns) return;
-  fprintf(stream, "  %-34s %14s %14s\n", "sensor", "at the end", "mean");
+  fprintf(stream, "  %-34s %12s %12s %12s\n", "sensor", "at the end", "mean", "sd");
   for (size_t k = first; k < columns; k++) {
-    double sum = 0;
-    size_t count = 0;
-    for (size_t i = 0; i < rows; i++)
-      if (!isnan(series[i * columns + k])) sum += series[i * columns + k], count++;
-    char last[32], mean[32];
-    fprintf(stream, "  %-34s %14s %14s %s\n", scree_scene_column_name(scene, k),
-            value_text(series[(rows - 1) * columns + k], last),
-            value_text(count ? sum / (double)count : (double)NAN, mean),
-            scree_scene_column_unit(scene, k));
+    scree_scene_summary s = scree_scene_summarise(scene, k, NAN, NAN);
+    char last[32], mean[32], sd[32], window[64];
+    fprintf(stream, "  %-34s %12s %12s %12s %s%s\n", scree_scene_column_name(scene, k),
+            value_text(s.last, last), value_text(s.mean, mean), value_text(s.sd, sd),
+            scree_scene_column_unit(scene, k), window_text(&s, window));
   }
 }
 

@@ -125,37 +125,22 @@ static void json_parts(scree_json *json, const scree_scene *scene) {
   scree_json_end(json);
 }
 
-/* Of a column over the rows of the series that have a number. */
-typedef struct column_summary {
-  double mean, least, greatest;
-} column_summary;
-
-static column_summary summarise(const double *rows, size_t row_count, size_t columns, size_t k) {
-  column_summary s = {0, INFINITY, -INFINITY};
-  size_t count = 0;
-  for (size_t i = 0; i < row_count; i++) {
-    double value = rows[i * columns + k];
-    if (isnan(value)) continue;
-    s.mean += value, count++;
-    s.least = fmin(s.least, value), s.greatest = fmax(s.greatest, value);
-  }
-  s.mean = count ? s.mean / (double)count : (double)NAN;
-  return s;
-}
-
 static void json_columns(scree_json *json, const scree_scene *scene, const double *last) {
   size_t rows, columns = scree_scene_column_count(scene);
   const double *series = scree_scene_series(scene, &rows);
   scree_json_array(json, "columns");
   for (size_t k = 0; k < columns; k++) {
-    column_summary s = summarise(series, rows, columns, k);
+    scree_scene_summary s = scree_scene_summarise(scene, k, NAN, NAN);
     scree_json_object(json, NULL);
     scree_json_text(json, "name", scree_scene_column_name(scene, k));
     scree_json_text(json, "unit", scree_scene_column_unit(scene, k));
-    scree_json_number(json, "last", rows ? series[(rows - 1) * columns + k] : last[k]);
+    scree_json_number(json, "last", rows ? s.last : last[k]);
     scree_json_number(json, "mean", s.mean);
+    scree_json_number(json, "sd", s.sd);
     scree_json_number(json, "least", s.least);
     scree_json_number(json, "greatest", s.greatest);
+    scree_json_number(json, "from", s.from);
+    scree_json_number(json, "until", s.until);
     scree_json_row_array(json, "values");
     for (size_t i = 0; i < rows; i++) scree_json_number(json, NULL, series[i * columns + k]);
     scree_json_end(json);

@@ -182,7 +182,9 @@ void scree_scene_foretell(const scree_scene *scene, scree_scene_forecast *foreca
   scree_scene_forecast f = {0};
   double time = duration_of(scene), seconds = 0, triangles = 0;
   f.step_count = ceil(time / scene->time_step);
+  f.body_count = (double)scene->shape_of.count; /* from a table, or before it goes on */
   for (size_t i = 0; i < scene->plan.inlets.count; i++) {
+    f.body_count -= (double)scene->inlets[i].entered;
     double can, wanted = wanted_of(scene, &scene->inlets[i], &can);
     f.body_count += floor(fmin(wanted, can));
   }

@@ -234,7 +234,7 @@ scree_status scree_scene_watch_grids(scree_scene *scene, scree_error *error) {
     scree_scene_sensor *sensor = &scene->sensors[i];
     if (!sensor->grid || step < sensor->grid->next) continue;
     sensor->grid->next = step + interval_of(scene, sensor->plan->grid);
-    if (scree_world_time(scene->world) < sensor->plan->grid->from) continue;
+    if (!scree_scene_is_watching(scene, sensor)) continue;
     sampling s = begin(scene, sensor);
     put_bodies(&s);
     status = scree_world_visit_contacts(scene->world, put_contact, &s, error);

@@ -80,7 +80,7 @@ scree_status scree_scene_plan_impacts(scree_scene *scene, scree_scene_sensor *se
   const scree_plan_impacts *plan = sensor->plan->impacts;
   scree_scene_impacts *made = scree_arena_take(&scene->arena, 1, sizeof *made);
   if (!made) return scree_fail_memory(error, sizeof *made, "impacts");
-  *made = (scree_scene_impacts){.window_from = plan->from};
+  *made = (scree_scene_impacts){.window_from = sensor->plan->from};
   sensor->impacts = made;
   made->class_count = scree_impact_class_count(scene, sensor);
   double decades = scree_log10(plan->most / plan->least);
@@ -117,7 +117,7 @@ static size_t bin_of(const scree_scene_impacts *impacts, const scree_plan_impact
 /* ---- counting ---- */
 
 static bool is_on(const scree_scene *scene, const scree_scene_sensor *sensor) {
-  return sensor->impacts && scree_world_time(scene->world) >= sensor->plan->impacts->from;
+  return sensor->impacts && scree_scene_is_watching(scene, sensor);
 }
 
 static double *of_body(scree_scene_impacts *impacts, uint32_t body) {

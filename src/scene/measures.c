@@ -201,14 +201,19 @@ typedef struct bed {
   double x, y, floor, width, size; /* its middle; its lowest, standard deviation, mean size */
 } bed;
 
-static scree_body seen_body(const scree_scene *scene, const bed *seen, size_t b) {
+/* Whether the body is of the bed, and how it is seen. */
+static bool see_body(const scree_scene *scene, const scree_plan_box *box, const bed *seen, size_t b,
+                     scree_body *as_seen) {
   scree_body body;
+  if (scree_world_body_removed(scene->world, b)) return false;
   scree_world_get_body(scene->world, b, &body);
+  if (box && !scree_is_in(body.position, box->min, box->max)) return false;
   mat3 turn = quat_to_mat3(seen->turn);
   quat q = quat_mul(seen->turn, scree_body_turn(&body));
   vec3_store(body.position, mat3_mul_vec(&turn, vec3_load(body.position)));
   memcpy(body.orientation, (double[4]){q.w, q.x, q.y, q.z}, sizeof body.orientation);
-  return body;
+  *as_seen = body;
+  return true;
 }
 
 /* false: there is none. */
@@ -221,8 +226,8 @@ static bool find_bed(const scree_scene *scene, const scree_plan_slope *plan, bed
   *seen = (bed){.turn = quat_mul(second, first), .floor = INFINITY};
   double count = 0, squares = 0;
   for (size_t b = 0; b < scene->shape_of.count; b++) {
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_body body = seen_body(scene, seen, b);
+    scree_body body;
+    if (!see_body(scene, plan->box, seen, b, &body)) continue;
     const scree_scene_shape *shape = &scene->shapes[scene->shape_of.items[b]];
     double away = body.position[0] - seen->x;
     count++;
@@ -261,8 +266,8 @@ scree_status scree_scene_measure_slope(const scree_scene *scene, const scree_pla
   scree_status status = scree_height_field_create(seen.x, seen.y, half, cell, &field, error);
   if (status != SCREE_OK) return status;
   for (size_t b = 0; b < scene->shape_of.count; b++) {
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_body body = seen_body(scene, &seen, b);
+    scree_body body;
+    if (!see_body(scene, plan->box, &seen, b, &body)) continue;
     raise_body(scene, b, &body, seen.floor, &field);
   }
   *at = slope_of(&field);

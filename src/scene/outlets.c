@@ -5,12 +5,6 @@
 
 #include <string.h>
 
-static bool is_in(const double p[3], const double low[3], const double high[3]) {
-  for (int k = 0; k < 3; k++)
-    if (!(p[k] >= low[k] && p[k] <= high[k])) return false;
-  return true;
-}
-
 /* Kinetic and potential energy of a body as it stands. */
 static double energy_of(const scree_scene *scene, size_t b, const scree_body *body) {
   scree_particle_measures m;
@@ -32,7 +26,7 @@ static size_t outlet_at(const scree_scene *scene, const double p[3], double time
   for (size_t i = 0; i < count; i++) {
     const scree_plan_outlet *o = SCREE_PLAN_AT(&scene->plan, outlets, scree_plan_outlet, i);
     if (time >= o->from && (isnan(o->until) || time < o->until) &&
-        is_in(p, o->box->min, o->box->max))
+        scree_is_in(p, o->box->min, o->box->max))
       return i;
   }
   return count;
@@ -65,7 +59,7 @@ void scree_scene_empty(scree_scene *scene) {
     if (scree_world_body_removed(scene->world, b)) continue;
     scree_world_get_body(scene->world, b, &body);
     size_t outlet = outlet_at(scene, body.position, time);
-    if (outlet < rim || (d && !is_in(body.position, d->min, d->max)))
+    if (outlet < rim || (d && !scree_is_in(body.position, d->min, d->max)))
       take_out(scene, b, &body, outlet);
   }
 }
@@ -77,7 +71,7 @@ void scree_scene_take_lost(scree_scene *scene) {
     scree_body body;
     if (scree_world_body_removed(scene->world, b)) continue;
     scree_world_get_body(scene->world, b, &body);
-    if (!is_in(body.position, reach.low, reach.high))
+    if (!scree_is_in(body.position, reach.low, reach.high))
       take_out(scene, b, &body, scene->plan.outlets.count);
   }
 }

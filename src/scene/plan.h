@@ -192,6 +192,7 @@ typedef struct scree_plan_pile {
 typedef struct scree_plan_slope {
   scree_place place;
   double axis[3];
+  scree_plan_box *box; /* NULL: all bodies */
 } scree_plan_slope;
 
 typedef struct scree_plan_segregation {
@@ -202,7 +203,7 @@ typedef struct scree_plan_segregation {
 typedef struct scree_plan_impacts {
   scree_place place;
   int by; /* 0 shape, 1 material */
-  double least, most, threshold, from, window;
+  double least, most, threshold, window;
   size_t bins;
 } scree_plan_impacts;
 
@@ -210,7 +211,7 @@ typedef struct scree_plan_grid {
   scree_place place;
   scree_plan_box *box;
   scree_plan_cylinder *cylinder;
-  double cells[3], width, from, every;
+  double cells[3], width, every;
   const char *with; /* a geometry */
 } scree_plan_grid;
 
@@ -221,6 +222,7 @@ typedef struct scree_plan_residence {
 /* One of them. */
 typedef struct scree_plan_sensor {
   scree_place place;
+  double from, until; /* s: what is gathered, and means; until NaN: to the end */
   scree_plan_flow *flow;
   scree_plan_region *region;
   const char *wall, *position, *part; /* of a geometry */

@@ -71,12 +71,14 @@ static const scree_record pile_record = {"a pile", FIELDS(pile_fields), sizeof(s
 static const scree_field slope_fields[] = {
     {"axis", SCREE_FIELD_VECTOR, offsetof(scree_plan_slope, axis), 0, 0, "",
      "the surface is seen along it", NULL},
+    {"box", SCREE_FIELD_RECORD, offsetof(scree_plan_slope, box), 0, 0, "",
+     "of the bodies in it; not given: about the middle of all", &scree_plan_box_record},
 };
 static scree_status check_slope(const scree_reader *r, const void *record) {
   const scree_plan_slope *s = record;
   return scree_plan_check_direction(r, &s->place, "axis", s->axis);
 }
-static const scree_plan_slope slope_defaults = {{0}, {1, 0, 0}};
+static const scree_plan_slope slope_defaults = {{0}, {1, 0, 0}, NULL};
 static const scree_record slope_record = {"a slope", FIELDS(slope_fields), sizeof(scree_plan_slope),
                                           &slope_defaults, check_slope};
 
@@ -106,7 +108,6 @@ static const scree_field impacts_fields[] = {
     {"bins", SCREE_FIELD_COUNT, AT(bins), 1, 100, "", "in a decade of energy", NULL},
     {"threshold", SCREE_FIELD_REAL, AT(threshold), 0, 1e12, "J",
      "damage is what the energy of approach exceeds it by", NULL},
-    {"from", SCREE_FIELD_REAL, AT(from), 0, 1e9, "s", "nothing before is counted", NULL},
     {"window", SCREE_FIELD_REAL, AT(window), 1e-9, 1e9, "s",
      "a spectrum for each; not given: one of all", NULL},
 };
@@ -131,7 +132,6 @@ static const scree_field grid_fields[] = {
      "along x, y and z; of a cylinder outward, around and along", NULL},
     {"width", SCREE_FIELD_REAL, AT(width), 1e-9, 1e3, "m",
      "of coarse graining; not given: the largest body's size", NULL},
-    {"from", SCREE_FIELD_REAL, AT(from), 0, 1e9, "s", "nothing before is counted", NULL},
     {"every", SCREE_FIELD_REAL, AT(every), 1e-9, 1e9, "s",
      "between samples; not given: as the series", NULL},
     {"with", SCREE_FIELD_TEXT, AT(with), 0, 0, "",
@@ -177,10 +177,16 @@ static const scree_field sensor_fields[] = {
      &grid_record},
     {"impacts", SCREE_FIELD_RECORD, AT(impacts), 0, 0, "", "energies of contacts, by class",
      &impacts_record},
+    {"from", SCREE_FIELD_REAL, AT(from), 0, 1e9, "s",
+     "what comes before is neither gathered nor in means", NULL},
+    {"until", SCREE_FIELD_REAL, AT(until), 1e-9, 1e9, "s", "nor what comes after; not given: all",
+     NULL},
 };
 #undef AT
 static scree_status check_sensor(const scree_reader *r, const void *record) {
   const scree_plan_sensor *s = record;
+  if (s->until <= s->from)
+    return scree_fail_place(r, &s->place, "from %g s must be below until %g s", s->from, s->until);
   const bool there[] = {s->flow != NULL,      s->region != NULL,   s->wall != NULL,
                         s->pile != NULL,      s->slope != NULL,    s->segregation != NULL,
                         s->residence != NULL, s->position != NULL, s->impacts != NULL,
@@ -189,6 +195,6 @@ static scree_status check_sensor(const scree_reader *r, const void *record) {
       r, &s->place, there, sizeof there / sizeof *there,
       "flow, region, wall, position, part, pile, slope, segregation, residence, impacts, grid");
 }
-static const scree_plan_sensor sensor_defaults = {.wall = NULL};
+static const scree_plan_sensor sensor_defaults = {.until = NAN};
 const scree_record scree_plan_sensor_record = {
     "a sensor", FIELDS(sensor_fields), sizeof(scree_plan_sensor), &sensor_defaults, check_sensor};

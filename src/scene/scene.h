@@ -281,7 +281,8 @@ typedef struct scree_scene_reach {
 scree_scene_reach scree_scene_reach_of(const scree_scene *scene);
 scree_scene_reach scree_scene_domain(const scree_scene *scene);
 
-/* sensors.c */
+/* sensors.c: whether now is between a sensor's `from` and `until`. */
+bool scree_scene_is_watching(const scree_scene *scene, const scree_scene_sensor *sensor);
 scree_status scree_scene_plan_columns(scree_scene *scene, scree_error *error);
 /* Of flows: who crossed since the last tick. */
 scree_status scree_scene_watch_flows(scree_scene *scene, scree_error *error);
@@ -363,6 +364,12 @@ scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *f
                                    const char *path, scree_error *error);
 
 #define SCREE_SCENE_SHAPES(scene) ((scene)->plan.shapes.count)
+
+static inline bool scree_is_in(const double p[3], const double low[3], const double high[3]) {
+  for (int k = 0; k < 3; k++)
+    if (!(p[k] >= low[k] && p[k] <= high[k])) return false;
+  return true;
+}
 
 static inline quat scree_body_turn(const scree_body *body) {
   return (quat){body->orientation[0], body->orientation[1], body->orientation[2],

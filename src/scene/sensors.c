@@ -10,6 +10,11 @@
 #include <stdarg.h>
 #include <string.h>
 
+bool scree_scene_is_watching(const scree_scene *scene, const scree_scene_sensor *sensor) {
+  double time = scree_world_time(scene->world);
+  return time >= sensor->plan->from && !(time > sensor->plan->until);
+}
+
 /* ---- columns ---- */
 
 /* What is always there. */
@@ -301,7 +306,7 @@ static void read_impacts(const scree_scene *scene, const scree_scene_sensor *sen
                          double *at) {
   const scree_scene_impacts *impacts = sensor->impacts;
   size_t classes = impacts->class_count, width = classes > 1 ? classes + 1 : 1;
-  double since = sensor->plan->impacts->from, *counts = at;
+  double since = sensor->plan->from, *counts = at;
   const double *before = row_before(scene, &since);
   for (size_t k = 0; k + 1 < IMPACT_COLUMNS; k++, at += width) {
     at[0] = 0;
@@ -326,12 +331,9 @@ static void read_region(const scree_scene *scene, const scree_plan_box *box, dou
   for (int k = 0; k < 3; k++) volume *= box->max[k] - box->min[k];
   for (size_t b = 0; b < scene->shape_of.count; b++) {
     scree_body body;
-    bool inside = !scree_world_body_removed(scene->world, b);
-    if (!inside) continue;
+    if (scree_world_body_removed(scene->world, b)) continue;
     scree_world_get_body(scene->world, b, &body);
-    for (int k = 0; k < 3; k++)
-      inside = inside && body.position[k] >= box->min[k] && body.position[k] <= box->max[k];
-    if (!inside) continue;
+    if (!scree_is_in(body.position, box->min, box->max)) continue;
     size_t shape = scene->shape_of.items[b];
     double m = scree_world_body_mass(scene->world, b);
     count[shape]++, count[shapes]++;
@@ -494,6 +496,34 @@ scree_status scree_scene_record(scree_scene *scene, scree_error *error) {
   scree_status status = measure(scene, false, scene->series.items + used, error);
   if (status == SCREE_OK) scene->row_count++;
   return status;
+}
+
+/* The sensor that a column is of; NULL: none. */
+static const scree_scene_sensor *sensor_of(const scree_scene *scene, size_t column) {
+  size_t i = scene->plan.sensors.count;
+  while (i > 0 && scene->sensors[i - 1].first_column > column) i--;
+  return i ? &scene->sensors[i - 1] : NULL;
+}
+
+scree_scene_summary scree_scene_summarise(const scree_scene *scene, size_t column, double from,
+                                          double until) {
+  const scree_scene_sensor *sensor = sensor_of(scene, column);
+  if (isnan(from)) from = sensor ? sensor->plan->from : 0;
+  if (isnan(until)) until = sensor ? sensor->plan->until : NAN;
+  scree_scene_summary s = {NAN, 0, NAN, INFINITY, -INFINITY, from, fmin(until, INFINITY), 0};
+  double squares = 0, end = s.until + scene->time_step; /* a row is of the step after its moment */
+  const double *row = scene->series.items;
+  for (size_t i = 0; i < scene->row_count; i++, row += scene->columns.count) {
+    double value = s.last = row[column];
+    if (row[0] < s.from || row[0] >= end || isnan(value)) continue;
+    double off = value - s.mean;
+    s.mean += off / (double)++s.count;
+    squares += off * (value - s.mean);
+    s.least = fmin(s.least, value), s.greatest = fmax(s.greatest, value);
+  }
+  if (s.count > 1) s.sd = sqrt(squares / (double)(s.count - 1));
+  if (s.count == 0) s.mean = s.least = s.greatest = NAN;
+  return s;
 }
 
 const double *scree_scene_series(const scree_scene *scene, size_t *row_count) {

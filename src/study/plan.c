@@ -269,7 +269,7 @@ static scree_status read_base(const reader *r, const scree_yaml *base) {
 /* What an answer is called in tables. */
 static void name_answer(const scree_answer *a, char name[200]) {
   char *end = name;
-  end += snprintf(name, 120, "%s%.100s", a->mean ? "mean " : "", a->column);
+  end += snprintf(name, 120, "%s%.100s", a->mean ? "mean " : a->sd ? "sd " : "", a->column);
   if (!isnan(a->at))
     snprintf(end, 80, " at %g %s", a->at, a->outline ? "m" : "s");
   else if (a->until < INFINITY)
@@ -278,34 +278,42 @@ static void name_answer(const scree_answer *a, char name[200]) {
     snprintf(end, 80, " from %g s", a->from);
 }
 
-/* COLUMN for its last value, {COLUMN: {from: T, until: T}} for the mean over a window, {COLUMN:
- * {at: T}} for the value at a time, {outline: {at: X}} for the height of what is seen along y. */
+/* COLUMN for its last value, {COLUMN: mean} and {COLUMN: sd} over its sensor's window, {COLUMN:
+ * {from: T, until: T}} for the mean over another, {COLUMN: {at: T}} for the value at a time,
+ * {outline: {at: X}} for the height of what is seen along y. */
 static scree_status read_answer(const reader *r, const scree_yaml *item, scree_answer *a) {
   *a = (scree_answer){.from = 0, .until = INFINITY, .at = NAN};
   const char *column = item->text;
-  if (item->kind == SCREE_YAML_MAPPING && item->item_count == 1 &&
-      item->items[0].kind == SCREE_YAML_MAPPING) {
+  const scree_yaml *only =
+      item->kind == SCREE_YAML_MAPPING && item->item_count == 1 ? &item->items[0] : NULL;
+  if (only && only->kind == SCREE_YAML_SCALAR) {
+    column = only->key;
+    a->mean = !strcmp(only->text, "mean");
+    a->sd = !strcmp(only->text, "sd");
+    a->from = a->until = NAN;
+    if (!a->mean && !a->sd) return fail_at(r, only, "%s: must be mean, sd, or a window", column);
+  } else if (only && only->kind == SCREE_YAML_MAPPING) {
     window_fields window;
-    column = item->items[0].key;
-    scree_status status = read_record(r, &item->items[0], column, &window_record, &window);
+    column = only->key;
+    scree_status status = read_record(r, only, column, &window_record, &window);
     if (status != SCREE_OK) return status;
     bool at = !isnan(window.at), mean = !isnan(window.from) || !isnan(window.until);
-    if (at && mean) return fail_at(r, &item->items[0], "%s: at, or from and until", column);
+    if (at && mean) return fail_at(r, only, "%s: at, or from and until", column);
     a->mean = !at;
     a->at = window.at;
     if (!isnan(window.from)) a->from = window.from;
     if (!isnan(window.until)) a->until = window.until;
   } else if (item->kind != SCREE_YAML_SCALAR) {
     return fail_at(r, item,
-                   "an answer must be a column such as torque.power, or {torque.power: "
-                   "{from: 2}} for its mean from 2 s on");
+                   "an answer must be a column such as torque.power, {torque.power: mean} for its "
+                   "mean, or {torque.power: {from: 2}} for that from 2 s on");
   }
   a->column = scree_arena_text(&r->study->arena, column);
   if (!a->column) return fail_memory(r);
   a->outline = r->study->scene_text && !strcmp(column, "outline");
   if (a->outline && isnan(a->at))
     return fail_at(r, item, "outline: needs a place, as in {outline: {at: 0.01}}");
-  if (r->study->command.count && (a->mean || !isnan(a->at)))
+  if (r->study->command.count && (a->mean || a->sd || !isnan(a->at)))
     return fail_at(r, item, "%s: what a command prints has no times", column);
   if (!a->outline && a->at < 0)
     return fail_at(r, item, "%s: at %g s: must not be below 0", column, a->at);

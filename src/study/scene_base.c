@@ -287,21 +287,13 @@ static double at_time(const double *series, size_t rows, size_t columns, size_t 
 }
 
 static double answer_of(const scree_answer *answer, const scree_scene *scene) {
-  size_t rows, columns = scree_scene_column_count(scene), k = column_of(scene, answer->column),
-               count = 0;
+  size_t rows, columns = scree_scene_column_count(scene), k = column_of(scene, answer->column);
   const double *series = scree_scene_series(scene, &rows);
-  double sum = 0;
   if (answer->outline) return scree_outline_height(scree_scene_view(scene), answer->at);
   if (k == columns || rows == 0) return NAN;
   if (!isnan(answer->at)) return at_time(series, rows, columns, k, answer->at);
-  if (!answer->mean) return series[(rows - 1) * columns + k];
-  for (size_t i = 0; i < rows; i++) {
-    double time = series[i * columns], value = series[i * columns + k];
-    if (time < answer->from || time > answer->until || isnan(value)) continue;
-    sum += value;
-    count++;
-  }
-  return count ? sum / (double)count : (double)NAN;
+  scree_scene_summary s = scree_scene_summarise(scene, k, answer->from, answer->until);
+  return answer->mean ? s.mean : answer->sd ? s.sd : s.last;
 }
 
 /* ---- what is kept of a run ---- */

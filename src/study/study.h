@@ -50,12 +50,13 @@ typedef enum scree_design {
   SCREE_DESIGN_LIST /* point i has level i of every factor */
 } scree_design;
 
-/* A column of a scene's sensors: its last value, its mean over a window of time, or its value at a
- * time; the outline of its heap at a place; a number that a command prints. */
+/* A column of a scene's sensors: its last value, its mean or standard deviation over a window of
+ * time, or its value at a time; the outline of its heap at a place; a number that a command prints.
+ */
 typedef struct scree_answer {
   const char *name, *column;
-  bool mean, outline;
-  double from, until; /* s */
+  bool mean, sd, outline;
+  double from, until; /* s; NaN: the sensor's */
   double at;          /* s; of an outline m; NAN: the last */
 } scree_answer;
 

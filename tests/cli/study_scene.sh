@@ -5,7 +5,7 @@ materials: {grain: {young: 1e6, density: 1000, restitution: 0.3, friction: 0.4}}
 shapes: {ball: {sphere: 0.01}}
 geometry: {chute: {box: [0.2, 0.2, 0.02], turn: {axis: [0, 1, 0], angle_deg: 35}}}
 inlets: {feed: {box: {min: [-0.05, -0.03, 0.06], max: [0, 0.03, 0.12]}, shapes: ball, rate: 100, until: 0.1}}
-sensors: {all: {region: {box: {min: [-1, -1, -1], max: [1, 1, 1]}}}, load: {wall: chute}}
+sensors: {all: {region: {box: {min: [-1, -1, -1], max: [1, 1, 1]}}, from: 0.15}, load: {wall: chute}}
 output: {series: 0.02}
 END
 cat >study.yaml <<'END'
@@ -13,7 +13,7 @@ base: {scene: chute.yaml, time: 0.2}
 factors:
   inlets.feed.rate: [50, 100]
   geometry.chute.turn.angle_deg: [20, 40]
-answers: [all.count, all.count: {from: 0.15}]
+answers: [all.count, all.count: {from: 0.15}, all.count: mean]
 replicates: 2
 END
 # the last two columns are noise and time

@@ -26,7 +26,7 @@ static void column(void **state) {
       "count: 10}}\n"
       "output: {series: 0.05}\n"
       "sensors: {f: {grid: {box: {min: [-0.04, -0.04, 0], max: [0.04, 0.04, 0.26]}, cells: [32, "
-      "32, 26], width: 5 mm, from: 2.3}}}\n");
+      "32, 26], width: 5 mm}, from: 2.3}}\n");
   run_to_end(scene);
   const scree_scene_sensor *sensor = &scene->sensors[0];
   const double w = 0.005, area = 0.0025 * 0.0025;
@@ -55,11 +55,11 @@ static const char turning[] =
     "output: {series: 0.002}\n"
     "sensors:\n"
     "  still: {grid: {box: {min: [-0.1, -0.1, 0.04], max: [0.1, 0.1, 0.12]}, cells: [5, 5, 2], "
-    "from: 0.001, width: 12 mm}}\n"
+    "width: 12 mm}, from: 0.001}\n"
     "  round: {grid: {cylinder: {at: [0, 0, 0.04], radius: 0.1, length: 0.08}, cells: [3, 8, 2], "
-    "from: 0.001, width: 12 mm}}\n"
+    "width: 12 mm}, from: 0.001}\n"
     "  along: {grid: {box: {min: [-0.1, -0.1, 0.54], max: [0.1, 0.1, 0.62]}, cells: [5, 5, 2], "
-    "with: table, from: 0.001, width: 12 mm}}\n";
+    "with: table, width: 12 mm}, from: 0.001}\n";
 
 /* 4000 balls on a lattice of 20 mm, turned about z at 2 rad/s. */
 static void rotation(void **state) {

@@ -62,7 +62,7 @@ static const char mixed[] =
     "  shell: {cylinder: {radius: 0.07, length: 1}, at: [0, 0, 0]}\n"
     "inlets: {i: {cylinder: {at: [0, 0, 0.03], radius: 0.06, length: 0.3}, shapes: {ball: 1, "
     "brick: 1}, count: 30}}\n"
-    "sensors: {hits: {impacts: {window: 0.1}}, late: {impacts: {from: 0.3, by: material}}}\n";
+    "sensors: {hits: {impacts: {window: 0.1}}, late: {impacts: {by: material}, from: 0.3}}\n";
 
 static void sums_are_the_ledgers(void **state) {
   (void)state;

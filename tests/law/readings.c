@@ -1,0 +1,143 @@
+/* What sensors read against closed forms: means and spreads over a window, the slope of a part of a
+ * surface. Every series is the same for any number of threads, and when cut and resumed. */
+#include "scene/scene.h"
+#include "support/check.h"
+#include "support/folder.h"
+#include "support/scene.h"
+
+#include "scree.h"
+
+#include <stdlib.h>
+
+static const double pi = 3.14159265358979;
+
+/* A scene whose files lie in the test's folder. */
+static scree_scene *create_here(const char *text) {
+  scree_error error;
+  scree_scene_file *file = NULL;
+  scree_scene *scene = NULL;
+  CHECK_OK(scree_scene_file_parse(text, strlen(text), in_folder("test.yaml"), &file, &error),
+           error);
+  CHECK_OK(scree_scene_create(file, NULL, &scene, &error), error);
+  scree_scene_file_free(file);
+  return scene;
+}
+
+static size_t column_of(const scree_scene *scene, const char *name) {
+  size_t k = 0;
+  while (scree_scene_column_name(scene, k) && strcmp(scree_scene_column_name(scene, k), name) != 0)
+    k++;
+  if (k == scree_scene_column_count(scene)) fail_msg("no column %s", name);
+  return k;
+}
+
+static double value_of(const scree_scene *scene, const char *name) {
+  scree_error error;
+  double *values = calloc(scree_scene_column_count(scene), sizeof *values);
+  CHECK_OK(scree_scene_measure(scene, values, &error), error);
+  double value = values[column_of(scene, name)];
+  free(values);
+  return value;
+}
+
+static scree_scene_summary summary_of(const scree_scene *scene, const char *name) {
+  return scree_scene_summarise(scene, column_of(scene, name), NAN, NAN);
+}
+
+/* To its end at once; and by another number of threads, saved and loaded half way. */
+static scree_scene *run_both(const char *text) {
+  scree_error error;
+  const char *path = in_folder("half.scree");
+  scree_scene *whole = create_here(text), *cut = create_here(text);
+  scree_set_threads(1);
+  run_to_end(whole);
+  scree_set_threads(3);
+  size_t half = (size_t)scree_world_step_count(scree_scene_view(whole)) / 2, rows[2];
+  CHECK_OK(scree_scene_advance(cut, half, &error), error);
+  CHECK_OK(scree_scene_save(cut, path, true, &error), error);
+  scree_scene_free(cut);
+  CHECK_OK(scree_scene_load(path, &cut, &error), error);
+  run_to_end(cut);
+  scree_set_threads(0);
+  const double *a = scree_scene_series(whole, &rows[0]), *b = scree_scene_series(cut, &rows[1]);
+  assert_int_equal(rows[0], rows[1]);
+  assert_memory_equal(a, b, rows[0] * scree_scene_column_count(whole) * sizeof *a);
+  scree_scene_free(cut);
+  return whole;
+}
+
+/* A wall that rises by v t, one that swings by a sin(w t): over a window of whole periods. */
+static void windows(void **state) {
+  (void)state;
+  scree_scene *scene = run_both(
+      "time: 2\n"
+      "geometry:\n"
+      "  lift: {box: [0.1, 0.1, 0.01], motion: [{translate: {velocity: [0, 0, 0.3]}}]}\n"
+      "  swing: {box: [0.1, 0.1, 0.01], at: [1, 0, 0], motion: [{vibrate: {along: [0, 1, 0], "
+      "amplitude: 4 mm, frequency: 2}}]}\n"
+      "shapes: {ball: {sphere: 0.01}}\n"
+      "inlets: {i: {box: {min: [-0.1, -0.1, 1], max: [0.1, 0.1, 1.1]}, shapes: ball, count: 1}}\n"
+      "sensors:\n"
+      "  rising: {position: lift, from: 0.5, until: 1.5}\n"
+      "  swinging: {position: swing, from: 0.495, until: 1.495}\n"
+      "  all: {position: lift}\n"
+      "output: {series: 0.01}\n");
+  scree_scene_summary s = summary_of(scene, "rising.z");
+  assert_int_equal(s.count, 101);
+  CHECK_NEAR(s.mean, 0.3, 1e-3);
+  CHECK_NEAR(s.sd, 0.003 * sqrt(101 * 102 / 12.0), 1e-5); /* of 101 equal steps */
+  CHECK_NEAR(s.least, 0.15, 3e-3);
+  CHECK_NEAR(s.greatest, 0.45, 3e-3);
+  CHECK_NEAR(s.last, 0.6, 1e-6);
+  s = summary_of(scene, "swinging.y");
+  CHECK_NEAR(s.mean, 0, 1e-6);
+  CHECK_NEAR(s.sd, 4e-3 / sqrt(2), 0.006 * 4e-3);
+  CHECK_NEAR(summary_of(scene, "all.z").mean, 0.3, 1e-3);
+  s = scree_scene_summarise(scene, column_of(scene, "all.z"), 1, NAN);
+  CHECK_NEAR(s.mean, 0.45, 1e-3);
+  assert_true(isinf(s.until));
+  s = scree_scene_summarise(scene, column_of(scene, "all.z"), 3, 4);
+  assert_true(isnan(s.mean) && isnan(s.sd) && isnan(s.least) && s.count == 0);
+  scree_scene_free(scene);
+}
+
+/* A roof of balls, up by 20 degrees and down by 35: each half has its own slope. What will run is
+ * told with the bodies of the table. */
+static void slopes(void **state) {
+  (void)state;
+  FILE *table = fopen(in_folder("roof.csv"), "w");
+  size_t count = 0;
+  assert_non_null(table);
+  fputs("x,y,z\n", table);
+  for (int i = -60; i <= 60; i++)
+    for (int j = -10; j <= 10; j++, count++) {
+      double x = 0.005 * i, z = x < 0 ? x * tan(20 * pi / 180) : -x * tan(35 * pi / 180);
+      fprintf(table, "%.17g,%.17g,%.17g\n", x, 0.012 * j, 1 + z);
+    }
+  fclose(table);
+  scree_scene *scene = create_here(
+      "time: 0.001\nshapes: {ball: {sphere: 0.012}}\nbodies: {file: roof.csv}\n"
+      "sensors:\n"
+      "  left: {slope: {axis: [0, 1, 0], box: {min: [-1, -1, 0], max: [0, 1, 2]}}}\n"
+      "  right: {slope: {axis: [0, 1, 0], box: {min: [0, -1, 0], max: [1, 1, 2]}}}\n"
+      "  behind: {slope: {axis: [0, -1, 0], box: {min: [0, -1, 0], max: [1, 1, 2]}}}\n"
+      "  nothing: {slope: {axis: [0, 1, 0], box: {min: [2, -1, 0], max: [3, 1, 2]}}}\n");
+  double left = value_of(scene, "left.angle_deg"), right = value_of(scene, "right.angle_deg");
+  CHECK_NEAR(fabs(left), 20, 0.5);
+  CHECK_NEAR(fabs(right), 35, 0.7);
+  assert_true(left * right < 0);
+  CHECK_NEAR(value_of(scene, "behind.angle_deg"), -right, 1e-9);
+  assert_true(isnan(value_of(scene, "nothing.angle_deg")));
+  scree_scene_forecast f;
+  scree_scene_foretell(scene, &f);
+  CHECK_NEAR(f.body_count, count, 0);
+  scree_scene_free(scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(windows),
+      cmocka_unit_test(slopes),
+  };
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
