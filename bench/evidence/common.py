@@ -4,6 +4,7 @@ import math
 import os
 import pathlib
 import random
+import shutil
 import subprocess
 import sys
 
@@ -40,10 +41,14 @@ def run(*words, folder=None):
 
 
 def commit():
-    """Of this checkout; of a copy without its history what .commit says."""
-    told = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                          text=True).stdout.strip()
-    return told or (ROOT / ".commit").read_text().strip()
+    """Of this checkout; of a copy without its history what .commit says, if there is one."""
+    if shutil.which("git"):
+        told = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], stdout=subprocess.PIPE,
+                              stderr=subprocess.DEVNULL, text=True).stdout.strip()
+        if told:
+            return told
+    note = ROOT / ".commit"
+    return note.read_text().strip() if note.exists() else "unknown"
 
 
 class Table:
