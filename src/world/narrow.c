@@ -41,8 +41,10 @@ typedef struct probe {
   const scree_particle *surface;
   const scree_pair *pair;
   scree_feature_pair *feature;
-  vec3 p, velocity; /* velocity: against the surface; of sheets only */
-  double drift;     /* s, since the last look */
+  vec3 p, velocity;           /* velocity: against the surface; of sheets only */
+  double drift;               /* s, since the last look */
+  const scree_particle *body; /* that has the point; of sheets only, which are walls */
+  const mat3 *turned;         /* from its frame */
 } probe;
 
 static void refresh_faces(const scree_particle *surface, vec3 p, scree_feature_pair *feature,
@@ -84,6 +86,39 @@ static bool find_passage(const probe *x, double distance, uint32_t *face) {
   return scree_next_passage(x->surface, &back, 0, SIZE_MAX, face) < INFINITY;
 }
 
+/* From the point to a place deep within its body, straight and not out of the body on the way; in
+ * the frame of the surface. 0 where no such way is known. */
+static vec3 way_into_body(const probe *x) {
+  const scree_particle *body = x->body;
+  const vec3 corner = body->points[x->feature->a];
+  const double near = 1e-6 * body->measures.size;
+  for (uint32_t i = 0; body->face_count && i < body->inner_count; i++) {
+    vec3 way = vec3_sub(body->inner[i], corner);
+    double length = vec3_norm(way);
+    if (!(length > near)) continue;
+    const scree_ray_interval inwards = {corner, vec3_scale(way, 1 / length), near, length};
+    uint32_t face;
+    if (!(scree_next_passage(body, &inwards, 0, SIZE_MAX, &face) < INFINITY))
+      return mat3_mul_vec(x->turned, way);
+  }
+  return (vec3){0, 0, 0};
+}
+
+/* The face of the sheet that lies between the point and the inside of its body, which went round a
+ * rim and then came back over the sheet; false for none. */
+static bool find_cut(const probe *x, uint32_t *face) {
+  vec3 way = way_into_body(x);
+  double length = vec3_norm(way);
+  if (!(length > 0)) return false;
+  const scree_ray_interval inwards = {x->p, vec3_scale(way, 1 / length), 0, length};
+  if (!(scree_next_passage(x->surface, &inwards, 0, SIZE_MAX, face) < INFINITY)) return false;
+  vec3 normal = x->surface->faces[*face].normal;
+  x->feature->side = vec3_dot(normal, way) < 0 ? -1 : 1;
+  x->feature->reference = x->feature->side < 0 ? vec3_neg(normal) : normal;
+  x->feature->has_reference = true;
+  return true;
+}
+
 /* Whether the point is on its side of the sheet, and the way out there, which comes in as the
  * pseudonormal where the point is nearest. A side is a sign on the oriented sheet. The point keeps
  * it until it is seen to come through: where it comes nearer to another part without that, its side
@@ -103,6 +138,9 @@ static bool is_on_its_side(const probe *x, vec3 offset, uint32_t face, vec3 *out
     feature->sheet = sheet;
     if (find_passage(x, vec3_norm(offset), &passed)) {
       feature->side = vec3_dot(x->surface->faces[passed].normal, x->velocity) < 0 ? 1 : -1;
+      feature->sheet = sheet_of(x->surface, passed);
+      feature->inside = true;
+    } else if (find_cut(x, &passed)) {
       feature->sheet = sheet_of(x->surface, passed);
       feature->inside = true;
     }
@@ -356,8 +394,11 @@ static double point_surface_contact(const scree_world *world, const scree_pair *
   }
   surface_contact contacts[SCREE_ANCHORS];
   probe x = {.surface = surface, .pair = pair, .feature = feature, .p = p, .drift = scratch->drift};
-  if (surface->sheet)
-    x.velocity = vec3_add(relative->velocity, vec3_cross(relative->spin, p)); /* that of a wall */
+  if (surface->sheet) { /* that of a wall */
+    x.velocity = vec3_add(relative->velocity, vec3_cross(relative->spin, p));
+    x.body = from;
+    x.turned = &relative->rotation;
+  }
   int count = surface_contacts(&x, contacts);
   vec3 at[SCREE_ANCHORS], normals[SCREE_ANCHORS];
   for (int k = 0; k < count; k++) {
