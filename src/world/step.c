@@ -311,13 +311,59 @@ static double relative_speed(const scree_world *world, const scree_neighbours *n
                        n->wall ? vec3_add(b->velocity, vec3_cross(b->spin, arm)) : b->velocity);
 }
 
+/* Of what else touches the body of neighbours k, that which presses most against it, where that is
+ * more than half of what k press with; scree_none in an impact. */
+static uint32_t find_counterforce(const scree_world *world, uint32_t k, bool of_b) {
+  const scree_neighbours *n = &world->neighbours.items[k];
+  const uint32_t body = of_b ? n->b : n->a;
+  const vec3 force = scree_pair_of(world, k)->wrench.force;
+  double most = 0.5 * vec3_norm2(force);
+  uint32_t found = scree_none;
+  for (size_t i = 0; i < world->neighbours.count; i++) {
+    const scree_neighbours *other = &world->neighbours.items[i];
+    const scree_pair *pair = scree_pair_of(world, i);
+    const bool is_b = !other->wall && other->b == body;
+    if (i == k || !pair || !pair->touching || !(other->a == body || is_b)) continue;
+    double against = vec3_dot(force, pair->wrench.force) * (is_b == of_b ? -1 : 1);
+    if (against > most) most = against, found = (uint32_t)i;
+  }
+  return found;
+}
+
+static bool wall_moves(const scree_world *world, const scree_neighbours *n) {
+  if (!n->wall) return false;
+  const scree_frame *frame = &world->walls.items[n->b].frame;
+  return vec3_norm2(frame->velocity) + vec3_norm2(frame->spin) > 0;
+}
+
+/* A wall that moves does so whatever stands against it. */
+static bool describe_pinch(const scree_world *world, uint32_t k, char text[256]) {
+  const scree_neighbours *n = &world->neighbours.items[k];
+  bool of_b = false;
+  uint32_t other = find_counterforce(world, k, of_b);
+  if (other == scree_none && !n->wall) other = find_counterforce(world, k, of_b = true);
+  if (other == scree_none) return false;
+  const scree_neighbours *m = &world->neighbours.items[other];
+  if (!wall_moves(world, n) && !wall_moves(world, m)) return false;
+  const uint32_t body = of_b ? n->b : n->a;
+  vec3 at = world->bodies.frame[body].position;
+  snprintf(text, 256,
+           "; at %.4g %.4g %.4g m, body %u is pinched between %s %u and %s %u with %.3g N: a wall "
+           "that moves presses as hard as it takes, leave it more room there or less friction",
+           at.x, at.y, at.z, body, n->wall ? "wall" : "body", of_b ? n->a : n->b,
+           m->wall ? "wall" : "body", m->a == body ? m->b : m->a,
+           vec3_norm(scree_pair_of(world, k)->wrench.force));
+  return true;
+}
+
 /* The speed with which they met follows from what the spring holds. */
 static scree_status describe_overlap(scree_world *world, uint32_t k) {
   const scree_neighbours *n = &world->neighbours.items[k];
   double overlap = scree_pair_of(world, k)->overlap, now = relative_speed(world, n),
          held = overlap * pi / n->law.contact_time;
   char demand[256];
-  describe_demand(world, n, sqrt(now * now + held * held), demand);
+  if (!describe_pinch(world, k, demand))
+    describe_demand(world, n, sqrt(now * now + held * held), demand);
   return scree_fail(&world->failure, SCREE_DIVERGED,
                     "world: step %llu, body %u overlaps %s %u by %.3g m; at most %.3g m%s",
                     (unsigned long long)world->step_count, n->a, n->wall ? "wall" : "body", n->b,

@@ -79,14 +79,17 @@ static sheets make_trough(void) {
   return s;
 }
 
-/* One turn about the y axis, as thin as a sheet, with room for a body between it and the trough. */
+/* One turn about the y axis, as thin as a sheet, with room for a body between it and the trough,
+ * and before the ends: what a screw pinches there, at less than the angle of friction, stops the
+ * run (a_pinched_sphere_is_named). */
 static sheets make_screw(void) {
   enum { TURNS = 24 };
+  const double half = wide - 2.5 * radius;
   vec3 quads[4 * TURNS];
   sheets s = {.count = 0};
   for (int i = 0; i < TURNS; i++) {
-    double a = 2 * pi * i / TURNS, b = 2 * pi * (i + 1) / TURNS, p = wide * (2.0 * i / TURNS - 1),
-           q = wide * (2.0 * (i + 1) / TURNS - 1);
+    double a = 2 * pi * i / TURNS, b = 2 * pi * (i + 1) / TURNS, p = half * (2.0 * i / TURNS - 1),
+           q = half * (2.0 * (i + 1) / TURNS - 1);
     quads[4 * i] = around(0.01, a, p), quads[4 * i + 1] = around(0.044, a, p);
     quads[4 * i + 2] = around(0.044, b, q), quads[4 * i + 3] = around(0.01, b, q);
   }
@@ -209,8 +212,43 @@ static void bodies_stay_in_equipment(void **state) {
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) run(&all[i]);
 }
 
+/* A wedge of ten degrees closes on a sphere that rests on the floor. With more friction than the
+ * tangent of half its angle the sphere is held, with whatever force that takes; with less it slips
+ * out. */
+static void a_pinched_sphere_is_named(void **state) {
+  (void)state;
+  const double slope = 10 * pi / 180;
+  for (int holds = 0; holds < 2; holds++) {
+    scree_error error;
+    law_setup setup = law_default();
+    setup.stiffness = 4e6;
+    setup.friction = (holds ? 1.5 : 0.5) * tan(0.5 * slope);
+    scree_world *world = law_world(&setup);
+    scree_particle *sphere = law_sphere(radius);
+    law_floor(world);
+    const double along = radius / tan(0.5 * slope); /* of the wedge, to where the sphere touches */
+    scree_wall lid = {.kind = SCREE_WALL_PLANE,
+                      .material = 1,
+                      .position = {-along, 0, 1e-5},
+                      .axis = {sin(slope), 0, -cos(slope)},
+                      .velocity = {0, 0, -0.02}};
+    CHECK_OK(scree_world_add_wall(world, &lid, NULL, &error), error);
+    law_body(world, sphere, (scree_body){.position = {0, 0, radius}, .orientation = {1, 0, 0, 0}});
+    scree_status status = SCREE_OK;
+    while (!status && scree_world_time(world) < 0.2) status = scree_world_step(world, 100, &error);
+    assert_int_equal(status, holds ? SCREE_DIVERGED : SCREE_OK);
+    if (holds) {
+      print_message("%s\n", error.message);
+      assert_non_null(strstr(error.message, "body 0 is pinched between wall"));
+    }
+    scree_world_free(world);
+    scree_particle_free(sphere);
+  }
+}
+
 int main(int argc, char **argv) {
   if (argc > 1 && strcmp(argv[1], "full") == 0) longer = 10;
-  const struct CMUnitTest tests[] = {cmocka_unit_test(bodies_stay_in_equipment)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(bodies_stay_in_equipment),
+                                     cmocka_unit_test(a_pinched_sphere_is_named)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
