@@ -29,7 +29,7 @@ static const cli_option options[] = {
     {"output", CLI_TEXT, AT(output), "OUT",
      "What to write (required). Of a surface: .stl, .ply, .obj, .off or .3mf, with a .json of the "
      "same "
-     "name beside it, or .vtp. Of a checkpoint: .vtp, or a folder. Of several: .pvd or "
+     "name beside it, or .vtp. Of a checkpoint: .vtp, .csv, or a folder. Of several: .pvd or "
      ".vtp.series, "
      "with a .vtp each beside it.",
      0, 0, NULL},
@@ -258,13 +258,26 @@ static scree_status write_view(const cli_call *call, const checkpoint *c, const 
   return cli_refuse(error, SCREE_UNSUPPORTED, word, "a frame holds no contacts; a checkpoint does");
 }
 
+static bool is_table(const char *path) {
+  return cli_has_ending(path, ".csv");
+}
+
+static scree_status write_table(const cli_call *call, const checkpoint *c, scree_error *error) {
+  const export_arguments *a = call->options;
+  if (c->scene) return scree_scene_bodies_write(c->scene, a->output, a->overwrite, error);
+  return cli_refuse(error, SCREE_UNSUPPORTED, call->inputs[0],
+                    "a table names shapes of a scene; this is a checkpoint of a world alone");
+}
+
 static scree_status export_world(const cli_call *call, scree_error *error) {
   const export_arguments *a = call->options;
   scree_export_options o = export_options(call);
   checkpoint c;
   scree_status status = load_checkpoint(call->inputs[0], &c, error);
   if (status != SCREE_OK) return status;
-  if (cli_has_ending(a->output, ".vtp"))
+  if (is_table(a->output))
+    status = write_table(call, &c, error);
+  else if (cli_has_ending(a->output, ".vtp"))
     status = write_view(call, &c, call->inputs[0], a->output, error);
   else
     status = scree_world_export(c.world, &o, a->output, error);
@@ -354,9 +367,10 @@ static int check_call(const cli_call *call, bool world) {
                       "-o %s: of a surface, .stl, .ply, .obj, .off, .3mf or .vtp is written",
                       a->output);
   if (world && known && !vtp)
-    return cli_misuse(
-        call->verb, "-o %s: of a checkpoint, a .vtp is written, or a folder with a mesh per shape",
-        a->output);
+    return cli_misuse(call->verb,
+                      "-o %s: of a checkpoint, a .vtp or .csv is written, or a folder with a mesh "
+                      "per shape",
+                      a->output);
   if (a->reference && (world || !vtp))
     return cli_misuse(call->verb, "--reference is for a surface written as .vtp");
   if (a->view && !(world && vtp))
@@ -427,7 +441,8 @@ const cli_verb cli_verb_export = {
         "fall into a box. Other codes read the mesh.\n\n"
         "For ParaView: a surface as .vtp with the area of every triangle, and with --reference its "
         "distance to another surface; lengths in metres.\n\n"
-        "A checkpoint or frame of a simulation becomes .vtp, as the view asked; or a folder: "
+        "A checkpoint or frame of a simulation becomes .vtp, as the view asked; of a scene .csv, a "
+        "table that `bodies: {file: ...}` of another scene reads; or a folder: "
         "pile.json and "
         "bodies.csv with every body's position, quaternion and velocities, and an STL per shape in "
         "the frame that the quaternions turn. docs/reference/formats.md has every field.",
@@ -436,7 +451,8 @@ const cli_verb cli_verb_export = {
                 "scree export result/phone.stl --reference phone.stl -o phone.vtp\n"
                 "scree export repose/checkpoint.scree --view contacts -o contacts.vtp\n"
                 "scree export repose/last.scree --to m -o pile\n"
-                "scree export repose/frame-*.scree -o heap.pvd\n",
+                "scree export repose/frame-*.scree -o heap.pvd\n"
+                "scree export repose/last.scree -o packing.csv\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .defaults = &defaults,

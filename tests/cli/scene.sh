@@ -52,6 +52,10 @@ wait $victim 2>/dev/null
 "$SCREE" run small.yaml --set output.checkpoint=0.01 -o killed --no-picture -q --resume >/dev/null
 cmp out/series.csv killed/series.csv && echo same series
 cmp out/motion.scree killed/motion.scree && echo same motion
+# the table of bodies, which another scene reads
+run export out/checkpoint.scree -o table.csv
+cmp table.csv out/bodies.csv && echo same table
+run export out/checkpoint.scree -o table.csv
 # one that leaves the range of the contact law names the wall; its state is kept, and its report plays up to it
 run run small.yaml --set materials.grain.young=1e4 --set time=1 -o soft --no-picture -q 2>&1 | grep '^scree' |
   sed -E "s/(step|body|by) [0-9.]+/\\1 N/g; s/wall [0-9]+/wall N/g; s/is '[a-z]+'/is NAME/"
