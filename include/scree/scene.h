@@ -134,6 +134,10 @@ SCREE_API void scree_scene_foretell(const scree_scene *scene, scree_scene_foreca
 enum { SCREE_REMARK = 600 };
 SCREE_API bool scree_scene_remark(const scree_scene *scene, size_t index, char text[SCREE_REMARK]);
 
+/* What cannot be read off it, and why, as a sentence: an index of mixing whose cells hold too few
+ * bodies. To be called with 0, 1, 2, ... until it is false. */
+SCREE_API bool scree_scene_doubt(const scree_scene *scene, size_t index, char text[SCREE_REMARK]);
+
 /* Names belong to the scene; NULL past the last. */
 SCREE_API const char *scree_scene_shape_name(const scree_scene *scene, size_t index);
 SCREE_API const char *scree_scene_shape_source(const scree_scene *scene, size_t index);

@@ -302,6 +302,8 @@ static void print_summary(FILE *stream, const scree_scene *scene, const char *st
           o.coordination, 1e6 * o.largest_overlap);
   fprintf(stream, "  energy that the sums miss: %.2g of all that changed its form\n", b.ledger);
   print_sensors(stream, scene);
+  char doubt[SCREE_REMARK];
+  for (size_t i = 0; scree_scene_doubt(scene, i, doubt); i++) fprintf(stream, "  %s\n", doubt);
   print_piles(stream, scene);
 }
 

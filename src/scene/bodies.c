@@ -124,6 +124,10 @@ static scree_status read_body(const table *t, char *line, scree_scene *scene, sc
     return fail(t, error, "no shape '%.40s' of that name and size", shape ? shape : "");
   scree_body body = scree_default_body();
   memcpy(body.position, v, sizeof body.position);
+  for (int k = 0; k < 3; k++) {
+    scene->table_low[k] = fmin(scene->table_low[k], v[k]);
+    scene->table_high[k] = fmax(scene->table_high[k], v[k]);
+  }
   memcpy(body.orientation, v + 3, sizeof body.orientation);
   memcpy(body.velocity, v + 7, sizeof body.velocity);
   memcpy(body.angular_velocity, v + 10, sizeof body.angular_velocity);

@@ -1,7 +1,7 @@
 /* The domain of a scene that names none: the box of all that it has, geometry where it stands now,
- * inlets, outlets and where sensors look, and as much again on every side. What has left that has
- * fallen past all of it and would fall for ever. Planes and endless cylinders have no end along
- * themselves, and layers none upwards. */
+ * inlets, bodies of its table, outlets and where sensors look, and as much again on every side.
+ * What has left that has fallen past all of it and would fall for ever. Planes and endless
+ * cylinders have no end along themselves, and layers none upwards. */
 #include "scene/scene.h"
 
 #include "particle/tree.h"
@@ -87,6 +87,7 @@ scree_scene_reach scree_scene_domain(const scree_scene *scene) {
   const scree_plan *plan = &scene->plan;
   scree_scene_reach reach = scree_scene_reach_of(scene);
   double margin = 0;
+  take_in(&reach, scene->table_low, scene->table_high);
   for (size_t i = 0; i < plan->outlets.count; i++) {
     const scree_plan_box *box = SCREE_PLAN_AT(plan, outlets, scree_plan_outlet, i)->box;
     take_in(&reach, box->min, box->max);

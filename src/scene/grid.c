@@ -84,14 +84,17 @@ scree_status scree_scene_plan_grid(scree_scene *scene, scree_scene_sensor *senso
                                    scree_error *error) {
   const scree_plan_grid *plan = sensor->plan->grid;
   scree_scene_grid *made = scree_arena_take(&scene->arena, 1, sizeof *made);
-  size_t count = cell_count(plan), numbers = count * (SCREE_GRID_SUMS + scene->plan.families.count);
+  size_t families = scene->plan.families.count, count = cell_count(plan),
+         numbers = count * (SCREE_GRID_SUMS + families);
   if (!made) return scree_fail_memory(error, sizeof *made, "a grid");
   *made = (scree_scene_grid){.cell_count = count, .number_count = numbers};
   made->sums = scree_arena_take(&scene->arena, numbers, sizeof *made->sums);
+  made->mixing = scree_arena_take(&scene->arena, 2 * families, sizeof *made->mixing);
   made->middles = scree_arena_take(&scene->arena, count, sizeof *made->middles);
-  if (!made->sums || !made->middles)
+  if (!made->sums || !made->mixing || !made->middles)
     return scree_fail_memory(error, numbers * sizeof *made->sums, "a grid");
   memset(made->sums, 0, numbers * sizeof *made->sums);
+  memset(made->mixing, 0, 2 * families * sizeof *made->mixing);
   size_t n[3], at = 0;
   cells_of(plan, n);
   for (size_t k = 0; k < n[2]; k++)
@@ -192,25 +195,61 @@ static bool put_contact(void *context, const scree_contact *c) {
   return true;
 }
 
+/* Puts it where the grid stands: in the frame of the geometry that it goes with. */
+static void place_frame(const scree_scene *scene, const scree_scene_sensor *sensor, sampling *s) {
+  s->rotation = quat_to_mat3((quat){1, 0, 0, 0});
+  if (!sensor->plan->grid->with) return;
+  size_t wall_index = scene->geometry[sensor->geometry].first_wall;
+  double q[4];
+  scree_wall wall;
+  scree_world_get_wall(scene->world, wall_index, &wall);
+  scree_world_wall_orientation(scene->world, wall_index, q);
+  s->at = vec3_load(wall.position);
+  s->velocity = vec3_load(wall.velocity);
+  s->spin = vec3_load(wall.angular_velocity);
+  s->rotation = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+}
+
 static sampling begin(scree_scene *scene, scree_scene_sensor *sensor) {
   const scree_plan_grid *plan = sensor->plan->grid;
   sampling s = {.scene = scene, .sensor = sensor};
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++)
     s.width = fmax(s.width, scene->shapes[i].particle->measures.size);
   if (!isnan(plan->width)) s.width = plan->width;
-  s.rotation = quat_to_mat3((quat){1, 0, 0, 0});
   s.scale = 1 / (turn * s.width * s.width * sqrt(turn) * s.width);
-  if (!plan->with) return s;
-  size_t wall_index = scene->geometry[sensor->geometry].first_wall;
-  double q[4];
-  scree_wall wall;
-  scree_world_get_wall(scene->world, wall_index, &wall);
-  scree_world_wall_orientation(scene->world, wall_index, q);
-  s.at = vec3_load(wall.position);
-  s.velocity = vec3_load(wall.velocity);
-  s.spin = vec3_load(wall.angular_velocity);
-  s.rotation = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  place_frame(scene, sensor, &s);
   return s;
+}
+
+bool scree_grid_cell_at(const scree_scene *scene, const scree_scene_sensor *sensor, vec3 place,
+                        size_t *cell) {
+  const scree_plan_grid *plan = sensor->plan->grid;
+  sampling s = {.scene = scene};
+  size_t n[3];
+  double at[3]; /* of the way through the grid, from 0 to 1 */
+  cells_of(plan, n);
+  place_frame(scene, sensor, &s);
+  vec3 p = into_frame(&s, place);
+  if (plan->box) {
+    vec3_store(at, p);
+    for (int k = 0; k < 3; k++)
+      at[k] = (at[k] - plan->box->min[k]) / (plan->box->max[k] - plan->box->min[k]);
+  } else {
+    const scree_plan_cylinder *c = plan->cylinder;
+    vec3 axis = vec3_unit(vec3_load(c->axis)), d = vec3_sub(p, vec3_load(c->at)), u, v;
+    vec3_frame(axis, &u, &v);
+    double x = vec3_dot(d, u), y = vec3_dot(d, v), angle = scree_atan2(y, x) / turn;
+    at[0] = sqrt(x * x + y * y) / c->radius;
+    at[1] = angle < 0 ? angle + 1 : angle;
+    at[2] = vec3_dot(d, axis) / c->length;
+  }
+  *cell = 0;
+  for (int k = 2; k >= 0; k--) {
+    if (!(at[k] >= 0 && at[k] <= 1)) return false;
+    size_t i = (size_t)(at[k] * (double)n[k]);
+    *cell = *cell * n[k] + (i < n[k] ? i : n[k] - 1);
+  }
+  return true;
 }
 
 static uint64_t interval_of(const scree_scene *scene, const scree_plan_grid *plan) {
@@ -238,6 +277,7 @@ scree_status scree_scene_watch_grids(scree_scene *scene, scree_error *error) {
     sampling s = begin(scene, sensor);
     put_bodies(&s);
     status = scree_world_visit_contacts(scene->world, put_contact, &s, error);
+    if (status == SCREE_OK) status = scree_grid_sample_mixing(scene, sensor, error);
     sensor->grid->sample_count++;
   }
   return status;

@@ -18,6 +18,7 @@ enum {
 struct scree_scene_grid {
   size_t cell_count, number_count;
   double *sums;
+  double *mixing;        /* of each family: sum of its Lacey's index over samples, their count */
   vec3 *middles;         /* of the cells, in the grid's frame */
   uint64_t next;         /* step of the next sample */
   uint64_t sample_count; /* taken */
@@ -30,6 +31,12 @@ typedef struct scree_grid_fields {
 } scree_grid_fields;
 scree_grid_fields scree_grid_fields_at(const scree_scene *scene, const scree_scene_sensor *sensor,
                                        size_t cell);
+/* Where a place in space is; false: beyond the grid. */
+bool scree_grid_cell_at(const scree_scene *scene, const scree_scene_sensor *sensor, vec3 place,
+                        size_t *cell);
+/* mixing.c */
+scree_status scree_grid_sample_mixing(const scree_scene *scene, const scree_scene_sensor *sensor,
+                                      scree_error *error);
 /* Counted along x, y, z, or outward, around, along. */
 vec3 scree_grid_corner(const scree_plan_grid *plan, size_t i, size_t j, size_t k);
 

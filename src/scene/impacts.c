@@ -20,37 +20,23 @@ enum { LOOKS = 4 }; /* in the shortest contact, which lasts twice `contact.steps
 
 /* ---- classes ---- */
 
-static bool by_material(const scree_scene_sensor *sensor) {
-  return sensor->plan->impacts->by == 1;
+static int by_of(const scree_scene_sensor *sensor) {
+  return sensor->plan->impacts->by ? SCREE_BY_MATERIAL : SCREE_BY_SHAPE;
 }
 
 static size_t body_class(const scree_scene *scene, const scree_scene_sensor *sensor, size_t body) {
-  size_t shape = scene->shape_of.items[body];
-  return by_material(sensor) ? scene->shapes[shape].material : scene->shapes[shape].family;
-}
-
-static size_t body_class_count(const scree_scene *scene, const scree_scene_sensor *sensor) {
-  size_t materials = scene->plan.materials.count;
-  return by_material(sensor) ? (materials ? materials : 1) : scene->plan.families.count;
+  return scree_scene_class_of(scene, by_of(sensor), scene->shape_of.items[body]);
 }
 
 size_t scree_impact_class_count(const scree_scene *scene, const scree_scene_sensor *sensor) {
-  size_t n = body_class_count(scene, sensor);
+  size_t n = scree_scene_class_count(scene, by_of(sensor));
   return n * (n + 1) / 2 + n * scene->plan.geometry.count;
-}
-
-static const char *body_class_name(const scree_scene *scene, const scree_scene_sensor *sensor,
-                                   size_t index) {
-  if (!by_material(sensor))
-    return SCREE_PLAN_AT(&scene->plan, families, scree_plan_shape, index)->place.name;
-  if (scene->plan.materials.count == 0) return "bodies";
-  return SCREE_PLAN_AT(&scene->plan, materials, scree_plan_material, index)->place.name;
 }
 
 /* First the pairs of bodies, (0, 0), (0, 1), (1, 1), (0, 2), ..., then bodies and geometry. */
 static size_t class_of(const scree_scene *scene, const scree_scene_sensor *sensor,
                        const scree_scene_hit *hit) {
-  size_t n = body_class_count(scene, sensor), i = body_class(scene, sensor, hit->a);
+  size_t n = scree_scene_class_count(scene, by_of(sensor)), i = body_class(scene, sensor, hit->a);
   if (hit->wall)
     return n * (n + 1) / 2 + i * scene->plan.geometry.count +
            scree_scene_wall_geometry(scene, hit->b);
@@ -60,17 +46,17 @@ static size_t class_of(const scree_scene *scene, const scree_scene_sensor *senso
 
 void scree_impact_class_names(const scree_scene *scene, const scree_scene_sensor *sensor,
                               size_t index, const char *names[2]) {
-  size_t n = body_class_count(scene, sensor), pairs = n * (n + 1) / 2;
+  size_t n = scree_scene_class_count(scene, by_of(sensor)), pairs = n * (n + 1) / 2;
   if (index >= pairs) {
     size_t walls = scene->plan.geometry.count;
-    names[0] = body_class_name(scene, sensor, (index - pairs) / walls);
+    names[0] = scree_scene_class_name(scene, by_of(sensor), (index - pairs) / walls);
     names[1] = scree_scene_geometry_name(scene, (index - pairs) % walls);
     return;
   }
   size_t high = 0;
   while ((high + 1) * (high + 2) / 2 <= index) high++;
-  names[0] = body_class_name(scene, sensor, index - high * (high + 1) / 2);
-  names[1] = body_class_name(scene, sensor, high);
+  names[0] = scree_scene_class_name(scene, by_of(sensor), index - high * (high + 1) / 2);
+  names[1] = scree_scene_class_name(scene, by_of(sensor), high);
 }
 
 /* ---- room ---- */

@@ -1,4 +1,4 @@
-/* What takes more than a sum to measure: the angle of repose, the slope of a surface, mixing. */
+/* What takes more than a sum to measure: the angle of repose, the slope of a surface. */
 #include "scene/scene.h"
 
 #include "base/alloc.h"
@@ -272,59 +272,5 @@ scree_status scree_scene_measure_slope(const scree_scene *scene, const scree_pla
   }
   *at = slope_of(&field);
   scree_height_field_free(&field);
-  return SCREE_OK;
-}
-
-/* ---- mixing ---- */
-
-typedef struct cell_body {
-  int64_t cell[3];
-  uint32_t shape;
-} cell_body;
-
-static int by_cell(const void *a, const void *b) {
-  const cell_body *p = a, *q = b;
-  for (int k = 0; k < 3; k++)
-    if (p->cell[k] != q->cell[k]) return p->cell[k] < q->cell[k] ? -1 : 1;
-  return (p->shape > q->shape) - (p->shape < q->shape);
-}
-
-/* Lacey's index (1954) of one shape against all others: (s0^2 - s^2) / (s0^2 - sr^2), where s0^2 =
- * p(1 - p) is the variance between cells when apart, and sr^2 = s0^2 / n that of a random mixture
- * in cells of n bodies. Cells count by their bodies. 0: apart, 1: mixed. */
-static double lacey(const cell_body *bodies, size_t count, uint32_t shape) {
-  double of_shape = 0, cells = 0, sum = 0;
-  for (size_t i = 0; i < count; i++) of_shape += bodies[i].shape == shape;
-  double p = of_shape / (double)count, apart = p * (1 - p);
-  for (size_t i = 0, j; i < count; i = j) {
-    double in = 0;
-    for (j = i; j < count && !memcmp(bodies[i].cell, bodies[j].cell, sizeof bodies[i].cell); j++)
-      in += bodies[j].shape == shape;
-    double n = (double)(j - i), share = in / n;
-    sum += n * (share - p) * (share - p);
-    cells++;
-  }
-  double mixed = apart * cells / (double)count;
-  return apart > 0 && apart > mixed ? (apart - sum / (double)count) / (apart - mixed) : NAN;
-}
-
-scree_status scree_scene_measure_mixing(const scree_scene *scene,
-                                        const scree_plan_segregation *plan, double *at,
-                                        scree_error *error) {
-  size_t count = 0, shapes = SCREE_SCENE_SHAPES(scene);
-  cell_body *bodies = scree_alloc(scene->shape_of.count, sizeof *bodies);
-  if (!bodies)
-    return scree_fail_memory(error, scene->shape_of.count * sizeof *bodies, "a segregation");
-  for (size_t b = 0; b < scene->shape_of.count; b++) {
-    scree_body body;
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_world_get_body(scene->world, b, &body);
-    for (int k = 0; k < 3; k++)
-      bodies[count].cell[k] = (int64_t)floor(body.position[k] / plan->cells);
-    bodies[count++].shape = scene->shape_of.items[b];
-  }
-  if (count) qsort(bodies, count, sizeof *bodies, by_cell);
-  for (size_t s = 0; s < shapes; s++) at[s] = count ? lacey(bodies, count, (uint32_t)s) : NAN;
-  scree_free(bodies);
   return SCREE_OK;
 }

@@ -198,6 +198,7 @@ typedef struct scree_plan_slope {
 typedef struct scree_plan_segregation {
   scree_place place;
   double cells;
+  int by; /* SCREE_BY_... */
 } scree_plan_segregation;
 
 typedef struct scree_plan_impacts {

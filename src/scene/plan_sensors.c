@@ -85,12 +85,14 @@ static const scree_record slope_record = {"a slope", FIELDS(slope_fields), sizeo
 static const scree_field segregation_fields[] = {
     {"cells", SCREE_FIELD_REAL, offsetof(scree_plan_segregation, cells), 1e-9, 1e6, "m",
      "side of the cells that are compared", NULL},
+    {"by", SCREE_FIELD_WORD, offsetof(scree_plan_segregation, by), 0, 0, "size|shape|material",
+     "classes: of a shape's sizes each, all of a shape, all of a material", NULL},
 };
 static scree_status check_segregation(const scree_reader *r, const void *record) {
   const scree_plan_segregation *s = record;
   return given(&s->cells) ? SCREE_OK : scree_fail_place(r, &s->place, "needs cells: their side");
 }
-static const scree_plan_segregation segregation_defaults = {{0}, NAN};
+static const scree_plan_segregation segregation_defaults = {{0}, NAN, 0};
 static const scree_record segregation_record = {"segregation", FIELDS(segregation_fields),
                                                 sizeof(scree_plan_segregation),
                                                 &segregation_defaults, check_segregation};

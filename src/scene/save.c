@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-static const scree_seal seal = {"screeSCN", "checkpoint of a scree scene", "scene", 5};
+static const scree_seal seal = {"screeSCN", "checkpoint of a scree scene", "scene", 6};
 
 /* ---- the fields, in and out alike ---- */
 
@@ -28,6 +28,8 @@ static void code_books(scree_codec *c, scree_scene *scene) {
                      &scene->entered_energy, &scene->left_energy};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   uint32_t end = (uint32_t)scene->end;
+  scree_code_reals(c, scene->table_low, 3);
+  scree_code_reals(c, scene->table_high, 3);
   scree_code_u64(c, &scene->tick_steps);
   scree_code_u64(c, &scene->next_tick);
   code_size(c, &scene->still_ticks);
@@ -122,6 +124,7 @@ static void code_sensor(scree_codec *c, scree_scene *scene, scree_scene_sensor *
   if (sensor->impacts) code_impacts(c, sensor->impacts);
   if (sensor->grid) {
     scree_code_reals(c, sensor->grid->sums, sensor->grid->number_count);
+    scree_code_reals(c, sensor->grid->mixing, 2 * scene->plan.families.count);
     scree_code_u64(c, &sensor->grid->next);
     scree_code_u64(c, &sensor->grid->sample_count);
   }

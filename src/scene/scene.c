@@ -247,6 +247,7 @@ scree_status scree_scene_prepare(scree_scene *scene, scree_error *error) {
     memset(*arrays[i].items, 0, arrays[i].count * arrays[i].size);
   }
   scene->still_since = NAN;
+  for (int k = 0; k < 3; k++) scene->table_low[k] = INFINITY, scene->table_high[k] = -INFINITY;
   scene->costs.piece_count = 1;
   status = scree_scene_plan_parts(scene, error);
   if (status != SCREE_OK) return status;

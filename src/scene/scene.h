@@ -154,6 +154,8 @@ struct scree_scene {
   size_t still_ticks;
   double entered_mass, left_mass, entered_energy, left_energy;
   size_t left_count;
+  double table_low[3],
+      table_high[3];  /* m: the box of the bodies from a table; low above high: none */
   int end;            /* index into the reasons; 0: it goes on */
   size_t phase;       /* index; their count: all are over */
   double phase_start; /* s */
@@ -281,7 +283,13 @@ typedef struct scree_scene_reach {
 scree_scene_reach scree_scene_reach_of(const scree_scene *scene);
 scree_scene_reach scree_scene_domain(const scree_scene *scene);
 
-/* sensors.c: whether now is between a sensor's `from` and `until`. */
+/* sensors.c: classes of bodies, by which the numbers of some sensors come: of a shape's sizes each,
+ * all of a shape of the file, all of a material. */
+enum { SCREE_BY_SIZE, SCREE_BY_SHAPE, SCREE_BY_MATERIAL };
+size_t scree_scene_class_count(const scree_scene *scene, int by);
+size_t scree_scene_class_of(const scree_scene *scene, int by, size_t shape);
+const char *scree_scene_class_name(const scree_scene *scene, int by, size_t index);
+/* Whether now is between a sensor's `from` and `until`. */
 bool scree_scene_is_watching(const scree_scene *scene, const scree_scene_sensor *sensor);
 scree_status scree_scene_plan_columns(scree_scene *scene, scree_error *error);
 /* Of flows: who crossed since the last tick. */
@@ -333,9 +341,9 @@ scree_status scree_scene_put_pile(const scree_scene *scene, const scree_plan_pil
 enum { SCREE_PILE_COLUMNS = 11 };
 scree_status scree_scene_measure_slope(const scree_scene *scene, const scree_plan_slope *plan,
                                        double *at, scree_error *error);
-scree_status scree_scene_measure_mixing(const scree_scene *scene,
-                                        const scree_plan_segregation *plan, double *at,
-                                        scree_error *error);
+/* mixing.c: bodies in a cell, then the index of each class. */
+scree_status scree_scene_measure_mixing(const scree_scene *scene, const scree_scene_sensor *sensor,
+                                        double *at, scree_error *error);
 
 /* scene.c: the arrays of a scene that has a plan; then, with its particles, gallery and world. */
 scree_status scree_scene_prepare(scree_scene *scene, scree_error *error);

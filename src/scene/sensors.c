@@ -15,6 +15,28 @@ bool scree_scene_is_watching(const scree_scene *scene, const scree_scene_sensor 
   return time >= sensor->plan->from && !(time > sensor->plan->until);
 }
 
+size_t scree_scene_class_count(const scree_scene *scene, int by) {
+  size_t materials = scene->plan.materials.count;
+  return by == SCREE_BY_SIZE    ? SCREE_SCENE_SHAPES(scene)
+         : by == SCREE_BY_SHAPE ? scene->plan.families.count
+         : materials            ? materials
+                                : 1;
+}
+
+size_t scree_scene_class_of(const scree_scene *scene, int by, size_t shape) {
+  const scree_scene_shape *s = &scene->shapes[shape];
+  return by == SCREE_BY_SIZE ? shape : by == SCREE_BY_SHAPE ? s->family : s->material;
+}
+
+const char *scree_scene_class_name(const scree_scene *scene, int by, size_t index) {
+  const scree_plan *plan = &scene->plan;
+  if (by == SCREE_BY_SIZE) return scree_scene_shape_name(scene, index);
+  if (by == SCREE_BY_SHAPE)
+    return SCREE_PLAN_AT(plan, families, scree_plan_shape, index)->place.name;
+  if (plan->materials.count == 0) return "bodies";
+  return SCREE_PLAN_AT(plan, materials, scree_plan_material, index)->place.name;
+}
+
 /* ---- columns ---- */
 
 /* What is always there. */
@@ -64,13 +86,21 @@ static bool add_column(scree_scene *scene, const char *unit, const char *format,
   return SCREE_PUSH(&scene->columns, column);
 }
 
-/* SENSOR.WHAT, and where there are several shapes SENSOR.WHAT.SHAPE. */
-static bool add_by_shape(scree_scene *scene, const char *sensor, const char *what, const char *unit,
-                         bool total) {
-  bool good = !total || add_column(scene, unit, "%s.%s", sensor, what);
-  for (size_t s = 0; good && SCREE_SCENE_SHAPES(scene) > 1 && s < SCREE_SCENE_SHAPES(scene); s++)
-    good = add_column(scene, unit, "%s.%s.%s", sensor, what, scree_scene_shape_name(scene, s));
+/* Where there are several classes, SENSOR.WHAT.CLASS of each. */
+static bool add_classes(scree_scene *scene, const char *sensor, const char *what, const char *unit,
+                        int by) {
+  size_t count = scree_scene_class_count(scene, by);
+  bool good = true;
+  for (size_t c = 0; good && count > 1 && c < count; c++)
+    good = add_column(scene, unit, "%s.%s.%s", sensor, what, scree_scene_class_name(scene, by, c));
   return good;
+}
+
+/* SENSOR.WHAT, and of each class. */
+static bool add_by_class(scree_scene *scene, const char *sensor, const char *what, const char *unit,
+                         int by) {
+  return add_column(scene, unit, "%s.%s", sensor, what) &&
+         add_classes(scene, sensor, what, unit, by);
 }
 
 static bool add_all(scree_scene *scene, const char *sensor, const char *const *names_units) {
@@ -138,13 +168,13 @@ static bool add_sensor(scree_scene *scene, const scree_scene_sensor *sensor) {
   static const char *const position[] = {"x", "m", "y", "m", "z", "m", NULL};
   const char *name = plan->place.name;
   if (plan->flow)
-    return add_by_shape(scene, name, "count", "", true) &&
-           add_by_shape(scene, name, "mass", "kg", true) &&
-           add_by_shape(scene, name, "rate", "1/s", true) &&
-           add_by_shape(scene, name, "mass_rate", "kg/s", true);
+    return add_by_class(scene, name, "count", "", SCREE_BY_SIZE) &&
+           add_by_class(scene, name, "mass", "kg", SCREE_BY_SIZE) &&
+           add_by_class(scene, name, "rate", "1/s", SCREE_BY_SIZE) &&
+           add_by_class(scene, name, "mass_rate", "kg/s", SCREE_BY_SIZE);
   if (plan->region)
-    return add_by_shape(scene, name, "count", "", true) &&
-           add_by_shape(scene, name, "mass", "kg", true) &&
+    return add_by_class(scene, name, "count", "", SCREE_BY_SIZE) &&
+           add_by_class(scene, name, "mass", "kg", SCREE_BY_SIZE) &&
            add_column(scene, "", "%s.packing", name) &&
            add_column(scene, "m/s", "%s.mean_speed", name);
   if (plan->wall) return add_all(scene, name, wall);
@@ -152,11 +182,15 @@ static bool add_sensor(scree_scene *scene, const scree_scene_sensor *sensor) {
   if (plan->part) return add_all(scene, name, is_hinge(scene, sensor) ? hinge : slide);
   if (plan->pile) return add_all(scene, name, pile);
   if (plan->slope) return add_column(scene, "deg", "%s.angle_deg", name);
-  if (plan->segregation) return add_by_shape(scene, name, "lacey", "", false);
-  if (plan->grid) return add_all(scene, name, grid);
+  if (plan->segregation)
+    return add_column(scene, "", "%s.per_cell", name) &&
+           add_classes(scene, name, "lacey", "", plan->segregation->by);
+  if (plan->grid)
+    return add_all(scene, name, grid) && add_classes(scene, name, "lacey", "", SCREE_BY_SHAPE);
   if (plan->impacts) return add_impacts(scene, sensor);
-  return add_by_shape(scene, name, "count", "", true) &&
-         add_by_shape(scene, name, "mean", "s", true) && add_by_shape(scene, name, "sd", "s", true);
+  return add_by_class(scene, name, "count", "", SCREE_BY_SIZE) &&
+         add_by_class(scene, name, "mean", "s", SCREE_BY_SIZE) &&
+         add_by_class(scene, name, "sd", "s", SCREE_BY_SIZE);
 }
 
 static bool allocate_sums(scree_scene *scene, scree_scene_sensor *sensor) {
@@ -376,6 +410,10 @@ static void read_grid(const scree_scene *scene, const scree_scene_sensor *sensor
   const double values[5] = {(double)sensor->grid->sample_count, solid,
                             mass > 0 ? speed / mass : NAN, mass > 0 ? heat / mass : NAN, press};
   memcpy(at, values, sizeof values);
+  for (size_t c = 0; scene->plan.families.count > 1 && c < scene->plan.families.count; c++) {
+    const double *mixing = sensor->grid->mixing + 2 * c;
+    at[5 + c] = mixing[1] > 0 ? mixing[0] / mixing[1] : NAN;
+  }
 }
 
 static void read_part(const scree_scene *scene, size_t geometry, double *at) {
@@ -439,7 +477,7 @@ static scree_status read_sensor(const scree_scene *scene, const scree_scene_sens
   else if (plan->slope)
     status = scree_scene_measure_slope(scene, plan->slope, at, error);
   else if (plan->segregation)
-    status = scree_scene_measure_mixing(scene, plan->segregation, at, error);
+    status = scree_scene_measure_mixing(scene, sensor, at, error);
   else if (plan->grid)
     read_grid(scene, sensor, at);
   else if (plan->impacts)

@@ -476,7 +476,9 @@ static scree_status check_time_step(scree_world *world, scree_error *error) {
   double coarsest =
       scree_world_choose_time_step(world, NULL) * world->options.steps_per_contact / 15;
   world->options = automatic;
-  if (world->bodies.count == 0 || world->time_step <= coarsest * (1 + 1e-12)) return SCREE_OK;
+  if (world->bodies.count == world->bodies.removed_count ||
+      world->time_step <= coarsest * (1 + 1e-12))
+    return SCREE_OK;
   world->time_step_stale = true;
   return scree_fail(error, SCREE_BAD_ARGUMENT,
                     "world: a time step of %.4g s is too long for these bodies: at most %.4g s "

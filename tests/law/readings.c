@@ -1,5 +1,5 @@
 /* What sensors read against closed forms: means and spreads over a window, the slope of a part of a
- * surface. Every series is the same for any number of threads, and when cut and resumed. */
+ * surface, mixing. Every series is the same for any number of threads, and when cut and resumed. */
 #include "scene/scene.h"
 #include "support/check.h"
 #include "support/folder.h"
@@ -134,10 +134,111 @@ static void slopes(void **state) {
   scree_scene_free(scene);
 }
 
+/* ---- mixing ---- */
+
+enum { ALONG = 20, HIGH = 10 }; /* balls of a block: 20 x 20 x 10, 10 mm apart */
+
+/* The block with each ball of one of two colours, as `is_red` deals them. */
+static void write_block(const char *name, bool (*is_red)(int i, int j, int k)) {
+  FILE *table = fopen(in_folder(name), "w");
+  assert_non_null(table);
+  fputs("shape,x [mm],y [mm],z [mm]\n", table);
+  for (int i = 0; i < ALONG; i++)
+    for (int j = 0; j < ALONG; j++)
+      for (int k = 0; k < HIGH; k++)
+        fprintf(table, "%s,%d,%d,%d\n", is_red(i, j, k) ? "red" : "blue", 10 * i - 95, 10 * j - 95,
+                10 * k + 5);
+  fclose(table);
+}
+
+static bool halves(int i, int j, int k) {
+  (void)j, (void)k;
+  return i < ALONG / 2;
+}
+static bool checkers(int i, int j, int k) {
+  return (i + j + k) % 2;
+}
+static uint64_t state_of_dice;
+static bool dice(int i, int j, int k) {
+  (void)i, (void)j, (void)k;
+  state_of_dice = state_of_dice * 6364136223846793005u + 1442695040888963407u;
+  return (state_of_dice >> 33) % 4 == 0;
+}
+
+static scree_scene *mixture(const char *file) {
+  char text[1500];
+  snprintf(text, sizeof text,
+           "time: 2e-4\ngravity: [0, 0, 0]\n"
+           "materials: {m: {young: 1e6, density: 1000}, n: {young: 1e6, density: 1000}}\n"
+           "shapes: {red: {sphere: 0.008, material: m}, blue: {sphere: 0.008, material: n}}\n"
+           "geometry: {table: {disc: {radius: 0.1}, material: m, at: [0, 0, -0.5]}}\n"
+           "bodies: {file: %s}\noutput: {series: 1e-4}\n"
+           "sensors:\n"
+           "  wide: {segregation: {cells: 5 cm}}\n"
+           "  by_m: {segregation: {cells: 5 cm, by: material}}\n"
+           "  fine: {segregation: {cells: 1 cm}}\n"
+           "  four: {segregation: {cells: 10 m}}\n"
+           "  box: {grid: {box: {min: [-0.1, -0.1, 0.5], max: [0.1, 0.1, 0.6]}, cells: [4, 4, 2], "
+           "with: table}}\n"
+           "  round: {grid: {cylinder: {at: [0, 0, 0], radius: 0.1, length: 0.1}, cells: [2, 8, "
+           "1]}}\n",
+           file);
+  FILE *in = fopen(in_folder(file), "r");
+  assert_non_null(in);
+  fclose(in);
+  scree_scene *scene = run_both(text);
+  return scene;
+}
+
+static void mixing(void **state) {
+  (void)state;
+  write_block("halves.csv", halves);
+  scree_scene *scene = mixture("halves.csv");
+  /* cells of 5 x 5 x 5 each have one colour */
+  CHECK_NEAR(value_of(scene, "wide.lacey.red"), 0, 1e-12);
+  CHECK_NEAR(value_of(scene, "wide.lacey.blue"), 0, 1e-12);
+  CHECK_NEAR(value_of(scene, "by_m.lacey.m"), 0, 1e-12);
+  CHECK_NEAR(value_of(scene, "wide.per_cell"), 125, 0);
+  CHECK_NEAR(value_of(scene, "box.lacey.red"), 0, 1e-12);
+  /* the axes of a cylinder's eight sectors may not be x and y: those that are cut have both */
+  assert_true(value_of(scene, "round.lacey.red") < 0.3);
+  CHECK_NEAR(value_of(scene, "four.lacey.red"), 0, 1e-12);
+  /* of single balls nothing can be told, and why is */
+  assert_true(isnan(value_of(scene, "fine.lacey.red")));
+  CHECK_NEAR(value_of(scene, "fine.per_cell"), 1, 0);
+  char text[SCREE_REMARK];
+  assert_true(scree_scene_doubt(scene, 0, text));
+  assert_non_null(strstr(text, "sensors.fine: 4000 bodies in 4000 cells"));
+  assert_false(scree_scene_doubt(scene, 1, text));
+  scree_scene_free(scene);
+
+  write_block("checkers.csv", checkers);
+  scene = mixture("checkers.csv"); /* more even than by chance: mixed, not above */
+  CHECK_NEAR(value_of(scene, "wide.lacey.red"), 1, 0);
+  CHECK_NEAR(value_of(scene, "box.lacey.red"), 1, 0);
+  scree_scene_free(scene);
+
+  /* by chance: 32 cells of 125, whose own scatter is 0.06, and the mean of many is 1 */
+  double sum = 0, least = 1;
+  for (int run = 0; run < 12; run++) {
+    write_block("dice.csv", dice);
+    scene = mixture("dice.csv");
+    double index = value_of(scene, "wide.lacey.red");
+    CHECK_NEAR(value_of(scene, "by_m.lacey.m"), index, 0);
+    CHECK_NEAR(value_of(scene, "box.lacey.red"), index, 1e-12);
+    assert_true(index <= 1 && value_of(scene, "round.lacey.red") <= 1);
+    sum += index / 12;
+    least = fmin(least, index);
+    scree_scene_free(scene);
+  }
+  assert_true(least > 0.98 && sum > 0.993);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(windows),
       cmocka_unit_test(slopes),
+      cmocka_unit_test(mixing),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,0 +1,153 @@
+/* Mixing by Lacey's index (Journal of Applied Chemistry 4, 257, 1954) of one class of bodies
+ * against all others: (s0^2 - s^2)/(s0^2 - sr^2). With a share p of the N bodies of all C cells
+ * that hold any, s^2 is the variance of the share between cells, by their bodies, s0^2 = p(1 - p)
+ * what it is when the classes are apart, and sr^2 = s0^2 (C - 1)/(N - 1) its expectation where
+ * bodies are dealt to the cells at random, without replacement. Of such a mixture s^2 N/s0^2 has
+ * the variance 2(C - 1) about C - 1, of which the index' own scatter about 1 follows; where that is
+ * large the cells hold too few bodies, and there is no index. What is by chance more even than a
+ * random mixture counts as mixed. */
+#include "scene/grid.h"
+
+#include "base/alloc.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double most_scatter = 0.1; /* standard deviation of a random mixture's index */
+
+typedef struct cell_body {
+  int64_t cell[3];
+  uint32_t class;
+} cell_body;
+
+typedef struct mixture {
+  cell_body *bodies; /* by cell */
+  size_t count;
+  double cells; /* that hold any */
+} mixture;
+
+static int by_cell(const void *a, const void *b) {
+  const cell_body *p = a, *q = b;
+  for (int k = 0; k < 3; k++)
+    if (p->cell[k] != q->cell[k]) return p->cell[k] < q->cell[k] ? -1 : 1;
+  return (p->class > q->class) - (p->class < q->class);
+}
+
+static double scatter_of(const mixture *m) {
+  double n = (double)m->count;
+  return sqrt(2 * (m->cells - 1)) / (n - n * (m->cells - 1) / (n - 1));
+}
+
+static bool is_fine_enough(const mixture *m) {
+  return m->cells > 1 && m->count > m->cells && scatter_of(m) <= most_scatter;
+}
+
+static double lacey(const mixture *m, uint32_t class) {
+  double of_class = 0, sum = 0, n = (double)m->count;
+  for (size_t i = 0; i < m->count; i++) of_class += m->bodies[i].class == class;
+  double p = of_class / n, apart = p * (1 - p);
+  if (!is_fine_enough(m) || !(apart > 0)) return NAN;
+  for (size_t i = 0, j; i < m->count; i = j) {
+    const cell_body *first = &m->bodies[i];
+    double in = 0;
+    for (j = i; j < m->count && !memcmp(first->cell, m->bodies[j].cell, sizeof first->cell); j++)
+      in += m->bodies[j].class == class;
+    double here = (double)(j - i), off = in / here - p;
+    sum += here * off * off;
+  }
+  double mixed = apart * (m->cells - 1) / (n - 1);
+  return fmin(1, (apart - sum / n) / (apart - mixed));
+}
+
+/* Where `find` says that a body is; false: nowhere. */
+typedef bool find_cell(const scree_scene *scene, const scree_scene_sensor *sensor,
+                       const double position[3], int64_t cell[3]);
+
+static bool find_cube(const scree_scene *scene, const scree_scene_sensor *sensor,
+                      const double position[3], int64_t cell[3]) {
+  (void)scene;
+  double side = sensor->plan->segregation->cells;
+  for (int k = 0; k < 3; k++) cell[k] = (int64_t)floor(position[k] / side);
+  return true;
+}
+
+static bool find_of_grid(const scree_scene *scene, const scree_scene_sensor *sensor,
+                         const double position[3], int64_t cell[3]) {
+  size_t index = 0;
+  bool inside = scree_grid_cell_at(scene, sensor, vec3_load(position), &index);
+  cell[0] = (int64_t)index, cell[1] = cell[2] = 0;
+  return inside;
+}
+
+static bool take_mixture(const scree_scene *scene, const scree_scene_sensor *sensor, int by,
+                         mixture *mixed) {
+  mixture m = {.bodies = scree_alloc(scene->shape_of.count, sizeof *m.bodies)};
+  find_cell *find = sensor->grid ? find_of_grid : find_cube;
+  if (!m.bodies) return false;
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    scree_body body;
+    cell_body *to = &m.bodies[m.count];
+    if (scree_world_body_removed(scene->world, b)) continue;
+    scree_world_get_body(scene->world, b, &body);
+    if (!find(scene, sensor, body.position, to->cell)) continue;
+    to->class = (uint32_t)scree_scene_class_of(scene, by, scene->shape_of.items[b]);
+    m.count++;
+  }
+  if (m.count) qsort(m.bodies, m.count, sizeof *m.bodies, by_cell);
+  for (size_t i = 0; i < m.count; i++)
+    m.cells += i == 0 || memcmp(m.bodies[i].cell, m.bodies[i - 1].cell, sizeof m.bodies[i].cell);
+  *mixed = m;
+  return true;
+}
+
+scree_status scree_scene_measure_mixing(const scree_scene *scene, const scree_scene_sensor *sensor,
+                                        double *at, scree_error *error) {
+  int by = sensor->plan->segregation->by;
+  size_t classes = scree_scene_class_count(scene, by);
+  mixture m;
+  if (!take_mixture(scene, sensor, by, &m))
+    return scree_fail_memory(error, scene->shape_of.count * sizeof *m.bodies, "a segregation");
+  *at++ = m.cells > 0 ? (double)m.count / m.cells : NAN;
+  for (size_t c = 0; classes > 1 && c < classes; c++) at[c] = lacey(&m, (uint32_t)c);
+  scree_free(m.bodies);
+  return SCREE_OK;
+}
+
+scree_status scree_grid_sample_mixing(const scree_scene *scene, const scree_scene_sensor *sensor,
+                                      scree_error *error) {
+  scree_scene_grid *grid = sensor->grid;
+  mixture m;
+  if (scene->plan.families.count < 2) return SCREE_OK;
+  if (!take_mixture(scene, sensor, SCREE_BY_SHAPE, &m))
+    return scree_fail_memory(error, scene->shape_of.count * sizeof *m.bodies, "a grid");
+  for (size_t c = 0; c < scene->plan.families.count; c++) {
+    double index = lacey(&m, (uint32_t)c);
+    if (isnan(index)) continue;
+    grid->mixing[2 * c] += index;
+    grid->mixing[2 * c + 1]++;
+  }
+  scree_free(m.bodies);
+  return SCREE_OK;
+}
+
+bool scree_scene_doubt(const scree_scene *scene, size_t index, char text[SCREE_REMARK]) {
+  for (size_t i = 0; i < scene->plan.sensors.count; i++) {
+    const scree_scene_sensor *sensor = &scene->sensors[i];
+    const scree_plan_sensor *plan = sensor->plan;
+    bool several = scree_scene_class_count(scene, plan->segregation ? plan->segregation->by
+                                                                    : SCREE_BY_SHAPE) > 1;
+    mixture m;
+    if (!several || !(plan->segregation || sensor->grid)) continue;
+    if (!take_mixture(scene, sensor, SCREE_BY_SHAPE, &m)) return false;
+    bool told = m.count > 0 && !is_fine_enough(&m) && index-- == 0;
+    scree_free(m.bodies);
+    if (!told) continue;
+    snprintf(
+        text, SCREE_REMARK,
+        "%s: %zu bodies in %.0f cells: too few in a cell, or too few cells, for Lacey's index, "
+        "which would scatter by more than %g; %s cells",
+        plan->place.path, m.count, m.cells, most_scatter, m.cells > 1 ? "larger" : "smaller");
+    return true;
+  }
+  return false;
+}
