@@ -14,6 +14,7 @@ import json
 import math
 import pathlib
 import random
+import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -46,10 +47,11 @@ def runs(folder, rows):
             lines.append(f"  {field}: [{', '.join(repr(row[k]) for row in rows)}]")
         lines += ["answers:"] + [f"  - {a}: {{{where}}}" if where else f"  - {a}" for _, a, where, _, _ in targets.values()]
         (folder / f"{experiment}.yaml").write_text("\n".join(lines) + "\n")
-        told = json.loads(common.run("study", folder / f"{experiment}.yaml", "-o", folder / experiment, "-q", "--json", "-j", 1))
+        words = [common.PROGRAM, "study", folder / f"{experiment}.yaml", "-o", folder / experiment, "-q", "--json", "-j", "1"]
+        told = json.loads(subprocess.run(words, stdout=subprocess.PIPE, text=True).stdout)  # 1 where a run failed
         for k, name in enumerate(targets):
             answers[name] = [list(point["answers"].values())[k]["mean"] for point in told["points"]]
-        seconds += sum(point["processor_seconds"] for point in told["points"] if point.get("processor_seconds"))
+        seconds += sum(point["seconds"]["mean"] or 0 for point in told["points"])
     return answers, seconds
 
 
@@ -96,7 +98,7 @@ def calibrate(index, table, method):
 
 
 def misfit(answers, measured, row):
-    """Sum of squares in units of a run's scatter; a heap too low to have an angle has none, 0 degrees."""
+    """Sum of squares in units of a run's scatter; a heap too low to have an angle has 0 degrees, a run that failed nothing."""
     return sum((((answers[n][row] or 0) - measured[n]) / math.hypot(t[3], t[4])) ** 2
                for n, t in TARGETS.items() if measured[n] is not None)
 
