@@ -76,6 +76,55 @@ SCREE_API scree_status scree_repose_measure(const scree_height_field *field,
                                             const scree_repose_options *options,
                                             scree_repose *repose, scree_error *error);
 
+/* ---- Heaps that were measured ---- */
+
+/* The floor in a scan: the plane that carries the heap. */
+typedef struct scree_ground {
+  double up[3], offset; /* its unit normal, towards the heap; points p of it: up . p = offset, m */
+  double share;         /* of the scan's surface that lies in it */
+  double rms;           /* m: scatter of that */
+  double filled;        /* share of the heap's cells that were holes */
+} scree_ground;
+
+/* The height field of a scanned heap: an open or closed surface in any orientation, with some of
+ * the floor around the heap. Finds the floor (random sample consensus, then least squares), turns
+ * it level and takes the surface above it; holes get the surface of a soap film, and what is no
+ * higher than three standard deviations of the floor's scatter is floor. cell: m, 0 for a 600th of
+ * the scan's width. SCREE_BAD_MESH where no plane has 5 % of the surface in it and all but 2 % of
+ * the rest on one side. Free *field with scree_height_field_free. The same bits for the same mesh.
+ * Cost: linear in triangles and cells. */
+SCREE_API scree_status scree_height_field_scan(const scree_mesh *scan, double cell,
+                                               scree_ground *ground, scree_height_field *field,
+                                               scree_error *error);
+
+/* A heap seen from the side: heights over the ground. */
+typedef struct scree_outline {
+  size_t count;
+  double *x, *z; /* m; x rises */
+} scree_outline;
+SCREE_API void scree_outline_free(scree_outline *outline);
+/* Of a CSV: x, z, a point a line, at least three; a head `x [mm], z [mm]` says the unit, else it is
+ * unit_m metres. SCREE_BAD_FILE with the line. */
+SCREE_API scree_status scree_outline_read(const char *path, double unit_m, scree_outline *outline,
+                                          scree_error *error);
+/* Of a picture (rows from the top, three bytes a pixel) whose pixels are `pixel` m wide: the
+ * largest piece that is unlike most of the uppermost row, dark or bright by the threshold of Otsu
+ * (1979). The ground is the silhouette's top at both edges of the picture, or its lower side where
+ * it does not reach them; the picture may be tilted. x is from the heap's axis. SCREE_BAD_FILE
+ * where greys are no silhouette, or the heap is cut off. */
+SCREE_API scree_status scree_outline_trace(const uint8_t *rgb, size_t width, size_t height,
+                                           double pixel, scree_outline *outline,
+                                           scree_error *error);
+/* The greatest heights of a field at x, less `axis`. */
+SCREE_API scree_status scree_outline_of_field(const scree_height_field *field, double axis,
+                                              scree_outline *outline, scree_error *error);
+/* scree_repose_measure of the solid that each side of the outline makes when turned about the
+ * heap's axis: four sectors, two of each side, and one silhouette, the outline itself. Heights
+ * below 0 are 0. cell: m, 0 for a 400th of the width. Of the options the counts are not used. */
+SCREE_API scree_status scree_outline_measure(const scree_outline *outline, double cell,
+                                             const scree_repose_options *options,
+                                             scree_repose *repose, scree_error *error);
+
 #ifdef __cplusplus
 }
 #endif

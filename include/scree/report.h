@@ -64,6 +64,10 @@ SCREE_API scree_status scree_render(const scree_render_cell *cells, size_t cell_
                                     const scree_progress *progress, scree_image *image,
                                     scree_error *error);
 
+/* Reads a PNG, what is transparent over white; at most 16384 pixels across. Needs a build with
+ * pictures, else SCREE_UNSUPPORTED. Free with scree_image_free. */
+SCREE_API scree_status scree_image_read_png(const char *path, scree_image *image,
+                                            scree_error *error);
 /* Writes a PNG; "-" is stdout. */
 SCREE_API scree_status scree_image_write_png(const scree_image *image, const char *path,
                                              bool overwrite, scree_error *error);
@@ -447,6 +451,21 @@ SCREE_API scree_status scree_particle_export(const scree_mesh *mesh,
 SCREE_API scree_status scree_world_export(const scree_world *world,
                                           const scree_export_options *options, const char *folder,
                                           scree_error *error);
+
+/* ---- Heaps that were measured: JSON ---- */
+
+/* A heap that `scree pile` measured of a scan, an outline or a picture. Texts are borrowed. */
+typedef struct scree_heap_entry {
+  const char *file, *kind, *command_line; /* kind: "scan", "outline" or "picture" */
+  const scree_repose *repose;
+  const scree_repose_options *options;
+  const scree_ground *ground; /* of a scan; else NULL */
+} scree_heap_entry;
+
+/* One object: version, command, the ground, the heap as in `piles` of a scene
+ * (docs/reference/formats.md). "-" is stdout. */
+SCREE_API scree_status scree_heap_json_write(const scree_heap_entry *entry, const char *path,
+                                             bool overwrite, scree_error *error);
 
 /* ---- Scenes: JSON and pictures ---- */
 

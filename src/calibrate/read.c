@@ -1,5 +1,6 @@
 /* The file of a calibration, by its table of fields; then what only the whole can say: which
  * parameter acts in which experiment, and which answers each has to give. */
+#include "base/curve_file.h"
 #include "base/file.h"
 #include "base/math.h"
 #include "base/number.h"
@@ -615,12 +616,6 @@ bool scree_calibration_is_search(const scree_calibration *c) {
 
 /* ---- curves ---- */
 
-/* The next number of a line, behind what parts them; NULL: there is none. */
-static const char *next_number(const char *at, const char *end, double *value) {
-  while (at < end && strchr(" \t,;", *at)) at++;
-  return scree_number_parse(at, end, value);
-}
-
 /* Means of MOST_CURVE equal parts, where there are more points. */
 static void thin_curve(scree_quantity *q, double *x, double *y, size_t count) {
   if (count > MOST_CURVE) {
@@ -647,36 +642,21 @@ static void thin_curve(scree_quantity *q, double *x, double *y, size_t count) {
 
 scree_status scree_quantity_read_curve(scree_calibration *c, scree_quantity *q, const char *path,
                                        scree_error *error) {
-  char *bytes;
-  size_t size, count = 0, line_number = 0;
-  scree_status status = scree_file_read(path, 16 << 20, &bytes, &size, error);
+  bool outline = !strcmp(q->plan->answer, "outline");
+  scree_curve_file read;
+  scree_status status = scree_curve_file_read(path, &read, error);
   if (status != SCREE_OK) return status;
-  double *x = scree_arena_take(&c->arena, size / 2 + 1, sizeof *x);
-  double *y = scree_arena_take(&c->arena, size / 2 + 1, sizeof *y);
-  if (!x || !y) status = scree_fail_memory(error, size, path);
-  bool begun = false;
-  for (const char *line = bytes; status == SCREE_OK && *line;) {
-    const char *end = line + strcspn(line, "\r\n"), *at;
-    line_number++;
-    at = next_number(line, end, &x[count]);
-    if (at) at = next_number(at, end, &y[count]);
-    bool blank = line == end || *line == '#';
-    if (at) {
-      if (count > 0 && !(x[count] > x[count - 1]))
-        status = scree_fail(error, SCREE_BAD_FILE, "%s, line %zu: %g does not come after %g", path,
-                            line_number, x[count], x[count - 1]);
-      count++;
-    } else if (!blank && begun) { /* the first line may be a head */
-      status =
-          scree_fail(error, SCREE_BAD_FILE, "%s, line %zu: needs two numbers", path, line_number);
-    }
-    begun = begun || !blank;
-    line = *end ? end + 1 : end;
+  status = scree_curve_file_convert(&read, 0, outline ? "m" : "s", 1, path, error);
+  if (status == SCREE_OK && outline)
+    status = scree_curve_file_convert(&read, 1, "m", 1, path, error);
+  double *x = scree_arena_take(&c->arena, read.count, sizeof *x);
+  double *y = scree_arena_take(&c->arena, read.count, sizeof *y);
+  if (status == SCREE_OK && (!x || !y)) status = scree_fail_memory(error, read.count, path);
+  if (status == SCREE_OK) {
+    memcpy(x, read.x, read.count * sizeof *x);
+    memcpy(y, read.y, read.count * sizeof *y);
+    thin_curve(q, x, y, read.count);
   }
-  scree_free(bytes);
-  if (status == SCREE_OK && count < 3)
-    status =
-        scree_fail(error, SCREE_BAD_FILE, "%s: a curve needs three points, not %zu", path, count);
-  if (status == SCREE_OK) thin_curve(q, x, y, count);
+  scree_curve_file_free(&read);
   return status;
 }

@@ -83,6 +83,7 @@ const cli_meaning cli_meanings[] = {
     {.name = "outside", .meaning = "How far spheres may stand out of the surface."},
     {.name = "pack-time", .meaning = "While particles are filled in."},
     {.name = "paper", .meaning = "Choose exactly as the paper did."},
+    {.name = "particle-size", .meaning = "Size of the particles of a measured heap."},
     {"particles", 'N', "How many particles.", 0, 0, NULL},
     {.name = "picture-width", .meaning = "What a picture shows across."},
     {.name = "points", .meaning = "Points that a distance is measured at."},

@@ -231,8 +231,7 @@ static void print_sensors(FILE *stream, const scree_scene *scene) {
   }
 }
 
-void cli_print_pile(FILE *stream, const scree_pile *pile) {
-  const scree_repose *r = &pile->repose;
+void cli_print_repose(FILE *stream, const scree_repose *r) {
   if (!r->heap) {
     fprintf(stream, "  angle of repose   none: no heap, %s\n", r->reason);
   } else {
@@ -246,7 +245,7 @@ void cli_print_pile(FILE *stream, const scree_pile *pile) {
             "                    %5.1f deg  by volume and centroid; the three differ by %.1f\n",
             r->volume_deg, r->spread_deg);
   }
-  if (pile->body_count == 0) return;
+  if (r->peak == 0) return;
   fprintf(stream, "  height            %5.0f mm, its highest point %.0f mm\n", 1e3 * r->height,
           1e3 * r->peak);
   if (isfinite(r->base_radius))
@@ -254,6 +253,11 @@ void cli_print_pile(FILE *stream, const scree_pile *pile) {
             1e3 * r->base_radius, 1e3 * r->run_out);
   else
     fprintf(stream, "  run-out           %5.0f mm\n", 1e3 * r->run_out);
+}
+
+void cli_print_pile(FILE *stream, const scree_pile *pile) {
+  cli_print_repose(stream, &pile->repose);
+  if (pile->body_count == 0) return;
   fprintf(stream, "  particles         %5zu in it, of %.1f mm (sphere of equal volume)\n",
           pile->body_count, 1e3 * pile->size);
   fprintf(stream, "  packing fraction  %5.2f\n", pile->packing_fraction);

@@ -35,7 +35,9 @@ scree_status cli_clear_scene_output(const cli_call *call, const char *folder, sc
 scree_status cli_run_scene(cli_scene_run *run, scree_error *error);
 void cli_scene_run_free(cli_scene_run *run);
 
-/* The heap, three ways, a line each. */
+/* A heap's angles, three ways, a line each, and its size. */
+void cli_print_repose(FILE *stream, const scree_repose *repose);
+/* The same of a pile, with its particles. */
 void cli_print_pile(FILE *stream, const scree_pile *pile);
 
 /* Words of the command line as what is poured: FILE, sample:NAME, sphere:LENGTH, NAME.csv, each in

@@ -1,6 +1,7 @@
-/* scree pile: a frame or a checkpoint, measured again. */
+/* scree pile: a heap of a scene measured again, or a real one from its scan, outline or picture. */
 #include "base/platform.h"
 #include "cli/output.h"
+#include "cli/pile_measured.h"
 #include "cli/scene_run.h"
 
 #include <math.h>
@@ -9,6 +10,7 @@
 typedef struct pile_arguments {
   const char *cell, *sectors, *band_low, *band_high; /* in the order of `settings` */
   const char *picture, *size;
+  double unit, particle_size;
   double azimuth_deg, elevation_deg, picture_width;
   size_t rays;
   int vtp_view;
@@ -16,7 +18,8 @@ typedef struct pile_arguments {
   bool json, csv, force;
 } pile_arguments;
 
-static const pile_arguments defaults = {.size = "1200x900",
+static const pile_arguments defaults = {.unit = 1e-3,
+                                        .size = "1200x900",
                                         .azimuth_deg = 35,
                                         .elevation_deg = 18,
                                         .rays = 24,
@@ -41,6 +44,13 @@ enum { SETTING_COUNT = sizeof settings / sizeof *settings };
 
 #define AT(field) offsetof(pile_arguments, field)
 static const cli_option options[] = {
+    {"unit", CLI_UNIT, AT(unit), "UNIT",
+     "Unit of length of a scan or an outline that says none. Default: mm.", 0, 0, NULL},
+    {"particle-size", CLI_LENGTH, AT(particle_size), "LENGTH",
+     "Diameter of the particles of a measured heap: widths of bins and sectors keep to it. "
+     "Default: "
+     "not known.",
+     0, 1e3, NULL},
     {"cell", CLI_LENGTH_TEXT, AT(cell), "LENGTH",
      "Side of the height field's cells; 0: a tenth of the particle size. Default: the scene's.", 0,
      0, NULL},
@@ -49,10 +59,10 @@ static const cli_option options[] = {
      "The flank begins at this share of the heap's height. Default: the scene's.", 0, 0, NULL},
     {"band-high", CLI_SHARE_TEXT, AT(band_high), "SHARE",
      "And ends at this one. Default: the scene's.", 0, 0, NULL},
-    {"json", CLI_FLAG, AT(json), NULL, "Print JSON instead of text: as result.json of repose.", 0,
-     0, NULL},
-    {"csv", CLI_FLAG, AT(csv), NULL, "Print the series up to the frame as CSV instead of text.", 0,
-     0, NULL},
+    {"json", CLI_FLAG, AT(json), NULL,
+     "Print JSON instead of text: of a scene as result.json of repose.", 0, 0, NULL},
+    {"csv", CLI_FLAG, AT(csv), NULL,
+     "Print CSV instead of text: a scene's series up to the frame, else the outline.", 0, 0, NULL},
     {"output", CLI_TEXT, AT(picture), "FILE", "Write a picture of the heap, a PNG.", 0, 0, NULL},
     {"size", CLI_TEXT, AT(size), "WxH", "Of the picture, in pixels. Default: 1200x900.", 0, 0,
      NULL},
@@ -61,8 +71,10 @@ static const cli_option options[] = {
     {"elevation", CLI_REAL, AT(elevation_deg), "DEG",
      "The camera's angle above the horizontal. Default: 18.", -90, 90, NULL},
     {"picture-width", CLI_LENGTH, AT(picture_width), "LENGTH",
-     "What the picture shows across, about the middle of the heap. Default: the heap.", 0, 1e4,
-     NULL},
+     "What a picture that is measured shows across. Of one that is written: what it shows about "
+     "the "
+     "middle of the heap; default: the heap.",
+     0, 1e4, NULL},
     {"rays", CLI_COUNT, AT(rays), "N", "Rays a pixel. Default: 24.", 1, 65536, NULL},
     {"vtp", CLI_TEXT, AT(vtp), "FILE", "Write the particles for ParaView, a .vtp.", 0, 0, NULL},
     {"view", CLI_CHOICE, AT(vtp_view), "VIEW",
@@ -72,10 +84,8 @@ static const cli_option options[] = {
 };
 #undef AT
 
-/* The scene's settings with those that were given; 0, or the exit code. */
-static int read_settings(const cli_call *call, const scree_scene *scene,
-                         scree_pile_settings *measure) {
-  *measure = scree_scene_pile_settings(scene, 0);
+/* Those that were given in place of what `measure` has; 0, or the exit code. */
+static int read_settings(const cli_call *call, scree_pile_settings *measure) {
   for (int i = 0; i < SETTING_COUNT; i++) {
     const char *text;
     char number[CLI_NUMBER_BYTES];
@@ -160,7 +170,8 @@ static int measure(const cli_call *call, scree_scene *scene, const scree_render_
   const pile_arguments *a = call->options;
   scree_pile_settings used;
   scree_pile pile;
-  int code = read_settings(call, scene, &used);
+  used = scree_scene_pile_settings(scene, 0);
+  int code = read_settings(call, &used);
   if (code == 0 && scree_scene_measure_pile(scene, 0, &used, &pile, error) != SCREE_OK)
     code = cli_fail(error);
   const scree_scene_entry entry = {.scene = scene,
@@ -189,16 +200,53 @@ static scree_status check_outputs(const cli_call *call, scree_error *error) {
   return status;
 }
 
+/* A heap that no scene has: what belongs to scenes is refused. */
+static int run_measured(const cli_call *call, cli_pile_kind kind) {
+  const pile_arguments *a = call->options;
+  bool picture = kind == CLI_PILE_PICTURE, scan = kind == CLI_PILE_SCAN;
+  cli_measured_pile what = {.kind = kind,
+                            .unit = a->unit,
+                            .scale = a->picture_width,
+                            .how = scree_default_repose_options(),
+                            .json = a->json,
+                            .csv = a->csv};
+  scree_pile_settings used = {0, what.how.sector_count, what.how.band_low, what.how.band_high};
+  int code = read_settings(call, &used);
+  if (code) return code;
+  if (a->picture || a->vtp)
+    return cli_misuse(call->verb, "--%s draws the heap of a scene; %s is none",
+                      a->picture ? "output" : "vtp", call->inputs[0]);
+  if (picture != (a->picture_width > 0))
+    return cli_misuse(call->verb,
+                      picture ? "%s is a picture: --picture-width says what it shows across"
+                              : "--picture-width is of pictures; %s is none",
+                      call->inputs[0]);
+  if (!scan && a->sectors)
+    return cli_misuse(call->verb, "--sectors: %s is an outline, with two sides", call->inputs[0]);
+  what.cell = used.cell;
+  what.how.sector_count = used.sectors;
+  what.how.band_low = used.band_low;
+  what.how.band_high = used.band_high;
+  what.how.particle_size = a->particle_size;
+  return cli_measure_pile(call, &what);
+}
+
 static int run(const cli_call *call) {
   const pile_arguments *a = call->options;
   scree_render_options render = scree_default_render_options();
   scree_scene *loaded;
   scree_error error;
+  cli_pile_kind kind = cli_pile_kind_of(call->inputs[0]);
   int code = check_apart(call);
   if (code == 0) code = cli_parse_size(call->verb, a->size, &render.width, &render.height);
   if (code == 0 && a->vtp) code = cli_check_ending(call->verb, a->vtp, CLI_VTP);
   if (code == 0 && a->picture) code = cli_check_ending(call->verb, a->picture, CLI_PICTURE);
   if (code) return code;
+  if (kind != CLI_PILE_SCENE) return run_measured(call, kind);
+  if (a->particle_size > 0 || (a->picture_width > 0 && !a->picture))
+    return cli_misuse(call->verb, "--%s does nothing here: %s",
+                      a->particle_size > 0 ? "particle-size" : "picture-width",
+                      a->particle_size > 0 ? "a scene knows its particles" : "give --output");
   if (check_outputs(call, &error) != SCREE_OK) return cli_fail(&error);
   if (scree_scene_load(call->inputs[0], &loaded, &error) != SCREE_OK) return cli_fail(&error);
   if (a->vtp && a->vtp_view == SCREE_VIEW_CONTACTS && scree_scene_is_frame(loaded)) {
@@ -218,23 +266,28 @@ static int run(const cli_call *call) {
 
 const cli_verb cli_verb_pile = {
     .name = "pile",
-    .summary = "measure the heap of a scene again, draw it",
-    .inputs = "FRAME",
+    .summary = "measure a heap: of a scene, or a real one",
+    .inputs = "FILE",
     .description =
         "Measures a frame or a checkpoint that `scree repose` or `scree run` wrote, with the "
         "settings of its pile sensor or "
         "with others: angle of repose three ways with its spread, height, base radius, run-out, "
-        "packing fraction and coordination number. - is stdin.",
+        "packing fraction and coordination number. - is stdin.\n\n"
+        "Any other FILE is a real heap. A scan of it, in any orientation, must have some of the "
+        "floor "
+        "around it. A CSV is its outline, with lines x,z and a head as x [mm],z [mm]. A PNG is a "
+        "picture of its silhouette from the side. An outline's three ways share two flanks.",
     .examples = "scree pile heap/last.scree\n"
                 "scree pile heap/last.scree --band-low 0.1 --band-high 0.9 --json\n"
-                "scree pile heap/frame-000012.scree -o frame.png --elevation 5\n",
+                "scree pile heap/frame-000012.scree -o frame.png --elevation 5\n"
+                "scree pile heap.ply --unit m --particle-size 8mm\n"
+                "scree pile photograph.png --picture-width 0.5m --csv\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .defaults = &defaults,
     .options_size = sizeof defaults,
     .input_minimum = 1,
     .input_maximum = 1,
-    .partners =
-        "size:output azimuth:output elevation:output picture-width:output rays:output view:vtp",
+    .partners = "size:output azimuth:output elevation:output rays:output view:vtp",
     .run = run,
 };

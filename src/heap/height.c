@@ -7,6 +7,7 @@
 #include <string.h>
 
 static const double most_cells = 1e8; /* 0.8 GB: a coarser grid is meant */
+static const double rounding = 1e-9;  /* a centre on an edge is in both triangles, not in neither */
 
 scree_status scree_height_field_create(double centre_x, double centre_y, double half_width,
                                        double cell, scree_height_field *field, scree_error *error) {
@@ -72,7 +73,7 @@ static bool raise_triangle(scree_height_field *field, vec3 a, vec3 b, vec3 c) {
       double x = field->x + ((double)i + 0.5) * field->cell;
       double y = field->y + ((double)j + 0.5) * field->cell;
       double u = edge_function(b, c, x, y) / area, v = edge_function(c, a, x, y) / area;
-      if (u < 0 || v < 0 || u + v > 1) continue;
+      if (u < -rounding || v < -rounding || u + v > 1 + rounding) continue;
       raise_cell(&field->height[j * field->columns + i], u * a.z + v * b.z + (1 - u - v) * c.z);
       covered = true;
     }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 enum { BAR_WIDTH = 16, BAR_MARGIN = 90, CAPTION_FONT_PX = 19, BAR_FONT_PX = 15 };
+enum { LARGEST_PNG = 256 << 20, MOST_ACROSS = 16384 };
 
 /* ---- between our rows of bytes and cairo's rows of native 32-bit words ---- */
 
@@ -123,6 +124,77 @@ static void draw_scale_bar(cairo_t *cr, const scree_image *image, const void *co
 scree_status scree_image_scale_bar(scree_image *image, const scree_render_options *options,
                                    scree_error *error) {
   return draw_on(image, draw_scale_bar, options, error);
+}
+
+typedef struct png_bytes {
+  const char *at;
+  size_t left;
+} png_bytes;
+
+static cairo_status_t from_bytes(void *context, unsigned char *to, unsigned count) {
+  png_bytes *b = context;
+  if (count > b->left) return CAIRO_STATUS_READ_ERROR;
+  memcpy(to, b->at, count);
+  b->at += count;
+  b->left -= count;
+  return CAIRO_STATUS_SUCCESS;
+}
+
+/* Cairo gives what is not opaque as premultiplied colours with an alpha: over white. */
+static void lay_on_white(cairo_surface_t *read, scree_image *image, cairo_surface_t *surface) {
+  cairo_t *cr = cairo_create(surface);
+  cairo_set_source_rgb(cr, 1, 1, 1);
+  cairo_paint(cr);
+  cairo_set_source_surface(cr, read, 0, 0);
+  cairo_paint(cr);
+  cairo_destroy(cr);
+  take_back(image, surface);
+}
+
+/* Width and height as the file's head says: cairo would take memory for them unseen. */
+static bool is_png(const char *head, size_t size, size_t *width, size_t *height) {
+  static const char magic[] = "\x89PNG\r\n\x1a\n";
+  if (size < 24 || memcmp(head, magic, sizeof magic - 1) != 0) return false;
+  const unsigned char *p = (const unsigned char *)head + 16;
+  *width = (size_t)p[0] << 24 | (size_t)p[1] << 16 | (size_t)p[2] << 8 | p[3];
+  *height = (size_t)p[4] << 24 | (size_t)p[5] << 16 | (size_t)p[6] << 8 | p[7];
+  return true;
+}
+
+static scree_status decode(const char *path, png_bytes b, scree_image *image, scree_error *error) {
+  cairo_surface_t *read = cairo_image_surface_create_from_png_stream(from_bytes, &b);
+  cairo_status_t why = cairo_surface_status(read);
+  scree_status status = SCREE_OK;
+  if (why != CAIRO_STATUS_SUCCESS)
+    status = scree_fail(error, why == CAIRO_STATUS_NO_MEMORY ? SCREE_OUT_OF_MEMORY : SCREE_BAD_FILE,
+                        "%s: cannot be read as a PNG: %s", path, cairo_status_to_string(why));
+  image->pixels = status == SCREE_OK ? scree_alloc_zero(3 * image->width * image->height, 1) : NULL;
+  cairo_surface_t *surface = image->pixels ? surface_of(image) : NULL;
+  if (surface) lay_on_white(read, image, surface);
+  if (status == SCREE_OK && !surface)
+    status = scree_fail_memory(error, 3 * image->width * image->height, "a picture");
+  if (status != SCREE_OK) scree_image_free(image);
+  if (surface) cairo_surface_destroy(surface);
+  cairo_surface_destroy(read);
+  return status;
+}
+
+scree_status scree_image_read_png(const char *path, scree_image *image, scree_error *error) {
+  char *content;
+  size_t size;
+  scree_image made = {0};
+  scree_status status = scree_file_read(path, LARGEST_PNG, &content, &size, error);
+  if (status != SCREE_OK) return status;
+  if (!is_png(content, size, &made.width, &made.height))
+    status = scree_fail(error, SCREE_BAD_FILE, "%s: is no PNG", path);
+  else if (made.width > MOST_ACROSS || made.height > MOST_ACROSS || !made.width || !made.height)
+    status = scree_fail(error, SCREE_LIMIT, "%s: %zu x %zu pixels; must be 1 to %d each", path,
+                        made.width, made.height, MOST_ACROSS);
+  else
+    status = decode(path, (png_bytes){content, size}, &made, error);
+  scree_free(content);
+  if (status == SCREE_OK) *image = made;
+  return status;
 }
 
 /* Never fails: a write that does leaves its mark on the stream, and scree_output_commit, which

@@ -44,5 +44,7 @@ void scree_json_source(scree_json *json, const char *format, scree_checksum chec
                        double unit_m);
 /* By what: version and command. */
 void scree_json_maker(scree_json *json, const char *command_line);
+/* heap_json.c: a heap's angles and lengths. */
+void scree_json_repose(scree_json *json, const scree_repose *repose);
 
 #endif

@@ -27,3 +27,7 @@ scree_status scree_image_write_png(const scree_image *image, const char *path, b
   (void)image, (void)path, (void)overwrite;
   return refuse(error);
 }
+scree_status scree_image_read_png(const char *path, scree_image *image, scree_error *error) {
+  (void)path, (void)image;
+  return refuse(error);
+}

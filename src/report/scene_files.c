@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/file.h"
 #include "report/csv.h"
+#include "report/json.h"
 #include "report/shapes.h"
 
 #include <math.h>
@@ -24,36 +25,11 @@ static void json_book(scree_json *json, const scree_scene *scene) {
   scree_json_end(json);
 }
 
-static void json_way(scree_json *json, const char *key, double deg, double sd_deg, size_t count) {
-  scree_json_row_object(json, key);
-  scree_json_number(json, "angle_deg", deg);
-  scree_json_number(json, "sd_deg", sd_deg);
-  scree_json_count(json, "count", count);
-}
-
 static void json_pile(scree_json *json, const char *name, const scree_pile_settings *settings,
                       const scree_pile *pile) {
-  const scree_repose *h = &pile->repose;
   scree_json_object(json, NULL);
   scree_json_text(json, "name", name);
-  scree_json_bool(json, "heap", h->heap);
-  scree_json_text(json, "no_heap_because", h->heap ? NULL : h->reason);
-  json_way(json, "sectors", h->sector_deg, h->sector_sd_deg, h->sector_count);
-  scree_json_count(json, "total", h->sector_total);
-  scree_json_end(json);
-  scree_json_row_object(json, "cone");
-  scree_json_number(json, "angle_deg", h->cone_deg);
-  scree_json_number(json, "rms", h->cone_rms);
-  scree_json_end(json);
-  json_way(json, "silhouettes", h->silhouette_deg, h->silhouette_sd_deg, h->flank_count);
-  scree_json_end(json);
-  scree_json_number(json, "spread_deg", h->spread_deg);
-  scree_json_number(json, "volume_deg", h->volume_deg);
-  scree_json_number(json, "height", h->height);
-  scree_json_number(json, "peak", h->peak);
-  scree_json_number(json, "base_radius", h->base_radius);
-  scree_json_number(json, "run_out", h->run_out);
-  scree_json_number(json, "envelope_volume", h->envelope_volume);
+  scree_json_repose(json, &pile->repose);
   scree_json_number(json, "packing_fraction", pile->packing_fraction);
   scree_json_count(json, "body_count", pile->body_count);
   scree_json_number(json, "particle_size", pile->size);

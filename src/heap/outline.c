@@ -1,0 +1,299 @@
+/* Outlines of heaps: of a file, of a picture's silhouette, of a height field. An outline is
+ * measured as the solid that it makes when turned about the heap's axis, each side for itself, so
+ * that all ways of a height field are those of an outline too. */
+#include "base/alloc.h"
+#include "base/curve_file.h"
+#include "scree.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { CELLS_ACROSS = 400, SIDES = 4, GREYS = 256 };
+static const double least_parted = 0.8; /* of the variance of greys, between dark and bright */
+static const double edge_share = 0.05;  /* of a picture's columns, at either side: the ground */
+static const double most_slope = 0.5;   /* of that ground: what is steeper is a flank */
+
+void scree_outline_free(scree_outline *outline) {
+  if (!outline) return;
+  scree_free(outline->x);
+  scree_free(outline->z);
+  *outline = (scree_outline){0};
+}
+
+static scree_status make_outline(size_t count, scree_outline *outline, scree_error *error) {
+  *outline = (scree_outline){count, scree_alloc(count, sizeof(double)),
+                             scree_alloc(count, sizeof(double))};
+  if (outline->x && outline->z) return SCREE_OK;
+  scree_outline_free(outline);
+  return scree_fail_memory(error, 2 * count * sizeof(double), "an outline");
+}
+
+scree_status scree_outline_read(const char *path, double unit_m, scree_outline *outline,
+                                scree_error *error) {
+  scree_curve_file c;
+  scree_status status = scree_curve_file_read(path, &c, error);
+  if (status != SCREE_OK) return status;
+  status = scree_curve_file_convert(&c, 0, "m", unit_m, path, error);
+  if (status == SCREE_OK) status = scree_curve_file_convert(&c, 1, "m", unit_m, path, error);
+  if (status == SCREE_OK)
+    *outline = (scree_outline){c.count, c.x, c.y};
+  else
+    scree_curve_file_free(&c);
+  return status;
+}
+
+scree_status scree_outline_of_field(const scree_height_field *field, double axis,
+                                    scree_outline *outline, scree_error *error) {
+  scree_status status = make_outline(field->columns, outline, error);
+  for (size_t i = 0; status == SCREE_OK && i < field->columns; i++) {
+    outline->x[i] = field->x + ((double)i + 0.5) * field->cell - axis;
+    outline->z[i] = 0;
+    for (size_t j = 0; j < field->rows; j++)
+      outline->z[i] = fmax(outline->z[i], field->height[j * field->columns + i]);
+  }
+  return status;
+}
+
+/* ---- measuring ---- */
+
+/* The mean place, weighted by the square of the height. */
+static double axis_of(const scree_outline *o) {
+  double weight = 0, sum = 0;
+  for (size_t i = 0; i + 1 < o->count; i++) {
+    double z = fmax(0, 0.5 * (o->z[i] + o->z[i + 1])), w = z * z * (o->x[i + 1] - o->x[i]);
+    weight += w;
+    sum += w * 0.5 * (o->x[i] + o->x[i + 1]);
+  }
+  return weight > 0 ? sum / weight : 0.5 * (o->x[0] + o->x[o->count - 1]);
+}
+
+/* Straight between points; 0 beyond the ends. */
+static double height_at(const scree_outline *o, double x) {
+  size_t low = 0, high = o->count - 1;
+  if (x < o->x[low] || x > o->x[high]) return 0;
+  while (high - low > 1) {
+    size_t middle = low + (high - low) / 2;
+    if (o->x[middle] > x)
+      high = middle;
+    else
+      low = middle;
+  }
+  double part = (x - o->x[low]) / (o->x[high] - o->x[low]);
+  return fmax(0, o->z[low] + part * (o->z[high] - o->z[low]));
+}
+
+scree_status scree_outline_measure(const scree_outline *outline, double cell,
+                                   const scree_repose_options *options, scree_repose *repose,
+                                   scree_error *error) {
+  scree_repose_options used = options ? *options : scree_default_repose_options();
+  scree_height_field field;
+  double axis = axis_of(outline),
+         half = fmax(axis - outline->x[0], outline->x[outline->count - 1] - axis);
+  if (cell == 0) cell = 2 * half / CELLS_ACROSS;
+  scree_status status = scree_height_field_create(axis, 0, half + cell, cell, &field, error);
+  if (status != SCREE_OK) return status;
+  for (size_t j = 0; j < field.rows; j++)
+    for (size_t i = 0; i < field.columns; i++) {
+      double dx = field.x + ((double)i + 0.5) * cell - axis,
+             dy = field.y + ((double)j + 0.5) * cell;
+      field.height[j * field.columns + i] = height_at(outline, axis + copysign(hypot(dx, dy), dx));
+    }
+  used.sector_count = SIDES;
+  used.silhouette_count = 1;
+  status = scree_repose_measure(&field, &used, repose, error);
+  scree_height_field_free(&field);
+  return status;
+}
+
+/* ---- pictures ---- */
+
+typedef struct picture {
+  size_t width, height;
+  bool *heap;     /* of every pixel, rows from the top */
+  double *top;    /* of every column: rows above the heap, NaN where it is not */
+  double *bottom; /* rows above what is below it */
+} picture;
+
+/* The threshold that parts greys best (Otsu 1979), and how much of their variance lies between the
+ * two classes. */
+static double part_greys(const size_t *histogram, double *parted) {
+  double n = 0, sum = 0, squares = 0, below = 0, below_sum = 0, best = -1, threshold = 0;
+  for (int g = 0; g < GREYS; g++) {
+    double count = (double)histogram[g];
+    n += count;
+    sum += count * g;
+    squares += count * g * g;
+  }
+  for (int g = 0; g + 1 < GREYS; g++) {
+    below += (double)histogram[g];
+    below_sum += (double)histogram[g] * g;
+    if (below == 0 || below == n) continue;
+    double apart = below_sum / below - (sum - below_sum) / (n - below);
+    double between = below * (n - below) * apart * apart / (n * n);
+    if (between > best) {
+      best = between;
+      threshold = g;
+    }
+  }
+  double variance = squares / n - sum * sum / (n * n);
+  *parted = variance > 0 ? best / variance : 0;
+  return threshold;
+}
+
+/* What is unlike most of the uppermost row. */
+static scree_status find_silhouette(const uint8_t *rgb, picture *p, scree_error *error) {
+  size_t histogram[GREYS] = {0}, n = p->width * p->height, bright = 0;
+  double parted;
+  for (int pass = 0; pass < 2; pass++) {
+    double threshold = pass ? part_greys(histogram, &parted) : 0;
+    for (size_t i = 0; i < n; i++) {
+      const uint8_t *c = rgb + 3 * i;
+      int grey = (299 * c[0] + 587 * c[1] + 114 * c[2]) / 1000;
+      if (pass)
+        p->heap[i] = grey <= threshold;
+      else
+        histogram[grey]++;
+    }
+  }
+  if (parted < least_parted)
+    return scree_fail(error, SCREE_BAD_FILE,
+                      "no silhouette: dark and bright explain %.0f %% of the greys' variance, at "
+                      "least %g %% are needed; light the heap from behind, or paint it black on "
+                      "white",
+                      100 * parted, 100 * least_parted);
+  for (size_t i = 0; i < p->width; i++) bright += !p->heap[i];
+  for (size_t i = 0; 2 * bright < p->width && i < n; i++) p->heap[i] = !p->heap[i];
+  return SCREE_OK;
+}
+
+/* Collects what hangs together with pixel `seed` and takes it out of the mask; its pixels are the
+ * first of `pixels`. */
+static size_t take_part(picture *p, size_t seed, size_t *pixels) {
+  size_t count = 0, done = 0;
+  pixels[count++] = seed;
+  p->heap[seed] = false;
+  while (done < count) {
+    size_t i = pixels[done++], column = i % p->width, row = i / p->width;
+    const size_t next[4] = {column ? i - 1 : i, column + 1 < p->width ? i + 1 : i,
+                            row ? i - p->width : i, row + 1 < p->height ? i + p->width : i};
+    for (int k = 0; k < 4; k++) {
+      if (!p->heap[next[k]]) continue;
+      p->heap[next[k]] = false;
+      pixels[count++] = next[k];
+    }
+  }
+  return count;
+}
+
+/* Only the largest piece stays: specks and dust go. */
+static scree_status find_columns(picture *p, scree_error *error) {
+  size_t n = p->width * p->height, most = 0;
+  size_t *pixels = scree_alloc(n, sizeof *pixels);
+  if (!pixels) return scree_fail_memory(error, n * sizeof *pixels, "a silhouette");
+  for (size_t i = 0; i < n; i++) {
+    if (!p->heap[i]) continue;
+    size_t count = take_part(p, i, pixels);
+    if (count <= most) continue;
+    most = count;
+    for (size_t c = 0; c < p->width; c++) p->top[c] = p->bottom[c] = NAN;
+    for (size_t k = 0; k < count; k++) {
+      size_t column = pixels[k] % p->width;
+      double row = (double)(pixels[k] / p->width);
+      p->top[column] = fmin(p->top[column], row);
+      p->bottom[column] = fmax(p->bottom[column], row + 1);
+    }
+  }
+  scree_free(pixels);
+  for (size_t c = 0; c < p->width; c++)
+    if (p->top[c] == 0)
+      return scree_fail(error, SCREE_BAD_FILE,
+                        "the heap reaches the picture's upper edge in column %zu", c + 1);
+  return SCREE_OK;
+}
+
+typedef struct ground {
+  double at, slope; /* row = at + slope column */
+} ground;
+
+/* The ground: where the silhouette goes from edge to edge, its top beside the heap; else its lower
+ * side. */
+static scree_status find_ground(const picture *p, ground *g, scree_error *error) {
+  size_t edge = (size_t)(edge_share * (double)p->width) + 1;
+  bool left = !isnan(p->top[0]), right = !isnan(p->top[p->width - 1]);
+  if (left != right)
+    return scree_fail(error, SCREE_BAD_FILE, "the heap is cut off at the picture's %s edge",
+                      left ? "left" : "right");
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (size_t c = 0; c < p->width; c++) {
+    double row = left ? p->top[c] : p->bottom[c], column = (double)c + 0.5;
+    if (isnan(row) || (left && c >= edge && c + edge < p->width)) continue;
+    n += 1;
+    x += column;
+    y += row;
+    xx += column * column;
+    xy += column * row;
+  }
+  double determinant = n * xx - x * x;
+  if (!(determinant > 0))
+    return scree_fail(error, SCREE_BAD_FILE, "no heap: its silhouette is a single column");
+  g->slope = (n * xy - x * y) / determinant;
+  g->at = (y - g->slope * x) / n;
+  if (fabs(g->slope) > most_slope)
+    return scree_fail(error, SCREE_BAD_FILE,
+                      "no ground: the line from edge to edge rises by %.2f; the picture must show "
+                      "the ground at both sides of the heap",
+                      fabs(g->slope));
+  return SCREE_OK;
+}
+
+/* Turned so that the ground is level; of what falls on one pixel the highest counts. */
+static scree_status draw_outline(const picture *p, const ground *g, double pixel,
+                                 scree_outline *outline, scree_error *error) {
+  double length = hypot(1, g->slope), cosine = 1 / length, sine = g->slope / length;
+  size_t columns = (size_t)((double)p->width * length + (double)p->height) + 1, count = 0;
+  double *highest = scree_alloc(columns, sizeof *highest);
+  if (!highest) return scree_fail_memory(error, columns * sizeof *highest, "an outline");
+  for (size_t i = 0; i < columns; i++) highest[i] = NAN;
+  for (size_t c = 0; c < p->width; c++) {
+    if (isnan(p->top[c])) continue;
+    double x = (double)c + 0.5, down = p->top[c] - g->at;
+    double along = x * cosine + down * sine;
+    double up = x * sine - down * cosine;
+    size_t i = (size_t)fmax(0, along);
+    if (i < columns) highest[i] = fmax(highest[i], up);
+  }
+  for (size_t i = 0; i < columns; i++) count += !isnan(highest[i]);
+  scree_status status = make_outline(count, outline, error);
+  for (size_t i = 0, made = 0; status == SCREE_OK && i < columns; i++) {
+    if (isnan(highest[i])) continue;
+    outline->x[made] = ((double)i + 0.5) * pixel;
+    outline->z[made++] = highest[i] * pixel;
+  }
+  double axis = status == SCREE_OK ? axis_of(outline) : 0;
+  for (size_t i = 0; status == SCREE_OK && i < count; i++) outline->x[i] -= axis;
+  scree_free(highest);
+  return status;
+}
+
+scree_status scree_outline_trace(const uint8_t *rgb, size_t width, size_t height, double pixel,
+                                 scree_outline *outline, scree_error *error) {
+  picture p = {.width = width, .height = height};
+  ground g = {0};
+  if (!(pixel > 0) || width < 8 || height < 8)
+    return scree_fail(
+        error, SCREE_BAD_ARGUMENT,
+        "a picture of %zu x %zu pixels of %g m: must be 8 x 8 at least, and its scale "
+        "positive",
+        width, height, pixel);
+  p.heap = scree_alloc(width * height, sizeof *p.heap);
+  p.top = scree_alloc(2 * width, sizeof *p.top);
+  scree_status status = p.heap && p.top ? SCREE_OK : scree_fail_memory(error, 0, "a silhouette");
+  p.bottom = p.top ? p.top + width : NULL;
+  if (status == SCREE_OK) status = find_silhouette(rgb, &p, error);
+  if (status == SCREE_OK) status = find_columns(&p, error);
+  if (status == SCREE_OK) status = find_ground(&p, &g, error);
+  if (status == SCREE_OK) status = draw_outline(&p, &g, pixel, outline, error);
+  scree_free(p.heap);
+  scree_free(p.top);
+  return status;
+}
