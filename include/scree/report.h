@@ -152,7 +152,8 @@ SCREE_API const char *scree_world_view_name(scree_world_view view);
 SCREE_API scree_status scree_world_vtp_write(const scree_world *world, scree_world_view view,
                                              const char *path, bool overwrite, scree_error *error);
 /* The walls of a scene as they stand, with the wear of each triangle besides: `wear`, J/m2 of
- * sliding work (scree_scene_wear). As scree_world_vtp_write. */
+ * sliding work (scree_scene_wear), and `worn`, m of depth (scree_scene_worn). As
+ * scree_world_vtp_write. */
 SCREE_API scree_status scree_scene_walls_vtp_write(const scree_scene *scene, const char *path,
                                                    bool overwrite, scree_error *error);
 

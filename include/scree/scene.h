@@ -210,6 +210,9 @@ SCREE_API scree_scene_summary scree_scene_summarise(const scree_scene *scene, si
  * one number): what wears it. NULL for other walls. The scene's own; valid until it is advanced. */
 SCREE_API const double *scree_scene_wear(const scree_scene *scene, size_t wall,
                                          size_t *triangle_count);
+/* Likewise m3 that are worn off, by the pairs' `wear` (Archard 1953). */
+SCREE_API const double *scree_scene_worn(const scree_scene *scene, size_t wall,
+                                         size_t *triangle_count);
 
 /* ---- Piles ---- */
 

@@ -470,16 +470,15 @@ static double triangle_area(const sheet *s, size_t t) {
                                               vec3_load(s->points + 3 * k[2])));
 }
 
-/* J/m2, of the wall's triangles from `begin` on; 0 where no sensor looks at it. */
-static void fill_wear(const scree_scene *scene, size_t wall, const sheet *s, size_t begin,
-                      double *wear) {
-  size_t count, triangles = s->triangle_count - begin;
-  const double *work = scree_scene_wear(scene, wall, &count);
+/* Over its area, of the wall's triangles from `begin` on; 0 where no sensor looks at it. */
+static void fill_by_area(const double *amounts, size_t count, const sheet *s, size_t begin,
+                         double *density) {
+  size_t triangles = s->triangle_count - begin;
   double all = 0;
   for (size_t t = 0; t < triangles; t++) all += triangle_area(s, begin + t);
   for (size_t t = 0; t < triangles; t++) {
     double area = count == triangles ? triangle_area(s, begin + t) : all;
-    wear[begin + t] = work && area > 0 ? work[count == triangles ? t : 0] / area : 0;
+    density[begin + t] = amounts && area > 0 ? amounts[count == triangles ? t : 0] / area : 0;
   }
 }
 
@@ -497,14 +496,15 @@ static scree_status make_walls(const scree_world *world, const scree_scene *scen
   }
   if (points > UINT32_MAX) return too_many(error, points);
   int64_t *number = NULL, *kind = NULL;
-  double *wear = NULL;
+  double *wear = NULL, *worn = NULL;
   if (make_room(s, points, triangles, triangles)) {
     number = add_array(s, "wall", SCREE_VTK_INT64, 1);
     kind = add_array(s, "kind", SCREE_VTK_INT64, 1);
     if (scene) wear = add_array(s, "wear", SCREE_VTK_FLOAT64, 1);
+    if (scene) worn = add_array(s, "worn", SCREE_VTK_FLOAT64, 1);
   }
-  if (!number || !kind || (scene && !wear))
-    return scree_fail_memory(error, 40 * triangles, "the walls of a world");
+  if (!number || !kind || (scene && !(wear && worn)))
+    return scree_fail_memory(error, 48 * triangles, "the walls of a world");
   for (size_t i = 0; i < count; i++) {
     scree_wall wall;
     size_t begin = s->triangle_count;
@@ -514,7 +514,12 @@ static scree_status make_walls(const scree_world *world, const scree_scene *scen
       number[t] = (int64_t)i;
       kind[t] = wall.kind;
     }
-    if (scene) fill_wear(scene, i, s, begin, wear);
+    if (!scene) continue;
+    size_t cells;
+    const double *work = scree_scene_wear(scene, i, &cells),
+                 *volume = scree_scene_worn(scene, i, &cells);
+    fill_by_area(work, cells, s, begin, wear);
+    fill_by_area(volume, cells, s, begin, worn);
   }
   return SCREE_OK;
 }

@@ -76,6 +76,8 @@ static const scree_field pair_fields[] = {
     {"surface_energy", SCREE_FIELD_REAL, AT(surface_energy), 0, 1e6, "J/m2", "of cohesion", NULL},
     {"pull_off", SCREE_FIELD_REAL, AT(pull_off), 0, 1e9, "N", "that holds any two that touch",
      NULL},
+    {"wear", SCREE_FIELD_REAL, AT(wear), 0, 1, "1/Pa",
+     "Archard's: volume that geometry loses over load and way of sliding", NULL},
 };
 #undef AT
 static scree_status check_pair(const scree_reader *r, const void *record) {
@@ -83,7 +85,7 @@ static scree_status check_pair(const scree_reader *r, const void *record) {
   if (p->between.count == 2) return SCREE_OK;
   return scree_fail_place(r, &p->place, "needs between: [material, material]");
 }
-static const scree_plan_pair pair_defaults = {{0}, {0}, NAN, NAN, NAN, NAN, NAN};
+static const scree_plan_pair pair_defaults = {{0}, {0}, NAN, NAN, NAN, NAN, NAN, 0};
 static const scree_record pair_record = {"a pair", FIELDS(pair_fields), sizeof(scree_plan_pair),
                                          &pair_defaults, check_pair};
 

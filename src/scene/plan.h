@@ -14,7 +14,7 @@ typedef struct scree_plan_material {
 typedef struct scree_plan_pair {
   scree_place place;
   scree_texts between;
-  double restitution, friction, rolling_friction, surface_energy, pull_off;
+  double restitution, friction, rolling_friction, surface_energy, pull_off, wear;
 } scree_plan_pair;
 
 /* Rosin-Rammler: size d', spread n; lognormal: median, standard deviation of the logarithm. */

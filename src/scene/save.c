@@ -121,6 +121,7 @@ static void code_sensor(scree_codec *c, scree_scene *scene, scree_scene_sensor *
   double *arrays[] = {sensor->count, sensor->mass, sensor->sum, sensor->sum2};
   for (size_t k = 0; k < 4; k++) scree_code_reals(c, arrays[k], SCREE_SCENE_SHAPES(scene) + 1);
   scree_code_reals(c, sensor->wear, sensor->wear_count);
+  scree_code_reals(c, sensor->worn, sensor->wear_count);
   if (sensor->impacts) code_impacts(c, sensor->impacts);
   if (sensor->grid) {
     scree_code_reals(c, sensor->grid->sums, sensor->grid->number_count);

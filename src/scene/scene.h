@@ -97,6 +97,7 @@ typedef struct scree_scene_sensor {
   double *count, *mass; /* of a flow and of residence, by shape, all shapes last */
   double *sum, *sum2;   /* of residence, s and s2, likewise */
   double *wear;         /* of a wall: J by triangle of its meshes, one of each other wall */
+  double *worn;         /* likewise, m3 that are worn off */
   size_t wear_count;
   scree_scene_impacts *impacts;
   struct scree_scene_grid *grid;
@@ -300,6 +301,8 @@ scree_status scree_scene_record(scree_scene *scene, scree_error *error);
 size_t scree_scene_wear_cells(const scree_scene *scene, size_t wall);
 scree_status scree_scene_plan_wear(scree_scene *scene, scree_error *error);
 scree_status scree_scene_watch_wear(scree_scene *scene, scree_error *error);
+/* m, of the wall's most worn triangle; 0 of what is endless. */
+double scree_scene_worn_depth(const scree_scene *scene, size_t wall);
 
 /* parts.c: room for those that forces move; their coming step; J, kinetic and potential, and what
  * one's walls have done on bodies; what the books of all miss. */

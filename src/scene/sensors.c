@@ -133,9 +133,10 @@ static bool is_hinge(const scree_scene *scene, const scree_scene_sensor *sensor)
 
 static bool add_sensor(scree_scene *scene, const scree_scene_sensor *sensor) {
   const scree_plan_sensor *plan = sensor->plan;
-  static const char *const wall[] = {
-      "force_x",  "N",   "force_y", "N", "force_z", "N", "torque_x", "N m", "torque_y", "N m",
-      "torque_z", "N m", "power",   "W", "energy",  "J", "wear",     "J",   NULL};
+  static const char *const wall[] = {"force_x",     "N",   "force_y",    "N",   "force_z",  "N",
+                                     "torque_x",    "N m", "torque_y",   "N m", "torque_z", "N m",
+                                     "power",       "W",   "energy",     "J",   "wear",     "J",
+                                     "worn_volume", "m3",  "worn_depth", "m",   NULL};
   static const char *const pile[] = {"sector_deg",
                                      "deg",
                                      "cone_deg",
@@ -392,8 +393,11 @@ static void read_wall(const scree_scene *scene, const scree_scene_sensor *sensor
     for (int k = 0; k < 3; k++) at[k] += force[k], at[3 + k] += torque[k];
     at[6] += power, at[7] += energy;
   }
-  at[8] = 0;
-  for (size_t k = 0; k < sensor->wear_count; k++) at[8] += sensor->wear[k];
+  at[8] = at[9] = at[10] = 0;
+  for (size_t k = 0; k < sensor->wear_count; k++)
+    at[8] += sensor->wear[k], at[9] += sensor->worn[k];
+  for (size_t w = g->first_wall; w < g->first_wall + g->wall_count; w++)
+    at[10] = fmax(at[10], scree_scene_worn_depth(scene, w));
 }
 
 /* Means over the cells: of speed and temperature by mass. */

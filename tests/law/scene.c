@@ -34,7 +34,7 @@ static double column_now(const scree_scene *scene, const char *name) {
 }
 
 /* What a box that was set on a belt of 0.6 m/s has slid away is m v^2 / 2, on the belt's upper face
- * alone. */
+ * alone; the volume is k m g times the way v^2/(2 mu g). */
 static void check_wear(const scree_scene *scene) {
   size_t count;
   const double *wear = scree_scene_wear(scene, 0, &count);
@@ -52,6 +52,17 @@ static void check_wear(const scree_scene *scene) {
   CHECK_NEAR(all, work, 0.1 * work); /* its landing is a few short hits */
   CHECK_NEAR(above, all, 0);
   CHECK_NEAR(column_now(scene, "load.wear"), all, 1e-12);
+  const double *worn = scree_scene_worn(scene, 0, &count), volume = 1e-9 * work / 0.3;
+  double lost = 0, deepest = 0;
+  for (size_t t = 0; t < count; t++) {
+    lost += worn[t];
+    deepest = fmax(deepest, worn[t] / (0.5 * 4 * 0.4)); /* the upper face has two triangles */
+  }
+  CHECK_NEAR(lost, volume, 0.1 * volume);
+  CHECK_NEAR(lost, 1e-9 * all / 0.3, 1e-3 * lost); /* all of it slips */
+  print_message("worn volume %.4g of %.4g m3\n", lost, volume);
+  CHECK_NEAR(column_now(scene, "load.worn_volume"), lost, 0);
+  CHECK_NEAR(column_now(scene, "load.worn_depth"), deepest, 1e-12 * deepest);
 }
 
 /* A box set on a belt slides until it has the belt's speed: v = mu g t, then v stays. */
@@ -60,6 +71,7 @@ static void belt(void **state) {
   scree_scene *scene = create(
       "time: 1\n"
       "materials: {m: {young: 1e5, density: 500, restitution: 0.1, friction: 0.3}}\n"
+      "pairs: [{between: [m, m], wear: 1e-9}]\n"
       "shapes: {box: {box: [0.06, 0.06, 0.02]}}\n"
       "geometry: {belt: {box: [4, 0.4, 0.1], at: [0, 0, -0.05], surface_velocity: [0.6, 0, 0]}}\n"
       "inlets: {i: {box: {min: [-0.031, -0.031, 0.0001], max: [0.031, 0.031, 0.0212]}, shapes: "
