@@ -44,6 +44,7 @@ static double work_of(const scree_study_record *r) {
 static scree_status take_record(scree_answers *g, size_t experiment, const scree_study *study,
                                 size_t run, double *work, scree_error *error) {
   scree_study_record record;
+  char mark[SCREE_CHECKSUM_TEXT];
   double *answers = g->answers[experiment] + run * study->answer_count;
   char *path = scree_study_path(study, "results", study->keys[run], ".yaml");
   if (!path) return scree_fail_memory(error, 0, "a path");
@@ -51,6 +52,11 @@ static scree_status take_record(scree_answers *g, size_t experiment, const scree
   scree_status status = there ? scree_study_record_read(path, &record, error) : SCREE_OK;
   scree_free(path);
   if (status == SCREE_BAD_FILE) there = false; /* the next worker puts it aside */
+  if (there && status == SCREE_OK && !record.failed) {
+    scree_study_answers_mark(study, mark);
+    there = !strcmp(mark, record.answered); /* or takes its answers anew */
+    if (!there) scree_study_record_free(&record);
+  }
   if (!there) {
     g->open++;
     return SCREE_OK;

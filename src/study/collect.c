@@ -236,6 +236,9 @@ static scree_status put_series(writer *w, const char *key, const scree_study_rec
 
 static scree_status put_answers(writer *w, const char *key, const scree_study_record *r) {
   sqlite3_stmt *s;
+  char mark[SCREE_CHECKSUM_TEXT];
+  scree_study_answers_mark(w->study, mark);
+  if (strcmp(mark, r->answered) != 0) return SCREE_OK; /* the next worker takes them anew */
   scree_status status = make(w, "INSERT OR REPLACE INTO answer VALUES(?1, ?2, ?3, ?4)", &s);
   if (status != SCREE_OK) return status;
   for (size_t i = 0; status == SCREE_OK && i < r->answer_count && i < w->study->answer_count; i++) {

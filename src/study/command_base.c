@@ -165,25 +165,41 @@ static bool find_answer(const char *text, const char *name, double *value) {
   return found;
 }
 
+scree_status scree_study_answer_command(const scree_study *study, const char *folder,
+                                        scree_study_record *record, scree_error *error) {
+  char output[4200], *text;
+  size_t size, count = study->answer_count;
+  snprintf(output, sizeof output, "%.4100s/output.txt", folder);
+  scree_status status = scree_file_read(output, LARGEST_OUTPUT, &text, &size, error);
+  if (status != SCREE_OK) return status;
+  double *answers = scree_alloc(count, sizeof *answers);
+  if (!answers) status = scree_fail_memory(error, 0, "a run's answers");
+  for (size_t i = 0; status == SCREE_OK && i < count; i++)
+    if (!find_answer(text, study->answers[i].column, &answers[i]))
+      status = scree_fail(error, SCREE_BAD_ARGUMENT, "the command printed no line '%s: NUMBER'",
+                          study->answers[i].column);
+  scree_free(text);
+  if (status != SCREE_OK) {
+    scree_free(answers);
+    return status;
+  }
+  scree_free(record->answers);
+  record->answers = answers;
+  record->answer_count = count;
+  scree_study_answers_mark(study, record->answered);
+  return SCREE_OK;
+}
+
 scree_status scree_study_record_command(const scree_study *study, size_t run, const char *folder,
                                         bool (*watch)(void *context), void *context,
                                         scree_study_record *record, scree_error *error) {
-  char output[4200], *text;
+  char output[4200];
   long process;
-  size_t size;
   snprintf(output, sizeof output, "%.4100s/output.txt", folder);
   scree_status status = start(study, run, folder, output, &process, error);
   if (status == SCREE_OK) status = wait_for(process, watch, context, error);
-  if (status == SCREE_OK) status = scree_file_read(output, LARGEST_OUTPUT, &text, &size, error);
+  if (status == SCREE_OK) status = scree_study_answer_command(study, folder, record, error);
   if (status != SCREE_OK) return status;
-  record->answers = scree_alloc(study->answer_count, sizeof *record->answers);
-  if (!record->answers) status = scree_fail_memory(error, 0, "a run's answers");
-  for (size_t i = 0; status == SCREE_OK && i < study->answer_count; i++)
-    if (!find_answer(text, study->answers[i].column, &record->answers[i]))
-      status = scree_fail(error, SCREE_BAD_ARGUMENT, "the command printed no line '%s: NUMBER'",
-                          study->answers[i].column);
-  record->answer_count = status == SCREE_OK ? study->answer_count : 0;
-  scree_free(text);
   record->result = scree_no_result();
   return status;
 }

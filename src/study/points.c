@@ -161,8 +161,6 @@ static scree_status write_command_identity(const scree_study *study, size_t run,
     status = scree_study_command_word(study, run, i, NULL, text, sizeof text, error);
     if (status == SCREE_OK) fprintf(stream, "word=%s\n", text);
   }
-  for (size_t i = 0; i < study->answer_count; i++)
-    fprintf(stream, "answer=%s\n", study->answers[i].name);
   return status;
 }
 
@@ -180,8 +178,6 @@ static scree_status write_identity(const scree_study *study, size_t run, FILE *s
   if (status == SCREE_OK) status = scree_scene_file_print(file, stream, error);
   if (status == SCREE_OK) status = write_files(study, file, stream, error);
   scree_scene_file_free(file);
-  for (size_t i = 0; i < study->answer_count; i++)
-    fprintf(stream, "answer=%s\n", study->answers[i].name);
   if (status != SCREE_OK || !study->own_shapes) return status;
   scree_number_format_digits(study->unit_m, 9, unit);
   fprintf(stream, "unit=%s\n", unit);

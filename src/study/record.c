@@ -55,6 +55,7 @@ static const field fields[] = {
     AT("time", REAL, result.time),
     AT("still", FLAG, result.still),
     AT("hash", TEXT, hash),
+    AT("answered", TEXT, answered),
 };
 enum { FIELD_COUNT = sizeof fields / sizeof *fields };
 

@@ -40,18 +40,33 @@ typedef struct scree_study_record {
   char hash[40]; /* of the final state of the world */
   scree_record_point *series;
   size_t series_count;
-  double *answers; /* of a scene, in the study's order */
+  double *answers; /* in the order of the study that has this mark */
   size_t answer_count;
+  char answered[SCREE_CHECKSUM_TEXT]; /* scree_study_answers_mark */
 } scree_study_record;
 
-/* scene_base.c: what is kept of a scene that has ended. */
+/* Which answers the study asks for. They are not among what names a run: other answers go on with
+ * the runs that were made, and take theirs from what these left (scree_study_answer_again). */
+void scree_study_answers_mark(const scree_study *study, char mark[SCREE_CHECKSUM_TEXT]);
+/* Takes the answers anew from the last frame, or what the command printed. SCREE_IO and
+ * SCREE_BAD_FILE where these are gone: the run has to be made again. */
+scree_status scree_study_answer_again(const scree_study *study, size_t run,
+                                      scree_study_record *record, scree_error *error);
+
+/* scene_base.c: what is kept of a scene that has ended; its answers alone. */
 scree_status scree_study_record_scene(const scree_study *study, const scree_scene *scene,
                                       scree_study_record *record, scree_error *error);
 
-/* command_base.c: runs the command, whose own files go to `folder`, and keeps what it prints. watch
- * is called a few times a second; false ends it, with SCREE_CANCELLED. */
+scree_status scree_study_answer_scene(const scree_study *study, const scree_scene *scene,
+                                      scree_study_record *record, scree_error *error);
+
+/* command_base.c: the answers in what it printed. Runs the command, whose own files go to `folder`,
+ * and keeps what it prints. watch is called a few times a second; false ends it, with
+ * SCREE_CANCELLED. */
 scree_status scree_study_record_command(const scree_study *study, size_t run, const char *folder,
                                         bool (*watch)(void *context), void *context,
+                                        scree_study_record *record, scree_error *error);
+scree_status scree_study_answer_command(const scree_study *study, const char *folder,
                                         scree_study_record *record, scree_error *error);
 
 /* Of a run without a pile: no number is known. */

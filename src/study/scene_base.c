@@ -365,6 +365,19 @@ static bool ends_still(const scree_scene *scene, const scree_observation *o) {
   return o->kinetic + o->rotational < last->still * (double)o->body_count;
 }
 
+scree_status scree_study_answer_scene(const scree_study *study, const scree_scene *scene,
+                                      scree_study_record *record, scree_error *error) {
+  double *answers = scree_alloc(study->answer_count, sizeof *answers);
+  if (!answers) return scree_fail_memory(error, 0, "a run's answers");
+  scree_free(record->answers);
+  record->answers = answers;
+  record->answer_count = study->answer_count;
+  for (size_t i = 0; i < study->answer_count; i++)
+    record->answers[i] = answer_of(&study->answers[i], scene);
+  scree_study_answers_mark(study, record->answered);
+  return SCREE_OK;
+}
+
 scree_status scree_study_record_scene(const scree_study *study, const scree_scene *scene,
                                       scree_study_record *record, scree_error *error) {
   const scree_world *world = scree_scene_view(scene);
@@ -380,11 +393,8 @@ scree_status scree_study_record_scene(const scree_study *study, const scree_scen
   scree_scene_get_book(scene, &book);
   scree_world_observe(world, &o);
   scree_checksum_text(scree_world_hash(world), record->hash);
-  record->answers = scree_alloc(study->answer_count, sizeof *record->answers);
-  if (!record->answers) return scree_fail_memory(error, 0, "a run's answers");
-  record->answer_count = study->answer_count;
-  for (size_t i = 0; i < study->answer_count; i++)
-    record->answers[i] = answer_of(&study->answers[i], scene);
+  status = scree_study_answer_scene(study, scene, record, error);
+  if (status != SCREE_OK) return status;
   record_costs(scene, &record->costs);
   size_t bodies = scree_scene_pile_name(scene, 0) ? pile.body_count : book.inside_count;
   record->result = (scree_record_result){.repose = pile.repose,

@@ -274,7 +274,45 @@ static scree_status reopen_failed(work *w, scree_error *error) {
   return SCREE_OK;
 }
 
-/* A record that cannot be read is no result: the run waits again. */
+void scree_study_answers_mark(const scree_study *study, char mark[SCREE_CHECKSUM_TEXT]) {
+  scree_checksum sum = {0};
+  for (size_t i = 0; i < study->answer_count; i++) {
+    const char *name = study->answers[i].name;
+    scree_checksum next = scree_checksum_of(name, strlen(name));
+    const uint64_t both[4] = {sum.high, sum.low, next.high, next.low};
+    sum = scree_checksum_of(both, sizeof both);
+  }
+  scree_checksum_text(sum, mark);
+}
+
+scree_status scree_study_answer_again(const scree_study *study, size_t run,
+                                      scree_study_record *record, scree_error *error) {
+  bool command = study->command.count > 0;
+  char *path = scree_study_path(study, "runs", study->keys[run], command ? "" : "/last.scree");
+  if (!path) return scree_fail_memory(error, 0, "a path");
+  scree_scene *scene = NULL;
+  scree_status status = command ? scree_study_answer_command(study, path, record, error)
+                                : scree_scene_load(path, &scene, error);
+  if (scene) status = scree_study_answer_scene(study, scene, record, error);
+  scree_scene_free(scene);
+  scree_free(path);
+  record->ended = nextafter(record->ended, INFINITY); /* the database sees that it is another */
+  return status;
+}
+
+/* Of a run that ended before the study asked for what it asks now; SCREE_BAD_FILE where it has to
+ * be made again. */
+static scree_status renew_answers(const work *w, const char *path, scree_study_record *record) {
+  char mark[SCREE_CHECKSUM_TEXT];
+  scree_study_answers_mark(w->study, mark);
+  if (record->failed || !strcmp(mark, record->answered)) return SCREE_OK;
+  scree_status status = scree_study_answer_again(w->study, w->run, record, NULL);
+  if (status == SCREE_OK) return scree_study_record_write(record, path, NULL);
+  return status == SCREE_OUT_OF_MEMORY ? status : SCREE_BAD_FILE;
+}
+
+/* A record that cannot be read is no result, nor is one without what is asked for: the run waits
+ * again. */
 static scree_status put_broken_aside(work *w, scree_error *error) {
   for (w->run = 0; w->run < scree_study_run_count(w->study); w->run++) {
     char *path = run_file(w, "results", ".yaml", error);
@@ -282,7 +320,10 @@ static scree_status put_broken_aside(work *w, scree_error *error) {
     if (aside && scree_path_exists(path)) {
       scree_study_record record;
       scree_status status = scree_study_record_read(path, &record, NULL);
-      if (status == SCREE_OK) scree_study_record_free(&record);
+      if (status == SCREE_OK) {
+        status = renew_answers(w, path, &record);
+        scree_study_record_free(&record);
+      }
       if (status == SCREE_BAD_FILE) scree_path_rename(path, aside);
     }
     bool good = aside != NULL;

@@ -23,6 +23,15 @@ sed -n '1s/.*,\(all.count.*\)/\1/p' out/points.csv
 head -2 out/points.csv | cut -d, -f1-8
 head -1 out/scene.yaml | sed 's/of .*\//of /'
 run study status out | head -1
+# other answers come from what the runs left
+touch before
+sed 's/^answers.*/answers: [all.mass: {at: 0.1}, load.force_z]/' study.yaml >other.yaml
+"$SCREE" study other.yaml -o out -q >/dev/null
+find out/runs -newer before | grep -c .
+cut -d, -f3- out/points.csv | sed -nE '1s/.*,(all.mass.*)/\1/p; 2s/.*(,[0-9.e-]+){2}$/has numbers/p'
+"$SCREE" study other.yaml -o anew -q >/dev/null
+awk -F, '{ print $(NF - 1), $(NF - 15) }' out/points.csv >kept; awk -F, '{ print $(NF - 1), $(NF - 15) }' anew/points.csv | cmp - kept
+"$SCREE" study study.yaml -o out -q >/dev/null
 rm chute.yaml
 run study status out | sed -n 3,5p | table
 cat >wrong.yaml <<'END'
