@@ -2,6 +2,7 @@
 #ifndef SCREE_WORLD_CONTACT_H
 #define SCREE_WORLD_CONTACT_H
 
+#include "world/constants.h"
 #include "world/world.h"
 
 /* One touching feature, in the frame of b. */
@@ -20,8 +21,10 @@ typedef struct scree_contact_list {
   size_t count, capacity;
 } scree_contact_list;
 
-/* m/s, at most, with which bodies are moved apart (law.c). */
-#define SCREE_DEPENETRATION_SPEED 0.1
+/* m/s, at most, with which bodies that lie in each other are moved apart (law.c). */
+static inline double scree_depenetration_speed(const scree_pair_law *law) {
+  return law->limit / (passage_patience * law->contact_time);
+}
 
 /* What a pair's evaluation adds to the ledger, J, and what is wrong with it. */
 typedef struct scree_pair_work {

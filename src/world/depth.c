@@ -17,11 +17,6 @@
 #include "particle/closest.h"
 
 /* Bodies that lie deeper in each other from the start, of the limit, are refused. */
-static const double start_share = 0.05;
-static const double near_share = 0.25; /* of the contact radii: depths are asked for from here on */
-static const double apart_share = 0.9; /* of the contact radii: bodies that part are apart */
-static const double look_share = 0.2;  /* of the depth: bodies that part are looked at so often */
-static const double tolerance = 1e-6;  /* of the depth, within which the deepest place is found */
 /* Points of a mesh are looked for in the other from the start: corners, drawn towards the centre.
  */
 static const double drawn_in[] = {0.9, 0.5, 0};
@@ -123,7 +118,8 @@ static void search(const scree_particle *to, const line *l, const stretch *whole
   while (count > 0 && looked_at++ < MOST_STRETCHES) {
     const stretch in = stack[--count];
     double most, s = chords_meet(to, l, &in, &most);
-    if (!(most > deepest->distance * (1 + tolerance)) || !(s > in.low.s && s < in.high.s)) continue;
+    if (!(most > deepest->distance * (1 + depth_tolerance)) || !(s > in.low.s && s < in.high.s))
+      continue;
     place here = place_at(to, l, s, in.low.face, in.high.face);
     keep_deeper(&here, deepest);
     if (count + 2 > MOST_STRETCHES) continue;
@@ -174,7 +170,7 @@ static vec3 slope_at(const scree_particle *to, const line *l, const place *deepe
   scree_near near;
   vec3 p = at_of(l, deepest->s), up = {0, 0, 0}, down = {0, 0, 0};
   double most = -INFINITY, least = INFINITY;
-  scree_closest_faces(to, p, INFINITY, 10 * tolerance * deepest->distance, &near);
+  scree_closest_faces(to, p, INFINITY, 10 * depth_tolerance * deepest->distance, &near);
   for (int k = 0; k < near.count; k++) {
     int region;
     const scree_face *face = &to->faces[near.face[k]];
@@ -440,7 +436,8 @@ static double way_since(const scree_particle *a, const scree_scratch *scratch) {
 /* Bodies that part, and at `least` so deep, need no look. */
 static bool part_still(const scree_pair *pair, double least) {
   bool pushed = vec3_norm2(pair->separation) > 0;
-  return pair->depenetrating && pushed && least > (1 - look_share) * pair->found && least > 0;
+  return pair->depenetrating && pushed && least > (1 - depenetration_look_share) * pair->found &&
+         least > 0;
 }
 
 void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {

@@ -23,17 +23,6 @@
 
 #include "particle/closest.h"
 
-static const double parallel_sines[2] = {1e-3, 4e-3};
-static const double beyond_cosines[2] = {0.8660254, 0.9659258}; /* 30 and 15 degrees */
-static const double beyond_sines[2] = {0.5, 0.2588190};
-static const double crossing_cosines[2] = {0.3, 0.6}; /* crossing normal against the reference */
-static const double pressing_cosine = 0.2;            /* 78 degrees */
-/* of the slack of cones, and of twice that */
-static const double slack_cosines[2] = {0.9982005, 0.9928086};
-static const double slack_sines[2] = {0.0599640, 0.1197122};
-static const double end_share = 0.1;
-static const double facing_cosine = 0.3;
-
 /* An end of one of the two edges. */
 typedef struct edge_end {
   bool of_a, at_start;
@@ -214,7 +203,7 @@ static corner corner_at_end(const scree_frame *relative, const crossing *x, cons
   corner least = {contact->overlap, out};
   for (int k = 0; k < 2; k++) {
     vec3 face = vec3_mad(vec3_scale(axis, cosine), side, k ? -sine : sine);
-    double lies = scree_smooth_step(0, facing_cosine, vec3_dot(face, out)),
+    double lies = scree_smooth_step(0, corner_facing_cosine, vec3_dot(face, out)),
            below = reach - vec3_dot(away, face),
            overlap = contact->overlap + lies * (below - contact->overlap);
     if (overlap >= least.overlap) continue;

@@ -29,18 +29,6 @@
 
 enum { NEWTON_STEPS = 30, CLOSED_ROUNDS = 3 };
 
-/* Slopes that steps do not resolve: at most so steep, of blends and of fading tapers. */
-static const double most_slopes[2] = {3, 1};
-/* Bodies part where the normals' mean by contact weights and gap gradients is shorter than this: */
-static const double pinched_net = 0.35;
-static const double back_cosine = 0.3; /* of the way out of a wall with that back */
-static const double depenetration_speed = SCREE_DEPENETRATION_SPEED;
-/* Of the reduced mass, taken in a step: a corner's is up to seven times smaller, and no more than
- * all may be. */
-static const double depenetration_damping = 0.1;
-
-static const double resolved_share = 0.01; /* of the contact radii in a step */
-
 /* Closed form. With h the highest overlap, d_i = h - o_i, x = h - t and k = kappa/(1 - kappa), the
  * features of a set all count where x > d_i, and the equation of the set is the quadratic
  *   (W - k2) x2 - 2 (D1 - k c) x + D2 - c2 = 0,   c = l0 + k (h + l0),
@@ -399,7 +387,7 @@ static vec3 separation_from_wall(const scree_particle *a, const scree_particle *
                                  const scree_frame *relative, vec3 came) {
   vec3 way = vec3_unit(scree_separation_direction(a, wall, relative));
   if (wall->sheet && vec3_dot(way, came) < 0) way = vec3_neg(way);
-  return vec3_dot(way, came) < back_cosine * vec3_norm(came) ? came : way;
+  return vec3_dot(way, came) < way_back_cosine * vec3_norm(came) ? came : way;
 }
 
 /* The way in which bodies part, kept in the frame of b until they are apart. */
@@ -452,9 +440,9 @@ static void forget_contact(scree_pair *pair, scree_contact_list *contacts) {
 }
 
 /* Edges that lie in each other may each be nearest to a separation direction that is the other's
- * way in. Then no feature counts: the bodies are brought to `depenetration_speed` along one way, by
- * no more than a spring as deep as they are, or at its limit, would press with: what lies behind
- * must bear it too. */
+ * way in. Then no feature counts: the bodies are brought to the speed of those that part along one
+ * way, by no more than a spring as deep as they are, or at its limit, would press with: what lies
+ * behind must bear it too. */
 static scree_powers part(const scree_world *world, scree_pair *pair, const scree_frame *relative,
                          scree_scratch *scratch) {
   scree_contact_list *contacts = &scratch->contacts; /* with room for more than one */
@@ -472,7 +460,7 @@ static scree_powers part(const scree_world *world, scree_pair *pair, const scree
   double pace = pair->law.contact_time / 3.14159265358979323846,
          mass = pair->law.stiffness * pace * pace,
          brake = depenetration_damping * mass / world->time_step *
-                 (depenetration_speed - vec3_dot(seen, way)),
+                 (scree_depenetration_speed(&pair->law) - vec3_dot(seen, way)),
          push = scree_max(0, brake + held_with(world, pair, way, scratch)),
          most = pair->law.stiffness * scree_min(pair->overlap, pair->law.limit),
          force = scree_min(most, push);

@@ -70,12 +70,9 @@ static inline scree_overlap_motion scree_overlap_moves(const scree_pair *pair,
                                     scratch->overlap_before == 0 || scratch->was_depenetrating};
 }
 
-/* Ways in a step below an overlap in which the spring is seen well. */
-static const double scree_steep_overlap = 3;
-
 /* In a contact that lasts, deep beside its way in a step, the balance is not drawn. */
 static inline bool scree_is_settled(const scree_pair *pair, double lasts) {
-  return lasts == 1 && pair->overlap >= scree_steep_overlap * pair->list.travel;
+  return lasts == 1 && pair->overlap >= steep_overlap * pair->list.travel;
 }
 
 /* The way on the other side of the touch's begin or end. */
@@ -85,7 +82,7 @@ static inline double scree_outer_way(const scree_overlap_motion *m) {
 
 /* Whether a touch begins or ends within this step. */
 static inline bool scree_is_edge_of_touch(const scree_pair *pair, const scree_overlap_motion *m) {
-  return m->overlap < scree_steep_overlap * pair->list.travel && scree_outer_way(m) > m->overlap &&
+  return m->overlap < steep_overlap * pair->list.travel && scree_outer_way(m) > m->overlap &&
          m->rate != 0;
 }
 

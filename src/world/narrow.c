@@ -20,9 +20,7 @@
 
 #include "particle/closest.h"
 
-static const double facing_cosine = 0.15;      /* 81 degrees: thin wedges still count */
 static const double same_distance2 = 1 + 1e-9; /* squares of distances of one point */
-static const double notch_cosines[2] = {0.9659258, 0.9063078}; /* 15 and 25 degrees */
 
 typedef struct surface_contact {
   vec3 closest, normal;
@@ -175,7 +173,7 @@ static bool find_facing(const probe *x, double reach, bool behind, surface_conta
       const scree_face *face = &surface->faces[f];
       vec3 normal = face->normal;
       if (surface->sheet && is_turned(x, f)) normal = vec3_neg(normal);
-      if (vec3_dot(normal, x->feature->reference) < facing_cosine) continue;
+      if (vec3_dot(normal, x->feature->reference) < point_facing_cosine) continue;
       int region;
       vec3 c = scree_closest_on_face(face, p, &region), offset = vec3_sub(p, c);
       double d2 = vec3_norm2(offset), height = vec3_dot(offset, normal);

@@ -32,10 +32,7 @@ static double ease_of_rolling(const scree_world *world, size_t body) {
   return 1 / (b->inertia[body].x + b->mass[body] * r * r);
 }
 
-/* Rolling resistance of type C: the spring is 9/4 K (mu_r R)^2 (law.c), and its damping this part
- * of the critical one (Ai and others 2011, eq. 24 to 32). */
-static const double rolling_damping_ratio = 0.3;
-
+/* Rolling resistance of type C: the spring is 9/4 K (mu_r R)^2 (law.c). */
 static void set_up_rolling(const scree_world *world, double rolling_friction, scree_neighbours *n) {
   const scree_particle *sides[2] = {world->bodies.particle[n->a],
                                     n->wall ? NULL : world->bodies.particle[n->b]};

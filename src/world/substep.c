@@ -15,9 +15,6 @@
 #include "world/walls.h"
 
 enum { ROUNDS = 4 };
-static const double least_depth =
-    0.5; /* of the contact radii: from there on features are blended */
-static const double longest_way = 0.04; /* of the contact radii, in a sub-step */
 
 /* A body, or a wall, of which `free` is false. */
 typedef struct mover {
@@ -134,7 +131,7 @@ uint32_t scree_substep_count(const scree_world *world, const scree_pair *pair,
     const scree_contact_point *contact = &scratch->contacts.items[i];
     vec3 v = vec3_add(relative->velocity, vec3_cross(relative->spin, contact->at));
     double way = vec3_norm(v) * world->time_step;
-    if (contact->overlap + way > least_depth * pair->law.reach)
+    if (contact->overlap + way > blended_depth * pair->law.reach)
       parts = scree_max(parts, way / longest);
   }
   if (!(parts > 1)) return 1;

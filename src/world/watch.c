@@ -9,10 +9,6 @@
 
 #include "particle/closest.h"
 
-static const double look_share = 0.25;   /* of the depth of the deepest place */
-static const double back_cosine = -0.25; /* what leaves within 105 degrees of where it came from */
-static const double rim_cosine = -0.5;   /* beyond a rim, and within 120 degrees of there */
-static const double patience = 50;       /* contact times that a place may be through */
 enum { MOST_PASSAGES = 8 };
 
 /* The places of one of the two, against the surface of the other. */
@@ -56,7 +52,7 @@ static void pass(const scree_face *face, vec3 along, uint32_t i, scree_watch *wa
   vec3 out = vec3_dot(face->normal, along) > 0 ? face->normal : vec3_neg(face->normal);
   if (none_is_through(watch))
     watch->came[0] = (float)-out.x, watch->came[1] = (float)-out.y, watch->came[2] = (float)-out.z;
-  bool back = watch->through[i] > 0 && vec3_dot(side_of(watch), out) > back_cosine;
+  bool back = watch->through[i] > 0 && vec3_dot(side_of(watch), out) > watch_back_cosine;
   watch->through[i] = (uint8_t)(back ? watch->through[i] - 1 : watch->through[i] + 1);
 }
 
@@ -80,7 +76,7 @@ static bool is_round_rim(const scree_particle *sheet, vec3 at, const scree_watch
   if (!(scree_nearest_face(sheet, &root, 1, at, INFINITY, &face) < INFINITY)) return false;
   vec3 offset = vec3_sub(at, scree_closest_on_face(&sheet->faces[face], at, &region));
   return vec3_norm2(scree_outward(sheet, face, region)) == 0 &&
-         vec3_dot(side_of(watch), vec3_unit(offset)) > rim_cosine;
+         vec3_dot(side_of(watch), vec3_unit(offset)) > watch_rim_cosine;
 }
 
 /* Whether the deepest place came out on the far side with all that is as far from it as the
@@ -126,8 +122,9 @@ static void remember(const scree_world *world, const scree_pair *pair, const scr
 
 /* How long a place may be through: until the two must have been parted. */
 static double longest_time(const scree_pair *pair, const watched *w) {
-  double rest = patience * pair->law.contact_time;
-  return pair->depenetrating ? rest + patience * w->from->inner_depth / SCREE_DEPENETRATION_SPEED
+  double rest = passage_patience * pair->law.contact_time;
+  return pair->depenetrating ? rest + passage_patience * w->from->inner_depth /
+                                          scree_depenetration_speed(&pair->law)
                              : rest;
 }
 
@@ -144,7 +141,7 @@ void scree_pair_watch(const scree_world *world, scree_pair *pair, scree_scratch 
   if (watch->taken) look(world, &w, relative, watch);
   if (!pair->touching && none_is_through(watch)) watch->speed = (float)speed_of(&w, relative);
   remember(world, pair, relative, watch);
-  watch->due = pair->list.path + look_share * w.from->inner_depth;
+  watch->due = pair->list.path + watch_look_share * w.from->inner_depth;
   if (none_is_through(watch)) return;
   watch->due = -INFINITY; /* at every step */
   bool apart = !pair->touching && !pair->depenetrating;
