@@ -181,6 +181,28 @@ typedef struct scree_scene_loss {
 /* False where nothing did. */
 SCREE_API bool scree_scene_loss_of(const scree_scene *scene, scree_scene_loss *loss);
 
+/* ---- Changes ---- */
+
+/* What was changed between two steps: a field as of scree_scene_file_set and its values, NULL where
+ * it was, or is, not given. Texts belong to the scene. */
+typedef struct scree_scene_change_entry {
+  double time; /* s */
+  const char *field, *was, *is;
+} scree_scene_change_entry;
+
+/* The scene goes on with other motions and surface velocities of geometry, friction, restitution
+ * and cohesion, gravity, inlets, outlets, sensors, times, stop or output. A change is
+ * "FIELD=VALUE", or the path of a file with fields as a scene has them, which come over those that
+ * are there. Motions go on from where the wall stands, a new rate counts from now on, sensors that
+ * change begin anew, and the energy that the change itself brings, as of another gravity, is booked
+ * as entered. All else is refused with SCREE_BAD_ARGUMENT, and *scene stays as it was; so does it
+ * where nothing changes. */
+SCREE_API scree_status scree_scene_change(scree_scene **scene, const char *const *changes,
+                                          size_t count, scree_error *error);
+/* All since it began. */
+SCREE_API size_t scree_scene_change_count(const scree_scene *scene);
+SCREE_API scree_scene_change_entry scree_scene_change_at(const scree_scene *scene, size_t index);
+
 /* ---- Sensors ---- */
 
 /* Every number that is followed is a column: "time", "inside", "throughput.mass_rate". Its name and
@@ -286,6 +308,9 @@ typedef struct scree_scene_job {
    * Only title, time, stop and output may differ, but for output.frames and series. Without resume
    * a folder that has one is refused with SCREE_EXISTS, unless overwrite. */
   bool resume, overwrite;
+  /* On resuming, as of scree_scene_change; the checkpoint is written with them at once. */
+  const char *const *changes;
+  size_t change_count;
   /* The folder also gets a frame at every output.frames, frame-NNNNNN.scree counted from 0, and
    * last.scree at the end. */
   bool states;

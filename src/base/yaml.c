@@ -276,3 +276,33 @@ scree_status scree_yaml_set(scree_yaml *root, const char *keys, const char *valu
   *node = made;
   return SCREE_OK;
 }
+
+/* ---- merging ---- */
+
+static void take_node(scree_yaml *to, scree_yaml *from) {
+  scree_yaml_free(to);
+  *to = *from;
+  *from = (scree_yaml){.kind = SCREE_YAML_SCALAR};
+}
+
+/* What was moved leaves an empty scalar behind. */
+static scree_status merge(scree_yaml *root, scree_yaml *over, scree_error *error) {
+  if (root->kind != SCREE_YAML_MAPPING || over->kind != SCREE_YAML_MAPPING) {
+    take_node(root, over);
+    return SCREE_OK;
+  }
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < over->item_count; i++) {
+    scree_yaml *node = root;
+    const char *key = over->items[i].key;
+    status = step_into(&node, key, strlen(key), key, error);
+    if (status == SCREE_OK) status = merge(node, &over->items[i], error);
+  }
+  return status;
+}
+
+scree_status scree_yaml_merge(scree_yaml *root, scree_yaml *over, scree_error *error) {
+  scree_status status = merge(root, over, error);
+  scree_yaml_free(over);
+  return status;
+}

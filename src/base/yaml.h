@@ -40,4 +40,8 @@ const scree_yaml *scree_yaml_find(const scree_yaml *mapping, const char *key);
 scree_status scree_yaml_set(scree_yaml *root, const char *keys, const char *value,
                             scree_error *error);
 
+/* Puts all of `over`, which is freed, over what is there: mappings key by key, all else as it is.
+ */
+scree_status scree_yaml_merge(scree_yaml *root, scree_yaml *over, scree_error *error);
+
 #endif

@@ -282,6 +282,14 @@ static void print_loss(FILE *stream, const scree_scene *scene) {
   putc('\n', stream);
 }
 
+static void print_changes(FILE *stream, const scree_scene *scene) {
+  for (size_t i = 0; i < scree_scene_change_count(scene); i++) {
+    scree_scene_change_entry c = scree_scene_change_at(scene, i);
+    fprintf(stream, "  changed at %.6g s: %s from %s to %s\n", c.time, c.field,
+            c.was ? c.was : "not given", c.is ? c.is : "not given");
+  }
+}
+
 static void print_summary(FILE *stream, const scree_scene *scene, const char *stopped) {
   scree_scene_book b;
   scree_scene_get_book(scene, &b);
@@ -305,6 +313,7 @@ static void print_summary(FILE *stream, const scree_scene *scene, const char *st
   fprintf(stream, "  %.3g touching neighbours a particle, largest overlap %.4g um\n",
           o.coordination, 1e6 * o.largest_overlap);
   fprintf(stream, "  energy that the sums miss: %.2g of all that changed its form\n", b.ledger);
+  print_changes(stream, scene);
   print_sensors(stream, scene);
   char doubt[SCREE_REMARK];
   for (size_t i = 0; scree_scene_doubt(scene, i, doubt); i++) fprintf(stream, "  %s\n", doubt);
@@ -428,6 +437,8 @@ scree_status cli_run_scene(cli_scene_run *r, scree_error *error) {
   scree_scene_job job = {.file = r->file,
                          .folder = r->output,
                          .resume = r->resume,
+                         .changes = r->changes,
+                         .change_count = r->change_count,
                          .overwrite = r->overwrite,
                          .states = r->states,
                          .store = r->store,

@@ -19,6 +19,8 @@ typedef struct cli_scene_run {
   size_t rays;
   unsigned views;
   bool resume, overwrite, json, no_picture;
+  const char *const *changes; /* of what is resumed */
+  size_t change_count;
   bool states;      /* also frames that can be measured again */
   bool common_page; /* one of several, which get one report together */
   const char *name; /* of this one among several; NULL: it is the only one */

@@ -6,7 +6,7 @@
 
 typedef struct run_arguments {
   const char *output, *template_name;
-  cli_texts set;
+  cli_texts set, change;
   size_t rays;
   bool print, resume, overwrite, json, no_picture;
 } run_arguments;
@@ -31,6 +31,11 @@ static const cli_option options[] = {
     {"resume", CLI_FLAG, AT(resume), NULL,
      "Go on from the checkpoint in DIR where there is one; without a file, with what is in it.", 0,
      0, NULL},
+    {"change", CLI_TEXTS, AT(change), "FIELD=VALUE|FILE",
+     "With --resume: go on with another value, as geometry.drum.motion.0.rotate.speed=3, or with "
+     "all of a file that has such fields; may be given several times. What may change: motions, "
+     "friction, gravity, inlets, outlets, sensors, times.",
+     0, 0, NULL},
     {"force", CLI_FLAG, AT(overwrite), NULL,
      "Begin anew in a folder with an earlier scene, whose files go.", 0, 0, NULL},
     {"json", CLI_FLAG, AT(json), NULL, "Print result.json instead of text.", 0, 0, NULL},
@@ -97,6 +102,9 @@ static int check_call(const cli_call *call) {
                                   "prints one to start from");
   if (call->input_count == 0 && (a->set.count || a->print))
     return cli_misuse(call->verb, "--set and --print need a SCENE.yaml");
+  if (a->change.count && (!a->resume || call->input_count))
+    return cli_misuse(call->verb, "--change needs --resume, and no SCENE.yaml: it changes the "
+                                  "scene that the folder has");
   if (a->resume && !a->output) return cli_misuse(call->verb, "--resume needs -o DIR");
   return 0;
 }
@@ -110,6 +118,8 @@ static int run(const cli_call *call) {
                      .rays = a->rays,
                      .views = CLI_BODIES | CLI_GEOMETRY,
                      .resume = a->resume,
+                     .changes = a->change.items,
+                     .change_count = a->change.count,
                      .overwrite = a->overwrite,
                      .json = a->json,
                      .no_picture = a->no_picture};
@@ -148,7 +158,8 @@ const cli_verb cli_verb_run = {
     .examples = "scree run --template hopper > hopper.yaml\n"
                 "scree run hopper.yaml -o hopper\n"
                 "scree run hopper.yaml --set inlets.feed.count=800 --set time=6 -o more\n"
-                "scree run -o hopper --resume\n",
+                "scree run -o hopper --resume\n"
+                "scree run -o hopper --resume --change gravity='[0, 0, -1.62]' --change time=8\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .defaults = &defaults,

@@ -25,6 +25,21 @@ static void json_book(scree_json *json, const scree_scene *scene) {
   scree_json_end(json);
 }
 
+static void json_changes(scree_json *json, const scree_scene *scene) {
+  size_t count = scree_scene_change_count(scene);
+  scree_json_array(json, "changes");
+  for (size_t i = 0; i < count; i++) {
+    scree_scene_change_entry c = scree_scene_change_at(scene, i);
+    scree_json_row_object(json, NULL);
+    scree_json_number(json, "time", c.time);
+    scree_json_text(json, "field", c.field);
+    scree_json_text(json, "was", c.was);
+    scree_json_text(json, "is", c.is);
+    scree_json_end(json);
+  }
+  scree_json_end(json);
+}
+
 static void json_pile(scree_json *json, const char *name, const scree_pile_settings *settings,
                       const scree_pile *pile) {
   scree_json_object(json, NULL);
@@ -143,6 +158,7 @@ static void write_scene(FILE *stream, const scree_scene_entry *entry, const doub
   scree_json_number(&json, "wall_seconds", entry->seconds);
   json_costs(&json, scene);
   json_book(&json, scene);
+  json_changes(&json, scene);
   json_piles(&json, entry, piles);
   json_parts(&json, scene);
   json_columns(&json, scene, last);

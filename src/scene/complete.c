@@ -323,6 +323,10 @@ static scree_status find_checkpoint(work *w, scree_error *error) {
   if (status == SCREE_OK) status = check_found(w, path, error);
   if (status != SCREE_OK) goto done;
   w->scene->costs.piece_count++;
+  if (w->job->change_count) {
+    status = scree_scene_change(&w->scene, w->job->changes, w->job->change_count, error);
+    if (status == SCREE_OK) status = scree_scene_save(w->scene, path, true, error);
+  }
   /* that of this very moment comes after its checkpoint */
   while (now_of(w) - 0.5 * w->scene->time_step > next_frame(w)) w->frame_count++;
 done:

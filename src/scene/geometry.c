@@ -172,12 +172,11 @@ static scree_wall_motion motion_of(const scree_plan_motion *plan) {
   return m;
 }
 
-static scree_status set_motions(const scree_scene *scene, size_t index, scree_world *world,
-                                scree_error *error) {
+scree_status scree_scene_set_motions(const scree_scene *scene, size_t index, scree_world *world,
+                                     scree_error *error) {
   const scree_plan_geometry *g = plan_of(scene, index);
   const scree_scene_geometry *made = &scene->geometry[index];
   scree_status status = SCREE_OK;
-  if (g->motion.count == 0) return SCREE_OK;
   scree_wall_motion *motions = scree_alloc(g->motion.count, sizeof *motions);
   if (!motions) return scree_fail_memory(error, g->motion.count * sizeof *motions, "motions");
   for (size_t i = 0; i < g->motion.count; i++)
@@ -199,7 +198,8 @@ static scree_status add_one(scree_scene *scene, size_t index, const char *folder
     status = add_file(scene, index, folder, g->file.items[k], world, error);
   if (status == SCREE_OK && g->file.count == 0) status = add_solid(scene, index, world, error);
   made->wall_count = scree_world_wall_count(world) - made->first_wall;
-  return status == SCREE_OK ? set_motions(scene, index, world, error) : status;
+  if (status != SCREE_OK || g->motion.count == 0) return status;
+  return scree_scene_set_motions(scene, index, world, error);
 }
 
 scree_status scree_scene_add_geometry(scree_scene *scene, const char *folder, scree_world *world,

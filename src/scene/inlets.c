@@ -16,9 +16,16 @@ static const double pi = 3.14159265358979323846;
 
 /* ---- what is due ---- */
 
-static double active_time(const scree_plan_inlet *plan, double time) {
+/* Since the rate counts. */
+static double active_time(const scree_scene_inlet *inlet, double time) {
+  const scree_plan_inlet *plan = inlet->plan;
   double until = isnan(plan->until) ? INFINITY : plan->until;
-  return fmax(0, fmin(time, until) - plan->from);
+  return fmax(0, fmin(time, until) - fmax(plan->from, inlet->begin.time));
+}
+
+/* kg that should be in by now. */
+static double due_mass(const scree_scene_inlet *inlet, double time) {
+  return inlet->begin.mass + inlet->plan->mass_rate * active_time(inlet, time);
 }
 
 /* How many bodies should be in by now. */
@@ -27,7 +34,8 @@ static size_t due_count(const scree_scene_inlet *inlet, double time) {
   size_t most = plan->count ? plan->count : SIZE_MAX;
   if (time < plan->from) return 0;
   if (!isnan(plan->rate)) {
-    double due = ceil(plan->rate * active_time(plan, time) * (1 - 1e-12));
+    double due =
+        (double)inlet->begin.count + ceil(plan->rate * active_time(inlet, time) * (1 - 1e-12));
     return due < (double)most ? (size_t)due : most;
   }
   if (!isnan(plan->mass_rate)) return most; /* by mass, below */
@@ -37,7 +45,7 @@ static size_t due_count(const scree_scene_inlet *inlet, double time) {
 static bool is_due(const scree_scene_inlet *inlet, double time) {
   const scree_plan_inlet *plan = inlet->plan;
   if (inlet->entered >= due_count(inlet, time)) return false;
-  return isnan(plan->mass_rate) || inlet->mass < plan->mass_rate * active_time(plan, time);
+  return isnan(plan->mass_rate) || inlet->mass < due_mass(inlet, time);
 }
 
 /* How many wait, now that no more fit: bodies of a mass rate are counted by the mean mass. */
@@ -52,7 +60,7 @@ static size_t count_waiting(const scree_scene *scene, const scree_scene_inlet *i
     mean += plan->shapes.values[k] * scene->shapes[inlet->shapes[k]].mass;
     shares += plan->shapes.values[k];
   }
-  double behind = (plan->mass_rate * active_time(plan, time) - inlet->mass) * shares / mean;
+  double behind = (due_mass(inlet, time) - inlet->mass) * shares / mean;
   return behind > 0 ? (size_t)ceil(behind) : 0;
 }
 

@@ -30,10 +30,8 @@ static scree_status move_wall(scree_scene *scene, size_t wall_index, const scree
   return scree_world_set_wall_velocity(scene->world, wall_index, velocity, spin, error);
 }
 
-scree_status scree_scene_begin_phases(scree_scene *scene, scree_error *error) {
+scree_status scree_scene_lead_by_phase(scree_scene *scene, scree_error *error) {
   scree_status status = SCREE_OK;
-  scene->phase_start = scree_world_time(scene->world);
-  scene->still_since = NAN;
   for (size_t i = 0; i < scene->plan.geometry.count; i++) {
     const scree_plan_geometry *g = SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, i);
     const scree_scene_geometry *made = &scene->geometry[i];
@@ -43,6 +41,12 @@ scree_status scree_scene_begin_phases(scree_scene *scene, scree_error *error) {
       status = move_wall(scene, made->first_wall + w, m, error);
   }
   return status;
+}
+
+scree_status scree_scene_begin_phases(scree_scene *scene, scree_error *error) {
+  scene->phase_start = scree_world_time(scene->world);
+  scene->still_since = NAN;
+  return scree_scene_lead_by_phase(scene, error);
 }
 
 /* ---- their ends ---- */

@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-static const scree_seal seal = {"screeSCN", "checkpoint of a scree scene", "scene", 6};
+static const scree_seal seal = {"screeSCN", "checkpoint of a scree scene", "scene", 7};
 
 /* ---- the fields, in and out alike ---- */
 
@@ -59,6 +59,9 @@ static void code_inlets(scree_codec *c, scree_scene *scene) {
     code_size(c, &inlet->waiting);
     scree_code_real(c, &inlet->mass);
     scree_code_u64(c, &inlet->draws);
+    scree_code_real(c, &inlet->begin.time);
+    scree_code_real(c, &inlet->begin.mass);
+    code_size(c, &inlet->begin.count);
     code_size(c, &inlet->layers.count);
     if (inlet->plan->count && inlet->entered > inlet->plan->count) c->failed = true;
     for (size_t k = 0; k < inlet->plan->shapes.count; k++) code_size(c, &inlet->counts[k]);
@@ -117,7 +120,7 @@ static void code_hits(scree_codec *c, scree_scene *scene) {
   }
 }
 
-static void code_sensor(scree_codec *c, scree_scene *scene, scree_scene_sensor *sensor) {
+void scree_scene_code_sensor(scree_codec *c, scree_scene *scene, scree_scene_sensor *sensor) {
   double *arrays[] = {sensor->count, sensor->mass, sensor->sum, sensor->sum2};
   for (size_t k = 0; k < 4; k++) scree_code_reals(c, arrays[k], SCREE_SCENE_SHAPES(scene) + 1);
   scree_code_reals(c, sensor->wear, sensor->wear_count);
@@ -174,15 +177,51 @@ static void code_parts(scree_codec *c, scree_scene *scene) {
   }
 }
 
+/* A text in the scene's arena; NULL is written as none. */
+static void code_text(scree_codec *c, scree_scene *scene, const char **text) {
+  bool there = *text != NULL;
+  scree_code_bool(c, &there);
+  if (!there || !scree_codec_good(c)) return;
+  if (!c->loading) {
+    scree_code_text(c, *text, strlen(*text));
+    return;
+  }
+  char *read = scree_decode_text(c), *kept = NULL;
+  if (read) kept = scree_arena_take(&scene->arena, strlen(read) + 1, 1);
+  if (kept)
+    *text = memcpy(kept, read, strlen(read) + 1);
+  else
+    c->failed = true;
+  scree_free(read);
+}
+
+static void code_changes(scree_codec *c, scree_scene *scene) {
+  size_t count = scene->changes.count;
+  scree_code_count(c, &count, 8);
+  for (size_t i = 0; i < count && scree_codec_good(c); i++) {
+    scree_scene_change_entry change = {0};
+    if (!c->loading) change = scene->changes.items[i];
+    scree_code_real(c, &change.time);
+    code_text(c, scene, &change.field);
+    code_text(c, scene, &change.was);
+    code_text(c, scene, &change.is);
+    if (!change.field) c->failed = true;
+    if (c->loading && scree_codec_good(c) && !SCREE_PUSH(&scene->changes, change))
+      c->out_of_memory = true;
+  }
+}
+
 static void code_state(scree_codec *c, scree_scene *scene) {
   code_books(c, scene);
   code_progress(c, scene);
   code_inlets(c, scene);
-  for (size_t i = 0; i < scene->plan.sensors.count; i++) code_sensor(c, scene, &scene->sensors[i]);
+  for (size_t i = 0; i < scene->plan.sensors.count; i++)
+    scree_scene_code_sensor(c, scene, &scene->sensors[i]);
   code_parts(c, scene);
   code_hits(c, scene);
   code_bodies(c, scene);
   code_series(c, scene);
+  code_changes(c, scene);
 }
 
 /* How many walls each piece of geometry is. */

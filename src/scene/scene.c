@@ -90,8 +90,8 @@ static scree_status add_materials(const scree_scene *scene, scree_world *world,
   return status;
 }
 
-static scree_status make_world(const scree_scene *scene, double time_step, scree_world **world,
-                               scree_error *error) {
+scree_status scree_scene_make_world(const scree_scene *scene, double time_step, scree_world **world,
+                                    scree_error *error) {
   scree_world_options o = world_options(scene, time_step);
   scree_world *made;
   scree_status status = scree_world_create(&o, &made, error);
@@ -154,7 +154,7 @@ scree_status scree_scene_add_body(const scree_scene_shape *shape, scree_world *w
 }
 
 static scree_status make_gallery(scree_scene *scene, const char *folder, scree_error *error) {
-  scree_status status = make_world(scene, 0, &scene->gallery, error);
+  scree_status status = scree_scene_make_world(scene, 0, &scene->gallery, error);
   if (status == SCREE_OK) status = scree_scene_add_geometry(scene, folder, scene->gallery, error);
   double far = 0;
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
@@ -266,7 +266,7 @@ scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_er
   if (status != SCREE_OK) return status;
   scene->time_step = scree_world_time_step(scene->gallery, NULL);
   plan_ticks(scene);
-  status = make_world(scene, scene->time_step, &scene->world, error);
+  status = scree_scene_make_world(scene, scene->time_step, &scene->world, error);
   if (status == SCREE_OK) status = scree_scene_add_geometry(scene, folder, scene->world, error);
   if (status == SCREE_OK) scree_world_share_walls(scene->world, scene->gallery);
   return status;
@@ -299,9 +299,8 @@ static scree_status note_densities(scree_scene *scene, const scree_scene_file *f
   return SCREE_OK;
 }
 
-/* Name, text and plan of the file. */
-static scree_status take_file(scree_scene *scene, const scree_scene_file *file,
-                              scree_error *error) {
+scree_status scree_scene_take_file(scree_scene *scene, const scree_scene_file *file,
+                                   scree_error *error) {
   scree_status status = scree_scene_file_plan(file, &scene->arena, &scene->plan, error);
   if (status != SCREE_OK) return status;
   status = note_densities(scene, file, error);
@@ -317,7 +316,7 @@ scree_status scree_scene_create_from(const scree_scene_file *file, scree_shape_s
                                      scree_error *error) {
   scree_scene *made = scree_alloc_zero(1, sizeof *made);
   if (!made) return scree_fail_memory(error, sizeof *made, "a scene");
-  scree_status status = take_file(made, file, error);
+  scree_status status = scree_scene_take_file(made, file, error);
   if (status == SCREE_OK) status = make_particles(made, file->folder, store, progress, error);
   if (status == SCREE_OK) status = scree_scene_set_up(made, file->folder, error);
   if (status == SCREE_OK) status = scree_scene_plan_wear(made, error);
@@ -343,7 +342,7 @@ scree_status scree_scene_file_largest(const scree_scene_file *file, scree_shape_
                                       scree_error *error) {
   scree_scene *made = scree_alloc_zero(1, sizeof *made);
   if (!made) return scree_fail_memory(error, sizeof *made, "a scene");
-  scree_status status = take_file(made, file, error);
+  scree_status status = scree_scene_take_file(made, file, error);
   if (status == SCREE_OK) status = make_particles(made, file->folder, store, progress, error);
   double largest = 0;
   for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(made); i++) {
@@ -387,6 +386,7 @@ void scree_scene_free(scree_scene *scene) {
   scree_free(scene->shape_of.items);
   scree_free(scene->entered_at.items);
   scree_free(scene->present.items);
+  scree_free(scene->changes.items);
   scree_free(scene->text);
   scree_free(scene->name);
   scree_arena_free(&scene->arena);
@@ -610,6 +610,21 @@ size_t scree_scene_wall_geometry(const scree_scene *scene, size_t index) {
   return g;
 }
 
+/* What is there and was dissipated, less what came in and was done; of parts that forces move
+ * likewise. */
+static double missing_energy(const scree_scene *scene, const scree_observation *o) {
+  double is = o->kinetic + o->rotational + o->potential + o->elastic + o->dissipated_dashpot +
+              o->dissipated_friction;
+  double should = scene->entered_energy - scene->left_energy + o->wall_work + o->applied_work;
+  return is + scree_scene_parts_balance(scene) - should;
+}
+
+double scree_scene_missing_energy(const scree_scene *scene) {
+  scree_observation o;
+  scree_world_observe(scene->world, &o);
+  return missing_energy(scene, &o);
+}
+
 void scree_scene_get_book(const scree_scene *scene, scree_scene_book *book) {
   scree_observation o;
   scree_world_observe(scene->world, &o);
@@ -625,13 +640,10 @@ void scree_scene_get_book(const scree_scene *scene, scree_scene_book *book) {
       b.inside_count++;
       b.inside_mass += scree_world_body_mass(scene->world, i);
     }
-  double lost = o.dissipated_dashpot + o.dissipated_friction;
-  double is = o.kinetic + o.rotational + o.potential + o.elastic + lost;
-  double should = scene->entered_energy - scene->left_energy + o.wall_work + o.applied_work;
-  double turned =
-      lost + o.kinetic + o.rotational + o.elastic + fabs(o.wall_work) + fabs(o.applied_work);
-  is += scree_scene_parts_balance(scene); /* their energy, less what they got from elsewhere */
-  b.ledger = turned > 0 ? (is - should) / turned : 0;
+  double missing = missing_energy(scene, &o);
+  double turned = o.dissipated_dashpot + o.dissipated_friction + o.kinetic + o.rotational +
+                  o.elastic + fabs(o.wall_work) + fabs(o.applied_work);
+  b.ledger = turned > 0 ? missing / turned : 0;
   *book = b;
 }
 

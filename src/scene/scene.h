@@ -59,8 +59,15 @@ typedef struct scree_scene_layers {
   double pitch;
 } scree_scene_layers;
 
+/* Since when the rate of an inlet counts, after what was due until then. */
+typedef struct scree_scene_begin {
+  double time, mass; /* s, kg */
+  size_t count;
+} scree_scene_begin;
+
 typedef struct scree_scene_inlet {
   const scree_plan_inlet *plan;
+  scree_scene_begin begin;
   size_t *shapes, *counts; /* index of each of its shapes; how many of it entered */
   size_t entered, waiting;
   double mass;
@@ -112,6 +119,11 @@ typedef struct scree_scene_column {
   const char *unit;
 } scree_scene_column;
 
+typedef struct scree_scene_change_list {
+  scree_scene_change_entry *items; /* texts in the scene's arena */
+  size_t count, capacity;
+} scree_scene_change_list;
+
 struct scree_scene {
   scree_arena arena;
   scree_plan plan;
@@ -162,6 +174,7 @@ struct scree_scene {
   double phase_start; /* s */
   double still_since; /* s; NaN while moving */
   scree_scene_costs costs;
+  scree_scene_change_list changes;
   bool is_frame;             /* loaded from a frame: no contacts, cannot go on */
   double frame_coordination; /* of a frame, as its contacts were */
 };
@@ -197,6 +210,21 @@ scree_status scree_scene_make_shape(scree_scene *scene, size_t index, const char
 /* Where a file named in a scene lies; NULL when memory is out. */
 char *scree_scene_path(const char *folder, const char *name);
 
+/* A world of its materials, without walls and bodies; s, 0: by what there will be. */
+scree_status scree_scene_make_world(const scree_scene *scene, double time_step, scree_world **world,
+                                    scree_error *error);
+/* Name, text and plan of the file. */
+scree_status scree_scene_take_file(scree_scene *scene, const scree_scene_file *file,
+                                   scree_error *error);
+/* J that is there and that the books do not explain. */
+double scree_scene_missing_energy(const scree_scene *scene);
+/* save.c: what a sensor has gathered, in or out. */
+struct scree_codec;
+void scree_scene_code_sensor(struct scree_codec *c, scree_scene *scene, scree_scene_sensor *sensor);
+
+/* geometry.c: motions of one, from where it stands. */
+scree_status scree_scene_set_motions(const scree_scene *scene, size_t index, scree_world *world,
+                                     scree_error *error);
 /* geometry.c: walls into a world. */
 scree_status scree_scene_add_geometry(scree_scene *scene, const char *folder, scree_world *world,
                                       scree_error *error);
@@ -251,6 +279,8 @@ scree_status scree_scene_enter(scree_scene *scene, scree_scene_inlet *inlet, siz
 /* phases.c: their motions begin with the first. Ends the one that is over; `observed`: whether now
  * is a tick, on which it may end early. */
 scree_status scree_scene_begin_phases(scree_scene *scene, scree_error *error);
+/* What moves during a phase, by the one that it is in. */
+scree_status scree_scene_lead_by_phase(scree_scene *scene, scree_error *error);
 scree_status scree_scene_turn_phase(scree_scene *scene, bool observed, scree_error *error);
 /* s: when it ends at the latest; infinity where there is none, or it waits for the inlets. */
 double scree_scene_phase_end(const scree_scene *scene);

@@ -52,6 +52,14 @@ wait $victim 2>/dev/null
 "$SCREE" run small.yaml --set output.checkpoint=0.01 -o killed --no-picture -q --resume >/dev/null
 cmp out/series.csv killed/series.csv && echo same series
 cmp out/motion.scree killed/motion.scree && echo same motion
+# gone on with a change, which is told; killed in between, the change stays
+cp -r out changed
+run run -o changed --resume --no-picture --change materials.grain.density=900 -q
+run run small.yaml -o changed --resume --change time=1
+run run -o changed --resume --no-picture --change time=0.07 --change materials.grain.friction=0.2 -q | grep "changed at" | numbers
+grep '"was"' changed/result.json | tail -1 | numbers
+grep -a -c 'materials.grain.friction from' changed/report.html
+run run -o changed --resume --no-picture --change time=0.07 -q | grep -c "changed at"
 # the table of bodies, which another scene reads
 run export out/checkpoint.scree -o table.csv
 cmp table.csv out/bodies.csv && echo same table

@@ -12,26 +12,6 @@ static const double g = 9.81, pi = 3.14159265358979;
   "materials: {m: {young: 5e6, density: 2500, restitution: %g, friction: 0.3}}\n"                  \
   "shapes: {ball: {sphere: 0.02}}\n"
 
-static size_t column_of(const scree_scene *scene, const char *name) {
-  size_t k = 0;
-  while (strcmp(scree_scene_column_name(scene, k), name) != 0) k++;
-  return k;
-}
-
-/* The series of a column: row i at i * interval. */
-static double at_row(const scree_scene *scene, const char *name, size_t row) {
-  size_t rows, columns = scree_scene_column_count(scene);
-  const double *series = scree_scene_series(scene, &rows);
-  assert_true(row < rows);
-  return series[row * columns + column_of(scene, name)];
-}
-
-static size_t row_count(const scree_scene *scene) {
-  size_t rows;
-  scree_scene_series(scene, &rows);
-  return rows;
-}
-
 /* s, between the first and the last time that a column rises through a value, over how often. */
 static double period_of(const scree_scene *scene, const char *name, double level) {
   double first = NAN, last = NAN;

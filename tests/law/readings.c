@@ -23,14 +23,6 @@ static scree_scene *create_here(const char *text) {
   return scene;
 }
 
-static size_t column_of(const scree_scene *scene, const char *name) {
-  size_t k = 0;
-  while (scree_scene_column_name(scene, k) && strcmp(scree_scene_column_name(scene, k), name) != 0)
-    k++;
-  if (k == scree_scene_column_count(scene)) fail_msg("no column %s", name);
-  return k;
-}
-
 static double value_of(const scree_scene *scene, const char *name) {
   scree_error error;
   double *values = calloc(scree_scene_column_count(scene), sizeof *values);
