@@ -1,6 +1,6 @@
-// Bundles the page into ../src/report/page.inc: C string literals of the page up to the summary for readers
-// without JavaScript, of what follows up to the data, and of the script. With --check: fails where the committed
-// file differs.
+// Bundles the page into ../src/report: C string literals in page.inc of the page up to the summary for readers without
+// JavaScript and of what follows up to the data, in page_script.inc of the script. With --check: fails where a
+// committed file differs.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { bundle, hash, licences, names } from './bundle.mjs';
 
@@ -13,7 +13,7 @@ const [top, middle] = page.split('@SUMMARY@');
 // Literals of at most 4000 bytes: C17 promises 4095.
 function literal(name, content) {
   const bytes = Buffer.from(content, 'utf8');
-  let out = `static const char *const ${name}[] = {\n`;
+  let out = `const char *const ${name}[] = {\n`;
   for (let i = 0; i < bytes.length; i += 4000) {
     let line = '';
     for (const byte of bytes.subarray(i, i + 4000)) {
@@ -33,15 +33,18 @@ const packages = names.map((name) => {
   const { version, license } = JSON.parse(readFileSync(`node_modules/${name}/package.json`, 'utf8'));
   return `${name} ${version} (${license})`;
 });
-const content = `/* Made by web/build.mjs; not to be edited. Contains ${packages.join(', ')}:
- * licences in web/licences/. */
-${literal('page_top', top)}${literal('page_middle', middle)}${literal('page_script', script)}`;
-const target = '../src/report/page.inc';
-if (process.argv.includes('--check')) {
-  if (readFileSync(target, 'utf8') !== content) {
-    console.error('src/report/page.inc is not what web/ builds: run `npm ci && npm run build` in web/');
+const head = `/* Made by web/build.mjs; not to be edited. Contains ${packages.join(', ')}:
+ * licences in web/licences/. */\n`;
+const files = {
+  'page.inc': `${head}static ${literal('page_top', top)}static ${literal('page_middle', middle)}`,
+  'page_script.inc': `${head}${literal('scree_page_script', script)}`,
+};
+for (const [name, content] of Object.entries(files)) {
+  const target = `../src/report/${name}`;
+  if (!process.argv.includes('--check')) {
+    writeFileSync(target, content);
+  } else if (readFileSync(target, 'utf8') !== content) {
+    console.error(`src/report/${name} is not what web/ builds: run \`npm ci && npm run build\` in web/`);
     process.exit(1);
   }
-} else {
-  writeFileSync(target, content);
 }

@@ -104,6 +104,8 @@ SCREE_API scree_status scree_scene_advance(scree_scene *scene, size_t step_count
 SCREE_API const char *scree_scene_end(const scree_scene *scene);
 /* The phase that it is in; NULL: none. */
 SCREE_API const char *scree_scene_phase(const scree_scene *scene);
+/* The phase of an index, in their order; NULL past the last. */
+SCREE_API const char *scree_scene_phase_name(const scree_scene *scene, size_t index);
 /* s: the scene's `time`. */
 SCREE_API double scree_scene_duration(const scree_scene *scene);
 SCREE_API const char *scree_scene_title(const scree_scene *scene);

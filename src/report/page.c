@@ -3,7 +3,7 @@
  * content security policy allows nothing but the one script and the one style sheet that it names
  * by their hashes. Texts from files are escaped where they stand: in the JSON `<` as \u003c, which
  * its strings alone can hold, so that no name ends the script element it is in; the script shows
- * texts as text only. web/ holds the page's sources; page.inc is what web/build.mjs makes of them.
+ * texts as text only. web/ holds the page's sources; page.inc and page_script.inc are what web/build.mjs makes of them.
  */
 #include "base/alloc.h"
 #include "base/array.h"
@@ -355,12 +355,12 @@ static scree_status put_page(page *p, const name_list *folders) {
     status = put_folder(p, folders->items[i]);
   }
   fputs("]}</script>\n", p->stream);
-  size_t used = length_of(page_top) + length_of(page_middle) + length_of(page_script) +
+  size_t used = length_of(page_top) + length_of(page_middle) + length_of(scree_page_script) +
                 p->result_bytes + SPARE_BYTES;
   size_t room = used < PAGE_BYTES ? (PAGE_BYTES - used) / 4 * 3 : 0; /* as base64 */
   if (status == SCREE_OK) status = scree_page_parts_put(&p->parts, p->stream, room, p->error);
   fputs("<script type=\"module\">", p->stream);
-  put_all(p->stream, page_script);
+  put_all(p->stream, scree_page_script);
   fputs("</script>\n</body>\n</html>\n", p->stream);
   return status;
 }

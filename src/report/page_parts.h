@@ -36,4 +36,7 @@ scree_status scree_page_parts_put(scree_page_parts *parts, FILE *stream, size_t 
                                   scree_error *error);
 void scree_page_parts_free(scree_page_parts *parts);
 
+/* The page's script in pieces, NULL behind the last. */
+extern const char *const scree_page_script[];
+
 #endif

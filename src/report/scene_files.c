@@ -89,6 +89,10 @@ static void json_parts(scree_json *json, const scree_scene *scene) {
   for (size_t i = 0; scree_scene_geometry_name(scene, i); i++)
     scree_json_text(json, NULL, scree_scene_geometry_name(scene, i));
   scree_json_end(json);
+  scree_json_array(json, "phases");
+  for (size_t i = 0; scree_scene_phase_name(scene, i); i++)
+    scree_json_text(json, NULL, scree_scene_phase_name(scene, i));
+  scree_json_end(json);
   scree_json_array(json, "inlets");
   for (size_t i = 0; scree_scene_inlet_name(scene, i); i++) {
     double mass;

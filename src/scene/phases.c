@@ -91,6 +91,11 @@ const char *scree_scene_phase(const scree_scene *scene) {
   return phase ? phase->place.name : NULL;
 }
 
+const char *scree_scene_phase_name(const scree_scene *scene, size_t index) {
+  if (index >= scene->plan.phases.count) return NULL;
+  return SCREE_PLAN_AT(&scene->plan, phases, scree_plan_phase, index)->place.name;
+}
+
 double scree_scene_phase_end(const scree_scene *scene) {
   const scree_plan_phase *phase = phase_of(scene);
   return phase && !waits(scene, phase) ? scene->phase_start + phase->time : (double)INFINITY;

@@ -6,6 +6,8 @@ Exits 77 where no Chromium is installed, or the page is not there or older than 
 import base64
 import json
 import os
+import re
+import struct
 import subprocess
 import sys
 import tempfile
@@ -202,6 +204,83 @@ def several(browser, folder):
     check(saved(browser, "#save-choice")[1] == native, "two scans: not the program's answer")
 
 
+def other_formats_are_read(browser, folder):
+    """3MF and glTF, which state their units: the program's verdict of each."""
+    scree("simplify", "fp-1.stl", "-u", "mm", "-n", "2000", "-o", "small.stl", folder=folder)
+    scree("export", "small.stl", "-u", "mm", "-o", "model.3mf", folder=folder)
+    ready(browser)
+    pick(browser, "#unit", "mm")
+    with open(os.path.join(folder, "model.glb"), "wb") as out:
+        out.write(glb_of_a_cube())
+    for name in ("model.3mf", "model.glb"):
+        verdict = scree("check", name, folder=folder).stdout.decode().splitlines()[0]
+        chosen(browser, lambda name=name: drop(browser, os.path.join(folder, name)))
+        said = browser.run("return document.querySelector('.scans li:last-child .scan span').textContent")
+        check(said.strip() == verdict.removeprefix(f"{name}: "), f"{name}: the page says {said!r}, the program {verdict!r}")
+        browser.run("document.querySelector('.scans li:last-child button').click()")
+        browser.wait("!document.querySelector('.scans li')")
+
+
+def glb_of_a_cube():
+    """A binary glTF of one cube of a metre, faces gridded so that it can be decimated."""
+    steps, points, triangles = 6, [], []
+    for axis in range(3):
+        for side in (0, 1):
+            first = len(points)
+            for i in range(steps + 1):
+                for j in range(steps + 1):
+                    p = [0.0, 0.0, 0.0]
+                    p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3] = float(side), i / steps, j / steps
+                    points.append(p)
+            for i in range(steps):
+                for j in range(steps):
+                    a = first + i * (steps + 1) + j
+                    b, c, d = a + 1, a + steps + 1, a + steps + 2
+                    triangles += [(a, c, d), (a, d, b)] if side else [(a, d, c), (a, b, d)]
+    data = b"".join(struct.pack("<3f", *p) for p in points) + b"".join(struct.pack("<3I", *t) for t in triangles)
+    text = json.dumps({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+                       "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+                       "buffers": [{"byteLength": len(data)}],
+                       "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 12 * len(points)},
+                                       {"buffer": 0, "byteOffset": 12 * len(points), "byteLength": 12 * len(triangles)}],
+                       "accessors": [{"bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
+                                     {"bufferView": 1, "componentType": 5125, "count": 3 * len(triangles), "type": "SCALAR"}]}).encode()
+    text += b" " * (-len(text) % 4)
+    return (struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(data), len(text), 0x4E4F534A) + text
+            + struct.pack("<II", len(data), 0x004E4942) + data)
+
+
+def large_holes_are_filled(browser, folder):
+    """A cube without one of its gridded faces: the program names the repair, and a button does it."""
+    steps, lines = 40, ["OFF", "0 0 0"]
+    points, faces = [], []
+    for axis in range(3):
+        for side in (0, 1):
+            if (axis, side) == (2, 1):
+                continue
+            first = len(points)
+            for i in range(steps + 1):
+                for j in range(steps + 1):
+                    p = [0, 0, 0]
+                    p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3] = side * steps, i, j
+                    points.append(p)
+            for i in range(steps):
+                for j in range(steps):
+                    a = first + i * (steps + 1) + j
+                    b, c, d = a + 1, a + steps + 1, a + steps + 2
+                    faces += [(a, c, d), (a, d, b)] if side else [(a, d, c), (a, b, d)]
+    lines[1] = f"{len(points)} {len(faces)} 0"
+    lines += [" ".join(map(str, p)) for p in points] + ["3 " + " ".join(map(str, f)) for f in faces]
+    with open(os.path.join(folder, "open.off"), "w", encoding="utf-8") as out:
+        out.write("\n".join(lines) + "\n")
+    drop(browser, os.path.join(folder, "open.off"))
+    browser.wait("document.querySelector('.scans li:last-child .error')")
+    idle(browser)
+    check("--large-holes" in browser.text(".scans li:last-child .advice"), "the repair that is advised has no button")
+    chosen(browser, lambda: browser.run("document.querySelector('.advice').click()"))
+    check("usable" in browser.text(".scans li:last-child .scan"), "it is not repaired")
+
+
 def work_is_cancelled(browser, folder):
     scree("sample", "dc-1", "--resolution", "0.5mm", "-o", "dc-1.stl", folder=folder)
     drop(browser, os.path.join(folder, "dc-1.stl"))
@@ -227,7 +306,40 @@ def pours(browser):
     at = browser.run("return document.body.dataset.pourTime")
     time.sleep(0.3)
     check(browser.run("return document.body.dataset.pourTime") == at, "the pour goes on while it pauses")
+    own_scenes(browser)
     browser.run("document.querySelector('#tab-0').click()")
+
+
+def own_scenes(browser):
+    """A drum goes on turning what is in it; out of a hopper some fall once it is open."""
+    for container, setting, until in (("drum", ("#pour-speed", 20), "document.body.dataset.pourTime > 0.8"),
+                                      ("hopper", ("#pour-opens", 0.5), "document.body.dataset.pourLeft > 0")):
+        pick(browser, "#pour-container", container)
+        pick(browser, *setting)
+        pick(browser, "#pour-count", 10)
+        browser.run("document.body.dataset.pourTime = document.body.dataset.pourLeft = 0; document.querySelector('#pour-start').click()")
+        browser.wait(f"{until} || document.querySelector('#pour-state.error')", 200)
+        check(browser.text("#pour-state.error") is None, browser.text("#pour-state"))
+        check("came in" in browser.text("#pour-state"), f"{container}: {browser.text('#pour-state')}")
+        if KEEP:
+            browser.screenshot(os.path.join(KEEP, f"{container}.png"))
+    browser.run("document.querySelector('#pour-pause').click()")
+
+
+def answer_comes_first(browser):
+    """On a telephone the sample's answer and all that follows take less than two screens, and nothing is cut; one
+    distance is told of one level."""
+    browser.look(width=400, height=844)
+    ready(browser)
+    chosen(browser, lambda: browser.run("document.querySelector('#sample').click()"))
+    browser.wait("document.body.dataset.largestDistance")
+    wide, high = browser.run("return [document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
+    check(wide <= 400 and high <= 2 * 844, f"the page is {wide} wide and {high} high on a screen of 400 by 844")
+    mean = re.search(r"surface (\S+) mm off in the mean", browser.text(".answer"))[1]
+    check(f"mean {mean} mm" in browser.text(".view + .view figcaption"),
+          f"the answer has a mean of {mean} mm, below the level stands {browser.text('.view + .view figcaption')}")
+    check(browser.text("main").count("How this was made") == 1, "how it was made is not told")
+    browser.look()
 
 
 def pictures(browser):
@@ -283,6 +395,9 @@ def main():
         several(browser, folder)
         work_is_cancelled(browser, folder)
         pours(browser)
+        other_formats_are_read(browser, folder)
+        large_holes_are_filled(browser, folder)
+        answer_comes_first(browser)
         quiet(browser, "the page")
         if os.environ.get("SCREE_SCAN"):
             own_scan(browser, os.environ["SCREE_SCAN"], folder)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Whether src/report/page.inc is what the sources and the lockfile in web/ give. usage: bundle.sh SOURCE_DIR
+# Whether src/report/page.inc and page_script.inc are what the sources and the lockfile in web/ give. usage: bundle.sh SOURCE_DIR
 # Exits 77 where node, npm or its registry is missing.
 set -eu
 root=$1
@@ -9,7 +9,7 @@ done
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 mkdir -p "$folder/src/report" "$folder/web"
-cp "$root/src/report/page.inc" "$folder/src/report"
+cp "$root"/src/report/page*.inc "$folder/src/report"
 (cd "$root/web" && cp -r build.mjs bundle.mjs licences package.json package-lock.json page.html src "$folder/web")
 cd "$folder/web"
 if ! npm ci --ignore-scripts --no-audit --no-fund >"$folder/log" 2>&1; then

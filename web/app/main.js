@@ -1,5 +1,4 @@
 // The page: two tabs, one for scans and one for pouring. All is computed in workers of this page.
-import '../src/page.css';
 import './app.css';
 import { Engine } from './engine.js';
 import { Levels } from '../src/levels.js';

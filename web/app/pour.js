@@ -1,6 +1,7 @@
-// The tab of pouring: particles fall into a container while one looks on. The physics is the library's, in a worker.
-import { Box3 } from 'three';
+// The tab of pouring: particles fall into a container, a drum or a hopper while one looks on. The physics is the library's, in a worker.
+import { Box3, Quaternion, Vector3 } from '../src/pile.js';
 import { Cancelled, Engine } from './engine.js';
+import { equipment } from './equipment.js';
 import { PileView, setShapeColors, shapeColor } from '../src/pile.js';
 import { counted, element, number, whole } from '../src/text.js';
 
@@ -23,12 +24,14 @@ function tube(radius, sides) {
   return { points: Float32Array.from(points), triangles: Uint32Array.from(triangles) };
 }
 
-// A pour as the report's view of piles draws it: where the bodies are now.
+// A pour as the report's view of piles draws it: where walls and bodies are now.
 class LivePile {
-  constructor({ count, width, surfaces }, box) {
+  constructor({ walls, tube: container, surfaces }, count) {
     this.shapes = surfaces.map((mesh) => ({ mesh }));
-    this.walls = [{ endless: false, mesh: tube(width / 2, box ? 4 : 64) }];
-    Object.assign(this, { capacity: count, width, entered: 0, bodies: surfaces.map(() => []) });
+    this.wallCount = walls.length;
+    this.walls = container ? [{ endless: false, mesh: tube(container.width / 2, container.sides) }] : walls;
+    this.fixed = Boolean(container);
+    Object.assign(this, { capacity: count, entered: 0, poses: null, bodies: surfaces.map(() => []) });
   }
   // Of a shape those that have entered: the view keeps this list.
   bodiesOf(shape) {
@@ -41,19 +44,30 @@ class LivePile {
   momentAt() {
     return null;
   }
-  pose(body, _, position, quaternion) {
-    if (body >= this.entered) return false;
-    const [x, y, z, w, i, j, k] = this.poses.subarray(7 * body, 7 * body + 7);
+  place(row, position, quaternion) {
+    const [x, y, z, w, i, j, k] = this.poses.subarray(7 * row, 7 * row + 7);
     position.set(x, y, z);
     quaternion.set(i, j, k, w);
-    return true;
+    return !Number.isNaN(x);
   }
-  wallPose(_, __, position, quaternion) {
-    position.set(0, 0, 0);
-    quaternion.identity();
+  pose(body, _, position, quaternion) {
+    return body < this.entered && this.place(this.wallCount + body, position, quaternion);
+  }
+  wallPose(wall, _, position, quaternion) {
+    if (this.fixed) {
+      position.set(0, 0, 0);
+      quaternion.identity();
+    } else {
+      this.place(this.walls.indexOf(wall), position, quaternion);
+    }
   }
   sceneBox() {
-    return new Box3().setFromArray(this.walls[0].mesh.points);
+    const box = new Box3(), position = new Vector3(), turn = new Quaternion(), point = new Vector3();
+    for (const wall of this.walls.filter(({ endless }) => !endless)) {
+      this.wallPose(wall, null, position, turn);
+      for (let i = 0; i < wall.mesh.points.length; i += 3) box.expandByPoint(point.fromArray(wall.mesh.points, i).applyQuaternion(turn).add(position));
+    }
+    return box;
   }
 }
 
@@ -66,7 +80,7 @@ export class PourTab {
   build() {
     const { host } = this;
     element('h1', 'Pour particles', host);
-    element('p', 'Non-convex polyhedra fall into a container, with contact forces, friction and damping of the library. Shapes are the scans of the first tab, decimated, or samples.', host, { class: 'soft' });
+    element('p', 'Non-convex polyhedra fall into a container, a turning drum or a hopper, with the library\'s contact forces, friction and damping. Shapes are the scans of the first tab, decimated, or samples.', host, { class: 'soft' });
     const row = element('div', null, host, { class: 'controls' });
     const choose = (text, id, choices) => {
       const select = element('select', null, element('label', text, row), { id });
@@ -74,11 +88,12 @@ export class PourTab {
       return select;
     };
     this.source = choose('Shapes ', 'pour-source', [['samples', 'three sample devices'], ['scans', 'my scans']]);
-    this.container = choose('Container ', 'pour-container', [['cylinder', 'cylinder'], ['box', 'box']]);
+    this.container = choose('Into a ', 'pour-container', Object.keys(equipment).map((name) => [name, name]));
+    this.container.addEventListener('change', () => this.offerSliders());
     this.stiffness = choose('Stiffness ', 'pour-stiffness', [['0.1', 'a tenth (quick)'], ['0.01', 'a hundredth (quicker, softer)'], ['1', 'as the paper (slow)']]);
     const sliders = element('div', null, host, { class: 'tolerances' });
-    const slide = (text, id, low, high, step, value, shown) => {
-      const label = element('label', `${text} `, sliders);
+    const slide = (text, id, low, high, step, value, shown, parent = sliders) => {
+      const label = element('label', `${text} `, parent);
       const output = element('output', shown(value), label);
       const input = element('input', null, label, { type: 'range', class: 'slider', id, min: low, max: high, step, value });
       input.addEventListener('input', () => (output.textContent = shown(Number(input.value))));
@@ -87,6 +102,11 @@ export class PourTab {
     this.count = slide('Particles', 'pour-count', 10, 200, 5, 40, whole);
     this.triangles = slide('Triangles a particle, at most', 'pour-triangles', 20, 400, 10, 100, whole);
     this.friction = slide('Friction', 'pour-friction', 0, 1, 0.05, 0.5, String);
+    this.own = Object.entries(equipment).map(([name, { sliders: all }]) => {
+      const parent = element('div', null, host, { class: 'tolerances', 'data-container': name });
+      return { name, parent, inputs: Object.fromEntries(all.map(([key, text, low, high, step, value, unit]) => [key, slide(text, `pour-${key}`, low, high, step, value, (v) => `${v} ${unit}`, parent)])) };
+    });
+    this.offerSliders();
     const buttons = element('div', null, host, { class: 'controls' });
     const button = (text, id, act) => {
       const made = element('button', text, buttons, { type: 'button', id });
@@ -101,6 +121,17 @@ export class PourTab {
     const figure = element('figure', null, element('div', null, host, { class: 'pile' }), { class: 'view' });
     this.viewHost = element('div', null, figure);
     this.legend = element('p', null, host, { class: 'legend' });
+  }
+
+  // Those of the container picked.
+  offerSliders() {
+    this.own.forEach(({ name, parent }) => (parent.hidden = name !== this.container.value));
+  }
+
+  values() {
+    const { inputs } = this.own.find(({ name }) => name === this.container.value);
+    const asked = { count: this.count, stiffness: this.stiffness, friction: this.friction, ...inputs };
+    return Object.fromEntries(Object.entries(asked).map(([key, { value }]) => [key, Number(value)]));
   }
 
   tell(text, isError = false) {
@@ -136,15 +167,15 @@ export class PourTab {
       this.tell('Starting ...');
       await engine.ready;
       const shapes = await this.makeShapes();
-      const count = Number(this.count.value), box = this.container.value === 'box';
-      const shares = shapes.map((shape, i) => ({ ...shape, count: Math.floor((count + i) / shapes.length) })).filter((shape) => shape.count);
-      const made = await engine.ask({ do: 'pour', shapes: shares, box, stiffness: Number(this.stiffness.value), friction: Number(this.friction.value) });
+      const values = this.values(), { count } = values;
+      const made = await engine.ask({ do: 'pour', shapes: shapes.map((shape) => ({ ...shape, share: 1 })), container: this.container.value, values });
       this.view ??= new PileView(this.viewHost, 'The pour in 3D');
-      this.pile = new LivePile(made, box);
+      this.pile = new LivePile(made, count);
+      this.pile.enter(await engine.ask({ do: 'advance', until: 0, ms: 0 }));
       this.view.set(this.pile);
-      this.tellLegend(shares, made);
+      this.tellLegend(shapes, made);
       this.pause.disabled = false;
-      await this.play(engine, made);
+      await this.play(engine, count);
     } catch (error) {
       if (!(error instanceof Cancelled)) this.tell(error.message, true);
     }
@@ -152,13 +183,13 @@ export class PourTab {
 
   tellLegend(shapes, { surfaces, step }) {
     this.legend.replaceChildren();
-    shapes.forEach(({ name, count }, k) => {
+    shapes.forEach(({ name }, k) => {
       const item = element('span', null, this.legend);
       const swatch = element('canvas', null, item, { width: 12, height: 12, 'aria-hidden': 'true' });
       const context = swatch.getContext('2d');
       context.fillStyle = shapeColor(k);
       context.fillRect(0, 0, 12, 12);
-      item.append(` ${count} × ${name}, ${whole(surfaces[k].triangles.length / 3)} triangles`);
+      item.append(` ${name}, ${whole(surfaces[k].triangles.length / 3)} triangles`);
     });
     element('span', `time step ${number(step * 1e6, 3)} µs`, this.legend);
   }
@@ -169,7 +200,7 @@ export class PourTab {
     if (this.playing) this.resume?.();
   }
 
-  async play(engine, { count }) {
+  async play(engine, count) {
     let time = 0;
     this.playing = true;
     this.pause.textContent = 'Pause';
@@ -180,21 +211,23 @@ export class PourTab {
       const speed = (now.time - time) / (performance.now() - begin) * 1000;
       time = now.time;
       this.show(now, count, Math.min(1, speed));
-      if (now.entered === count && now.energy < still) break;
+      this.end = now.end || (this.pile.fixed && now.entered === count && now.energy < still ? 'at rest' : '');
+      if (this.end) break;
       await new Promise((resolve) => setTimeout(resolve, Math.max(0, 1000 * frame - (performance.now() - begin))));
       await new Promise(requestAnimationFrame);
     }
     if (engine !== this.engine) return;
     this.pause.disabled = true;
-    this.tell(`At rest after ${number(time, 3)} s: ${counted(count, 'particle')}.`);
+    this.tell(`Ended after ${number(time, 3)} s, ${this.end}: ${counted(count, 'particle')}${this.left ? `, of which ${whole(this.left)} went out` : ''}.`);
     document.body.dataset.poured = String(count);
   }
 
   show(now, count, speed) {
-    const { entered, time, energy } = now;
+    const { entered, left, time, energy } = now;
+    this.left = left;
     this.pile.enter(now);
     this.view.showTime(time);
-    this.tell(`${number(time, 3)} s simulated, ${number(100 * speed, 2)} % of real time; ${whole(entered)} of ${counted(count, 'particle')} in, ${number(energy, 2)} J of motion each.`);
-    Object.assign(document.body.dataset, { pourTime: time, pourEntered: entered });
+    this.tell(`${number(time, 3)} s simulated, ${number(100 * speed, 2)} % of real time; ${whole(entered)} of ${counted(count, 'particle')} came in${left ? `, ${whole(left)} went out` : ''}, ${number(energy, 2)} J of motion each.`);
+    Object.assign(document.body.dataset, { pourTime: time, pourEntered: entered, pourLeft: left });
   }
 }

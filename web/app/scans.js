@@ -2,6 +2,7 @@
 import { Cancelled } from './engine.js';
 import { ChoiceSection } from '../src/choice.js';
 import { give } from '../src/packed.js';
+import { tellProvenance } from '../src/provenance.js';
 import { counted, element, number, saveAs, whole } from '../src/text.js';
 
 const units = [['um', 'µm'], ['mm', 'mm'], ['cm', 'cm'], ['m', 'm'], ['inch', 'inch'], ['ft', 'ft']];
@@ -11,6 +12,7 @@ const errors = [
   ['mean_distance', 'mean distance', 'of the body\'s size'],
   ['hausdorff', 'largest distance', 'of the body\'s size'],
   ['inertia', 'inertia', 'of the tensor'],
+  ['widths', 'length, width and height', 'of each'],
   ['thickness', 'wall thickness', 'of the thickness'],
 ];
 // A slider of shares: from a thirtieth to thirty times the default, in steps that multiply.
@@ -47,10 +49,10 @@ export class ScansTab {
 
   buildInput() {
     const { host } = this;
-    element('h1', 'How many triangles does your scan need?', host);
+    element('h1', 'How many triangles does your scan need?', host, { class: 'before' });
     const drop = element('label', null, host, { class: 'drop' });
     element('span', 'Drop scans here, or pick them', drop, { class: 'call' });
-    element('span', 'STL, PLY, OBJ or OFF, closed or not. They are read, repaired and decimated in this page and never leave your computer.', drop, { class: 'soft' });
+    element('span', 'STL, PLY, OBJ, OFF, 3MF or glTF, closed or not. They are read, repaired and decimated in this page and never leave your computer.', drop, { class: 'soft before' });
     this.picker = element('input', null, drop, { type: 'file', id: 'file', multiple: '', accept: '.stl,.ply,.obj,.off,.3mf,.glb,.gltf,model/stl' });
     this.picker.addEventListener('change', () => {
       this.add([...this.picker.files]);
@@ -72,7 +74,7 @@ export class ScansTab {
     element('option', 'which unit?', this.unit, { value: '', disabled: '', selected: '' });
     units.forEach(([value, text]) => element('option', text, this.unit, { value }));
     this.unit.addEventListener('change', () => this.work());
-    this.sample = element('button', 'Try it with a sample', row, { type: 'button', id: 'sample' });
+    this.sample = element('button', 'Try it with a sample', row, { type: 'button', id: 'sample', class: 'before' });
     this.sample.addEventListener('click', () => this.addSample());
     this.list = element('ul', null, host, { class: 'scans' });
   }
@@ -109,21 +111,46 @@ export class ScansTab {
     element('strong', scan.file.name, head);
     scan.told = element('span', ` ${number(scan.file.size / 1e6, 3)} MB`, head, { class: 'soft' });
     element('button', 'Remove', head, { type: 'button', 'aria-label': `Remove ${scan.file.name}` }).addEventListener('click', () => this.remove(scan));
+    scan.advice = element('div', null, scan.item);
     scan.details = element('details', null, scan.item, { hidden: '' });
     element('summary', 'What it is, and what was repaired', scan.details);
     scan.text = element('pre', null, scan.details, { class: 'log', tabindex: 0 });
   }
 
   tellScan(scan) {
+    scan.advice.replaceChildren();
     if (scan.failure) {
       scan.told.textContent = ` ${scan.failure}`;
       scan.told.classList.add('error');
+      this.offerAdvice(scan);
       return;
     }
     const [first, ...others] = scan.log;
     scan.told.textContent = ` ${(first ?? '').replace(`${scan.file.name}: `, '')}`;
     scan.text.textContent = others.join('\n');
     scan.details.hidden = others.length === 0;
+  }
+
+  // Where the program names the repair that would help, a button that does it.
+  offerAdvice(scan) {
+    const [, option, does] = scan.failure.match(/`scree repair .* -o closed\.stl (--[^`]+)` ([^;]*)/) ?? [];
+    if (!option) return;
+    const button = element('button', `Repair it by ${option}, which ${does}`, scan.advice, { type: 'button', class: 'advice' });
+    button.addEventListener('click', () => this.busy || this.working || this.repair(scan, option.split(' ')));
+  }
+
+  // The scan repaired by the program takes its place.
+  async repair(scan, options) {
+    const name = `${scan.file.name.replace(/\.[^.]*$/, '')}-closed.ply`;
+    const done = await this.during(`repairing ${scan.file.name}`, async () => {
+      const { code, complaints, files } = await this.engine.ask({ do: 'program', words: ['repair', scan.file.name, '-u', this.unit.value, ...options, '-o', name],
+        files: [[scan.file.name, scan.file]], wanted: [name] });
+      if (code) throw new Error(complaints.join(' '));
+      this.scans.splice(this.scans.indexOf(scan), 1);
+      scan.item.remove();
+      this.add([new File([files[0]], name)]);
+    });
+    if (done) this.work();
   }
 
   async remove(scan) {
@@ -134,6 +161,7 @@ export class ScansTab {
     scan.item.remove();
     if (index >= 0) await this.engine.ask({ do: 'close', index });
     this.result.hidden = this.output.hidden = true;
+    this.host.classList.remove('answered');
     this.wanted = true;
     this.work();
   }
@@ -145,7 +173,7 @@ export class ScansTab {
   // ---- what is asked ----
 
   buildQuestion() {
-    this.question = element('details', null, this.host, { class: 'question', open: '' });
+    this.question = element('details', null, this.host, { class: 'question' });
     element('summary', 'What the level must keep', this.question);
     const row = element('div', null, this.question, { class: 'controls' });
     const label = element('label', 'Choose by ', row);
@@ -301,7 +329,8 @@ export class ScansTab {
   // While the worker is busy with the first scan.
   prepare() {
     this.section = new ChoiceSection(this.result, null);
-    this.section.head.after(this.output);
+    this.section.first.after(this.output);
+    this.made = element('div', null, this.result);
     this.warm = this.section.warm();
   }
 
@@ -317,7 +346,7 @@ export class ScansTab {
     return done;
   }
 
-  tellChoice({ json, levels, memory }) {
+  tellChoice({ json, provenance, levels, memory }) {
     this.json = json;
     const choice = JSON.parse(new TextDecoder().decode(json));
     const folder = { choice, levels: levels.map(([name, bytes]) => {
@@ -325,14 +354,17 @@ export class ScansTab {
       return [name, `levels-${name}`];
     }) };
     this.result.hidden = this.output.hidden = false;
+    this.host.classList.add('answered');
     this.section.tell(folder);
+    this.made.replaceChildren();
+    tellProvenance(this.made, { choice, provenance: JSON.parse(new TextDecoder().decode(provenance)) });
     document.body.dataset.memory = memory;
   }
 
   // ---- files out ----
 
   buildOutput() {
-    this.output = element('section', null, this.host, { hidden: '' });
+    this.output = element('div', null, this.host, { hidden: '' });
     element('h2', 'Take it with you', this.output);
     const row = element('div', null, this.output, { class: 'controls' });
     const format = element('label', 'The level under the slider as ', row);
@@ -352,7 +384,7 @@ export class ScansTab {
     button('Choice (JSON)', 'save-choice', () => saveAs('choice.json', 'application/json', this.json));
     button('Report (HTML)', 'save-report', () => this.during('writing the report', async () => {
       const { report } = await this.engine.ask({ do: 'report' });
-      saveAs('report.html', 'text/html', report);
+      saveAs('report.html', 'text/html', new TextDecoder().decode(report).replace('@SCRIPT@', () => globalThis.reportScript));
     }));
     button('Clump of spheres (CSV)', 'save-clump', () => this.saveClump());
   }

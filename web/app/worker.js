@@ -2,6 +2,7 @@
 // distances of the 3D view. One script, of which the page starts several workers. In: {id, do, ...}; out: {id, result},
 // {id, error} or {progress: [phase, fraction]}.
 import { Tree, distanceField } from '../src/distance.js';
+import { equipment } from './equipment.js';
 
 let module = null; // compiled, for every instance
 let session = null; // the instance that keeps scans, or a pour
@@ -48,7 +49,7 @@ function chosen(count) {
   prepareFolder();
   const { choice } = settings;
   call('web_write_choice', folder, choice.command, 0);
-  const json = take(`${folder}/choice.json`);
+  const json = take(`${folder}/choice.json`), provenance = take(`${folder}/provenance.json`);
   const levels = [];
   for (let i = 0; i < count; i++) {
     const name = ask('web_name', 'string', i);
@@ -56,7 +57,7 @@ function chosen(count) {
     call('web_write_levels', i, path);
     levels.push([name, take(path)]);
   }
-  return { json, levels, memory: session.HEAPU8.length };
+  return { json, provenance, levels, memory: session.HEAPU8.length };
 }
 
 function pourCall(name, ...values) {
@@ -81,7 +82,7 @@ const tasks = {
     session = await instance();
     return {
       version: ask('web_version', 'string'),
-      tolerances: Object.fromEntries(['mean_distance', 'hausdorff', 'inertia', 'thickness'].map((name) => [name, ask('web_default_tolerance', 'number', name)])),
+      tolerances: Object.fromEntries(['mean_distance', 'hausdorff', 'inertia', 'widths', 'thickness'].map((name) => [name, ask('web_default_tolerance', 'number', name)])),
     };
   },
 
@@ -140,24 +141,37 @@ const tasks = {
     return { code, out, complaints, files: wanted.map((path) => (program.FS.analyzePath(path).exists ? program.FS.readFile(path) : null)) };
   },
 
-  // Begins a pour. shapes: [{bytes of a PLY, unit in m, count}].
-  pour({ shapes, stiffness, friction, box }) {
-    shapes.forEach(({ bytes, unit, count }, i) => {
+  // Begins a pour. shapes: [{bytes of a PLY, unit in m, share}]; values: of the sliders.
+  pour({ shapes, container, values }) {
+    const { template, fields, tube } = equipment[container];
+    shapes.forEach(({ bytes, unit, share }, i) => {
       session.FS.writeFile(`shape-${i}.ply`, bytes);
-      pourCall('web_pour_add', `shape-${i}.ply`, unit, count);
+      pourCall('web_pour_add', `shape-${i}.ply`, unit, share);
     });
-    pourCall('web_pour_start', stiffness, friction, box ? 1 : 0);
-    return { count: ask('web_pour_count', 'number'), width: ask('web_pour_width', 'number'), step: ask('web_pour_step', 'number'), surfaces: shapes.map((_, i) => surfaceOf(ask('web_pour_mesh', 'number', i))) };
+    pourCall('web_pour_begin', template);
+    const size = ask('web_pour_size', 'number');
+    if (Number.isNaN(size)) throw new Error(ask('web_pour_error', 'string'));
+    for (const [field, value] of Object.entries(fields(values, size))) pourCall('web_pour_set', field, String(value));
+    pourCall('web_pour_start');
+    const walls = Array.from({ length: ask('web_pour_walls', 'number') }, (_, i) => ({
+      endless: Boolean(tube) || ask('web_pour_wall_is_endless', 'number', i) > 0, mesh: surfaceOf(ask('web_pour_wall', 'number', i)),
+    }));
+    return { walls, tube: tube && { sides: tube, width: ask('web_pour_width', 'number') }, step: ask('web_pour_step', 'number'), surfaces: shapes.map((_, i) => surfaceOf(ask('web_pour_mesh', 'number', i))) };
   },
 
   // Goes on to a time, but no longer than so many ms of the clock.
   advance({ until, ms }) {
     const begin = performance.now();
-    while (ask('web_pour_time', 'number') < until && performance.now() - begin < ms) pourCall('web_pour_advance', 20);
+    let end = '';
+    while (!end && ask('web_pour_time', 'number') < until && performance.now() - begin < ms) {
+      pourCall('web_pour_advance', 20);
+      end = ask('web_pour_end', 'string');
+    }
     const entered = ask('web_pour_look', 'number');
-    const poses = new Float64Array(session.HEAPU8.buffer, ask('web_pour_poses', 'number'), 7 * entered).slice();
+    if (entered < 0) throw new Error('out of memory');
+    const poses = new Float64Array(session.HEAPU8.buffer, ask('web_pour_poses', 'number'), 7 * (ask('web_pour_walls', 'number') + entered)).slice();
     const shapeOf = Uint32Array.from({ length: entered }, (_, body) => ask('web_pour_shape_of', 'number', body));
-    return { poses, entered, shapeOf, time: ask('web_pour_time', 'number'), energy: ask('web_pour_energy', 'number'), spent: performance.now() - begin };
+    return { poses, entered, shapeOf, end, left: ask('web_pour_left', 'number'), time: ask('web_pour_time', 'number'), energy: ask('web_pour_energy', 'number') };
   },
 
   // Distances of a level to a scan that was told before, or is now.

@@ -153,3 +153,4 @@ addEventListener('resize', () => {
   resizing = setTimeout(drawAll, 150);
 });
 dark.addEventListener('change', drawAll);
+document.addEventListener('toggle', drawAll, true); // what was folded had no width

@@ -1,9 +1,9 @@
-// The section of one choice: answer, table of the objects, and for the object picked its curve, its mesh at every
-// level beside the scan, and the tables.
+// The section of one choice: table of the objects, and for the object picked the answer beside its mesh at every level
+// and the scan, the curves, and the tables.
 import { Chart, palette } from './chart.js';
 import { Levels } from './levels.js';
 import { holds } from './packed.js';
-import { element, number, percent, rpText, saveButton, table, whole } from './text.js';
+import { element, folded, number, percent, rpText, saveButton, table, whole } from './text.js';
 import { View, link, mostEdgeTriangles, rampColor } from './view.js';
 
 const mm = 1000;
@@ -85,13 +85,14 @@ export class ChoiceSection {
     const { options } = objects[0];
     const many = objects.length > 1;
     element('h1', many ? `How many triangles do these ${objects.length} scans need?` : `How many triangles does ${objects[0].name} need?`, host);
-    const { answer, warnings } = many ? set : objects[0];
-    element('p', answer.join(' '), host, { class: 'answer' });
-    this.tellWarnings(host, warnings);
+    if (many) {
+      element('p', set.answer.join(' '), host, { class: 'answer' });
+      this.tellWarnings(host, set.warnings);
+    }
     const { tolerances, tolerance_lengths: lengths } = options;
     const kept = [...Object.entries(tolerances).map(([name, share]) => `${name} ${percent(share)}`), ...Object.entries(lengths).map(([name, length]) => `${name} ${number(length * mm)} mm`)].join(', ');
     const area = `Ip = eps_s + ${options.weight === 1 ? '' : `${number(options.weight)} `}Nr/Nm with eps_s = |S − Sm|/Sm${options.reference === 'smooth' ? ', Sm free of scan noise' : ''} (Katagiri and Koyanaka 2020)`;
-    element('p', `Chosen: ${rules[objects[0].default]}${objects[0].default === 'recommended' ? ` (${kept}; distances as shares of sqrt(S/π))` : ''}. ${objects[0].default === 'recommended' ? 'Beside it the paper\'s criterion' : 'The criterion'}: ${area}. Nr of the scan's Nm triangles are kept; Rp = Nr/Nm. Decimation: ${options.method}.`, host, { class: 'soft' });
+    this.how.textContent = `Chosen: ${rules[objects[0].default]}${objects[0].default === 'recommended' ? ` (${kept}; distances as shares of sqrt(S/π))` : ''}. ${objects[0].default === 'recommended' ? 'Beside it the paper\'s criterion' : 'The criterion'}: ${area}. Nr of the scan's Nm triangles are kept; Rp = Nr/Nm. Decimation: ${options.method}.`;
   }
 
   tellWarnings(host, warnings) {
@@ -134,25 +135,31 @@ export class ChoiceSection {
   build() {
     const { host } = this;
     this.title = element('h2', null, host, { class: 'object-name' });
-    this.answer = element('p', null, host);
-    this.warnings = element('div', null, host);
-    this.curve = element('div', null, host);
-    this.single = element('p', 'The scan has one level only: there is no curve to draw.', this.curve, { hidden: '' });
-    this.along = element('div', null, this.curve);
-    this.chartHost = element('div', null, this.along, { class: 'chart' });
-    this.errorsHost = element('div', null, this.along, { class: 'chart errors' });
+    this.first = element('div', null, host, { class: 'first' });
+    const told = element('div', null, this.first);
+    this.answer = element('p', null, told, { class: 'answer' });
+    this.warnings = element('div', null, told);
+    const more = element('details', null, told);
+    element('summary', 'By which rule', more);
+    this.how = element('p', null, more, { class: 'soft' });
+    this.shown = element('div', null, this.first);
+    this.buildViews();
+    this.along = element('div', null, this.shown);
     const label = element('label', 'Level: move along the curve, or click into it', this.along, { class: 'soft' });
     this.slider = element('input', null, label, { type: 'range', min: 0, max: 1, step: 1, class: 'slider' });
     this.slider.addEventListener('input', () => this.moveTo(Number(this.slider.value)));
     this.jumps = element('div', null, this.along, { class: 'controls' });
-    this.levelText = element('p', null, this.curve, { class: 'level-text' });
+    this.single = element('p', 'The scan has one level only: there is no curve to draw.', this.shown, { hidden: '' });
+    this.levelText = element('p', null, this.shown, { class: 'level-text' });
     this.missing = element('p', 'The levels of this object are not in this page, which would grow too large: it shows tables only. `scree report` of this folder alone may hold them.', host, { hidden: '' });
-    this.buildViews();
+    this.curves = folded(host, 'Area, Ip and errors along the levels');
+    this.chartHost = element('div', null, this.curves, { class: 'chart' });
+    this.errorsHost = element('div', null, this.curves, { class: 'chart errors' });
     this.tables = element('div', null, host);
   }
 
   buildViews() {
-    this.viewsHost = element('div', null, this.curve);
+    this.viewsHost = element('div', null, this.shown);
     const pair = element('div', null, this.viewsHost, { class: 'views' });
     const cell = () => {
       const box = element('figure', null, pair, { class: 'view' });
@@ -184,7 +191,7 @@ export class ChoiceSection {
     };
     check('edges', 'wire');
     check('only edges', 'only');
-    check('colour by distance to the scan', 'colored');
+    check('distances', 'colored');
     const home = element('button', 'Turn back', controls, { type: 'button' });
     home.addEventListener('click', () => this.levelView.home());
     this.scale = element('span', null, controls, { class: 'scale', hidden: '' });
@@ -206,20 +213,20 @@ export class ChoiceSection {
     this.buttons?.forEach((button, i) => button.setAttribute('aria-pressed', String(i === index)));
     this.title.textContent = object.name;
     this.title.hidden = this.objects.length === 1;
-    this.answer.textContent = this.objects.length > 1 ? object.answer.join(' ') : '';
+    this.answer.textContent = object.answer.join(' ');
     this.warnings.replaceChildren();
-    if (this.objects.length > 1) this.tellWarnings(this.warnings, object.warnings);
+    this.tellWarnings(this.warnings, object.warnings);
     this.chart?.remove();
     this.errorsChart?.remove();
     this.chart = this.errorsChart = null;
-    this.curve.hidden = !levels;
+    const several = Boolean(levels && levels.trace.length > 1);
+    this.shown.hidden = !levels;
     this.missing.hidden = Boolean(levels);
+    this.single.hidden = several;
+    this.along.hidden = this.curves.hidden = !several;
     this.tables.replaceChildren();
     if (levels) {
-      const several = levels.trace.length > 1;
       this.slider.max = levels.trace.length - 1;
-      this.single.hidden = several;
-      this.along.hidden = !several;
       if (several) this.drawCurve(object, levels);
       if (several && object.recommended) this.drawErrors(object);
       this.offerJumps(object, levels);
@@ -282,7 +289,7 @@ export class ChoiceSection {
     this.jumps.replaceChildren();
     const jump = (text, row) => element('button', text, this.jumps, { type: 'button' }).addEventListener('click', () => this.moveTo(row()));
     jump('Chosen', () => this.rowOf(levels, pickOf(object).triangle_count));
-    for (const [text, factor] of [['Half the triangles', 0.5], ['Twice the triangles', 2]]) {
+    for (const [text, factor] of [['Half', 0.5], ['Twice', 2]]) {
       jump(text, () => {
         const wanted = levels.trace[this.state.row].count * factor;
         const row = this.rowOf(levels, wanted);
@@ -339,7 +346,7 @@ export class ChoiceSection {
     if (row.count > shown) notes.push('the finest level that fits into this page');
     if ((wire || only) && !edges) notes.push(`edges are drawn up to ${whole(mostEdgeTriangles)}`);
     this.scale.hidden = !colored;
-    this.shown = mesh;
+    this.mesh = mesh;
     this.levelView.show(mesh, levels, options);
     this.levelLabel.textContent = `This level: ${notes.join('; ')}`;
     document.body.dataset.shownTriangles = shown;
@@ -353,22 +360,30 @@ export class ChoiceSection {
   async colorLevel(levels, mesh, options, notes) {
     const field = await levels.field(mesh, shownSamples);
     levels.measured = true;
-    if (this.shown !== mesh) return; // another one is shown by now
+    if (this.mesh !== mesh) return; // another one is shown by now
     const largest = field.largest * levels.step * mm;
     // a few far points must not take the colours from all others
     const range = roundUp(Float32Array.from(field.distances).sort()[Math.floor(0.98 * field.distances.length)] * levels.step * mm);
     this.levelView.show(mesh, levels, { ...options, field, range: range / mm / levels.step });
     this.scaleHigh.textContent = `${number(range)} mm${largest > range ? ' and more' : ''}`;
-    const to = levels.shownScanCount === levels.scanCount ? 'the scan' : 'the scan as shown';
-    this.levelLabel.textContent = `This level: ${notes.join('; ')}; distance to ${to}: mean ${number(field.mean * levels.step * mm, 2)} mm, largest found ${number(largest, 2)} mm`;
+    this.levelLabel.textContent = `This level: ${notes.join('; ')}; ${this.distancesOf(levels, mesh) ?? `from here to the scan: mean ${number(field.mean * levels.step * mm, 2)} mm, largest found ${number(largest, 2)} mm`}`;
     document.body.dataset.largestDistance = largest;
+  }
+
+  // What the choice found of a level, both ways between it and the scan; undefined where it did not look at it.
+  distancesOf(levels, mesh) {
+    const object = this.objects[this.state.object];
+    const count = mesh.triangles.length / 3;
+    const found = [object.recommended, ...object.levels].find((level) => level?.triangle_count === count && level.errors?.mean_distance !== undefined);
+    if (!found) return undefined;
+    const length = (share) => `${number(share * object.scan.size * mm, 2)} mm`;
+    return `distance to the scan: mean ${length(found.errors.mean_distance)}, largest ${length(found.errors.hausdorff)}`;
   }
 
   // ---- tables ----
 
   tellTables(object, levels) {
-    const { tables: host } = this;
-    element('h2', 'Candidate levels', host);
+    const host = folded(this.tables, 'Candidate levels');
     const names = { recommended: 'recommended: keeps the tolerances', cost: 'least mean distance / size + Nr/100,000', paper: 'paper: least Ip on the grid', robust: 'robust: least Ip, worst eps_s so far', smooth: 'robust, free of scan noise', plain: 'least Ip of all levels' };
     const keys = ['paper', 'robust', 'smooth', 'plain', 'recommended', 'cost'].filter((key) => object[key]);
     const rows = [

@@ -8,6 +8,8 @@ import { Reader, decodeMesh, decodeVertices } from './packed.js';
 import { counted, element, number, whole } from './text.js';
 import { View, corners } from './view.js';
 
+export { Box3, Quaternion, Vector3 };
+
 let shapeColors; // as the pictures have them
 export const setShapeColors = (colors) => {
   shapeColors = colors;

@@ -58,7 +58,8 @@ export class SceneSection extends PlayedSection {
       const values = columns.slice(0, 3).map(([, name]) => (known(series[name][i]) ? number(series[name][i], 3) : '–')).join(', ');
       return `${sensor} ${kind.replaceAll('_', ' ')} ${values}${unit ? ` ${unit}` : ''}`;
     })).join('; '));
-    return `${whole(series.inside[i])} inside, ${whole(series.left[i])} out, highest speed ${number(series.highest_speed[i], 3)} m/s`;
+    const phase = this.scene.phases[series.phase?.[i]];
+    return `${phase ? `Phase ${phase}: ` : ''}${whole(series.inside[i])} inside, ${whole(series.left[i])} out, highest speed ${number(series.highest_speed[i], 3)} m/s`;
   }
 
   drawSensors() {

@@ -39,6 +39,13 @@ export function element(tag, text, parent, attributes = {}) {
   return made;
 }
 
+// A part that can be folded, and begins so where the window is narrow.
+export function folded(host, title) {
+  const made = element('details', null, host, { class: 'part', ...(matchMedia('(max-width: 40rem)').matches ? {} : { open: '' }) });
+  element('h2', title, element('summary', null, made));
+  return made;
+}
+
 export function saveAs(name, type, content) {
   const url = URL.createObjectURL(new Blob([content], { type }));
   const anchor = element('a', '', document.body, { href: url, download: name });

@@ -1,5 +1,8 @@
-/* What the page's tab of pouring asks of scree: shapes, then time. One pour in a module. */
+/* What the page's tab of pouring asks of scree: a scene of a template, shapes, fields, then time.
+ * One pour in a module. */
 #include "scree.h"
+
+#include "report/shapes.h"
 
 #include <emscripten.h>
 #include <math.h>
@@ -10,37 +13,33 @@ enum { MOST_SHAPES = 16, POSE = 7 };
 static scree_poured poured[MOST_SHAPES];
 static char names[MOST_SHAPES][16], paths[MOST_SHAPES][256];
 static double units[MOST_SHAPES];
-static size_t shape_count, body_count;
+static size_t shape_count, wall_count, pose_room;
+static scree_scene_file *file;
 static scree_scene *scene;
-static double *poses; /* of each body: place, quaternion w x y z */
+static scree_mesh drawn; /* the wall asked for last */
+static double *poses;    /* of each wall, then of each body: place, quaternion w x y z */
 static scree_error error;
 
 EMSCRIPTEN_KEEPALIVE const char *web_pour_error(void) {
   return error.message;
 }
 
-/* A closed mesh in a file, and how many of it. */
-EMSCRIPTEN_KEEPALIVE int web_pour_add(const char *path, double unit_m, int count) {
+/* A closed mesh in a file, and its share of the particles. */
+EMSCRIPTEN_KEEPALIVE int web_pour_add(const char *path, double unit_m, int share) {
   size_t k = shape_count;
   if (k == MOST_SHAPES) return SCREE_LIMIT;
   snprintf(names[k], sizeof names[k], "shape-%zu", k);
   snprintf(paths[k], sizeof paths[k], "%s", path);
-  poured[k] = (scree_poured){names[k], "file", paths[k], count};
+  poured[k] = (scree_poured){names[k], "file", paths[k], share};
   units[k] = unit_m;
-  body_count += (size_t)count;
   shape_count++;
   return SCREE_OK;
 }
 
-static scree_status set(scree_scene_file *file, const char *field, const char *format,
-                        double value) {
-  char text[40];
-  snprintf(text, sizeof text, format, value);
-  return scree_scene_file_set(file, field, text, &error);
-}
-
-static scree_status describe(scree_scene_file *file, double stiffness_factor, double friction) {
-  scree_status status = scree_scene_file_pour(file, poured, shape_count, &error);
+/* The scene of a template that pours these shapes. */
+EMSCRIPTEN_KEEPALIVE int web_pour_begin(const char *template_name) {
+  scree_status status = scree_scene_file_template(template_name, &file, &error);
+  if (status == SCREE_OK) status = scree_scene_file_pour(file, poured, shape_count, &error);
   for (size_t i = 0; status == SCREE_OK && i < shape_count; i++) {
     char field[64];
     snprintf(field, sizeof field, "shapes.%s.triangles", names[i]);
@@ -49,27 +48,31 @@ static scree_status describe(scree_scene_file *file, double stiffness_factor, do
     if (status == SCREE_OK)
       status = scree_scene_file_set(file, field, units[i] == 1 ? "m" : "mm", &error);
   }
-  if (status == SCREE_OK) status = set(file, "particles", "%.0f", (double)body_count);
-  if (status == SCREE_OK) status = set(file, "friction", "%.17g", friction);
-  if (status == SCREE_OK) status = set(file, "contact.stiffness_factor", "%.17g", stiffness_factor);
-  if (status == SCREE_OK) status = set(file, "time", "%.0f", 1e6); /* the page ends it */
   return status;
 }
+/* m: the diameter of the largest shape; NaN: it cannot be made. */
+EMSCRIPTEN_KEEPALIVE double web_pour_size(void) {
+  double diameter;
+  return scree_scene_file_largest(file, NULL, NULL, &diameter, &error) == SCREE_OK ? diameter
+                                                                                   : (double)NAN;
+}
+EMSCRIPTEN_KEEPALIVE int web_pour_set(const char *field, const char *value) {
+  return scree_scene_file_set(file, field, value, &error);
+}
 
-EMSCRIPTEN_KEEPALIVE int web_pour_start(double stiffness_factor, double friction, int in_box) {
-  scree_scene_file *file;
-  scree_status status = scree_scene_file_template(in_box ? "drop-box" : "drop", &file, &error);
-  if (status != SCREE_OK) return status;
-  status = describe(file, stiffness_factor, friction);
-  if (status == SCREE_OK) status = scree_scene_create(file, NULL, &scene, &error);
-  scree_scene_file_free(file);
-  if (status != SCREE_OK) return status;
-  poses = malloc((body_count + 1) * POSE * sizeof *poses);
-  return poses ? SCREE_OK : SCREE_OUT_OF_MEMORY;
+EMSCRIPTEN_KEEPALIVE int web_pour_start(void) {
+  scree_status status = scree_scene_create(file, NULL, &scene, &error);
+  if (status == SCREE_OK) wall_count = scree_world_wall_count(scree_scene_view(scene));
+  return status;
 }
 
 EMSCRIPTEN_KEEPALIVE int web_pour_advance(int steps) {
   return scree_scene_advance(scene, (size_t)steps, &error);
+}
+/* Why it has ended; "": it has not. */
+EMSCRIPTEN_KEEPALIVE const char *web_pour_end(void) {
+  const char *end = scree_scene_end(scene);
+  return end ? end : "";
 }
 EMSCRIPTEN_KEEPALIVE double web_pour_time(void) {
   return scree_world_time(scree_scene_view(scene));
@@ -77,43 +80,81 @@ EMSCRIPTEN_KEEPALIVE double web_pour_time(void) {
 EMSCRIPTEN_KEEPALIVE double web_pour_step(void) {
   return scree_world_time_step(scree_scene_view(scene), NULL);
 }
-/* Inside: the diameter of the cylinder, or the distance of the box's sides from the middle, twice.
- */
-EMSCRIPTEN_KEEPALIVE double web_pour_width(void) {
-  const scree_world *world = scree_scene_view(scene);
-  double width = 0;
-  for (size_t w = 0; w < scree_world_wall_count(world); w++) {
-    scree_wall wall;
-    scree_world_get_wall(world, w, &wall);
-    if (wall.kind == SCREE_WALL_CYLINDER) width = 2 * wall.radius;
-    if (wall.kind == SCREE_WALL_PLANE) width = fmax(width, 2 * fabs(wall.position[0]));
-  }
-  return width;
-}
 /* J of motion, a particle. */
 EMSCRIPTEN_KEEPALIVE double web_pour_energy(void) {
   scree_observation seen;
   scree_world_observe(scree_scene_view(scene), &seen);
   return seen.body_count ? (seen.kinetic + seen.rotational) / (double)seen.body_count : 0;
 }
+EMSCRIPTEN_KEEPALIVE int web_pour_left(void) {
+  scree_scene_book book;
+  scree_scene_get_book(scene, &book);
+  return (int)book.left_count;
+}
 
-EMSCRIPTEN_KEEPALIVE int web_pour_count(void) {
-  return (int)body_count;
+/* Of a container without an end: the diameter of the cylinder, or twice the distance of the box's
+ * sides from the middle. */
+EMSCRIPTEN_KEEPALIVE double web_pour_width(void) {
+  double width = 0;
+  for (size_t w = 0; w < wall_count; w++) {
+    scree_wall wall;
+    scree_world_get_wall(scree_scene_view(scene), w, &wall);
+    if (wall.kind == SCREE_WALL_CYLINDER) width = 2 * wall.radius;
+    if (wall.kind == SCREE_WALL_PLANE) width = fmax(width, 2 * fabs(wall.position[0]));
+  }
+  return width;
+}
+EMSCRIPTEN_KEEPALIVE int web_pour_walls(void) {
+  return (int)wall_count;
+}
+/* A wall as it is drawn, in its own frame, until the next is asked for; NULL: no room. */
+EMSCRIPTEN_KEEPALIVE const scree_mesh *web_pour_wall(int wall) {
+  scree_mesh_free(&drawn);
+  drawn = (scree_mesh){0};
+  return scree_wall_mesh(scree_scene_view(scene), (size_t)wall, &drawn, &error) == SCREE_OK ? &drawn
+                                                                                            : NULL;
+}
+/* Whether it has an end, so that all of it can be seen. */
+EMSCRIPTEN_KEEPALIVE int web_pour_wall_is_endless(int index) {
+  scree_wall wall;
+  scree_world_get_wall(scree_scene_view(scene), (size_t)index, &wall);
+  return wall.kind == SCREE_WALL_PLANE;
 }
 /* A shape as it is drawn, in the frame of its body. */
 EMSCRIPTEN_KEEPALIVE const scree_mesh *web_pour_mesh(int shape) {
   return scree_particle_mesh(scree_scene_shape_particle(scene, (size_t)shape));
 }
 
-/* How many bodies have entered; where they are is behind web_pour_poses then. */
+static void put_pose(double *pose, const double place[3], const double turn[4]) {
+  for (size_t k = 0; k < 3; k++) pose[k] = place[k];
+  for (size_t k = 0; k < 4; k++) pose[3 + k] = turn[k];
+}
+
+/* How many bodies have entered; where walls and bodies are is behind web_pour_poses then, NaN where
+ * a body has gone. -1: no room. */
 EMSCRIPTEN_KEEPALIVE int web_pour_look(void) {
+  static const double gone[4] = {NAN, NAN, NAN, NAN};
   const scree_world *world = scree_scene_view(scene);
   size_t count = scree_world_body_count(world);
+  if (pose_room < wall_count + count) {
+    pose_room = 2 * (wall_count + count);
+    free(poses);
+    poses = malloc(pose_room * POSE * sizeof *poses);
+    if (!poses) return pose_room = 0, -1;
+  }
+  for (size_t w = 0; w < wall_count; w++) {
+    scree_wall wall;
+    double turn[4];
+    scree_world_get_wall(world, w, &wall);
+    scree_world_wall_orientation(world, w, turn);
+    put_pose(poses + POSE * w, wall.position, turn);
+  }
   for (size_t i = 0; i < count; i++) {
     scree_body body;
     scree_world_get_body(world, i, &body);
-    for (size_t k = 0; k < 3; k++) poses[POSE * i + k] = body.position[k];
-    for (size_t k = 0; k < 4; k++) poses[POSE * i + 3 + k] = body.orientation[k];
+    bool there = !scree_world_body_removed(world, i);
+    put_pose(poses + POSE * (wall_count + i), there ? body.position : gone,
+             there ? body.orientation : gone);
   }
   return (int)count;
 }

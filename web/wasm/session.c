@@ -4,12 +4,16 @@
  * of the worker's memory. What a verb of the program does at once (check, clump) the worker leaves
  * to the program, which is in the same module. */
 #include "cli/surface.h"
+#include "report/page_parts.h"
 #include "report/provenance.h"
 
 #include <emscripten.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* The page has the report's script once, for itself and for reports, and puts it in this place. */
+const char *const scree_page_script[] = {"@SCRIPT@", NULL};
 
 typedef struct web_scan {
   char file[256], name[128]; /* as given; short and unlike those of the others */
@@ -175,8 +179,9 @@ EMSCRIPTEN_KEEPALIVE double web_chosen(size_t index) {
   return (double)scree_choice_pick(&scans[index]->choice, rule)->triangle_count;
 }
 
-/* choice.json in a folder that is there, and beside it, with `whole`, what else a report is made
- * of and the report. Bytes as `scree choose` writes them under the command line given. */
+/* choice.json and provenance.json in a folder that is there, and beside them, with `whole`, what
+ * else a report is made of and the report. Bytes as `scree choose` writes them under the command
+ * line given. */
 EMSCRIPTEN_KEEPALIVE int web_write_choice(const char *folder, const char *command, int whole) {
   char path[512];
   scree_choice_entry *entries = calloc(scan_count, sizeof *entries);
@@ -203,8 +208,7 @@ EMSCRIPTEN_KEEPALIVE int web_write_choice(const char *folder, const char *comman
   snprintf(path, sizeof path, "%s/choice.csv", folder);
   if (status == SCREE_OK && whole) status = scree_choice_csv_write(&made, path, true, &error);
   snprintf(path, sizeof path, "%s/provenance.json", folder);
-  if (status == SCREE_OK && whole)
-    status = scree_provenance_write(&start, command, path, true, &error);
+  if (status == SCREE_OK) status = scree_provenance_write(&start, command, path, true, &error);
   snprintf(path, sizeof path, "%s/report.html", folder);
   if (status == SCREE_OK && whole)
     status = scree_page_write_named(folder, "scree in the browser", path, true, &error);
