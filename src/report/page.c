@@ -3,7 +3,8 @@
  * content security policy allows nothing but the one script and the one style sheet that it names
  * by their hashes. Texts from files are escaped where they stand: in the JSON `<` as \u003c, which
  * its strings alone can hold, so that no name ends the script element it is in; the script shows
- * texts as text only. web/ holds the page's sources; page.inc and page_script.inc are what web/build.mjs makes of them.
+ * texts as text only. web/ holds the page's sources; page.inc and page_script.inc are what
+ * web/build.mjs makes of them.
  */
 #include "base/alloc.h"
 #include "base/array.h"
