@@ -40,12 +40,13 @@ static const char *const changeable[] = {"title",
                                          "domain.min",
                                          "domain.max",
                                          "sensors",
+                                         "forces",
                                          "phases.*.*"};
 /* What was written so far lies at these intervals. */
 static const char *const fixed[] = {"output.frames", "output.series"};
 static const char offer[] =
     "a run may go on with other motions and surface velocities of geometry, friction and "
-    "restitution, gravity, inlets, outlets, sensors, times, stop and output";
+    "restitution, gravity, forces, inlets, outlets, sensors, times, stop and output";
 
 static bool matches(const char *path, const char *pattern) {
   for (; *pattern; path++, pattern++) {
@@ -373,6 +374,8 @@ static scree_status set_world(const comparison *c, scree_scene *scene, scree_err
   if (has_changed(c, "materials", NULL) || has_changed(c, "pairs", NULL))
     status = set_pairs(scene, error);
   if (status == SCREE_OK) status = scree_world_change(scene->world, SCREE_ALL_PARTS, error);
+  if (status != SCREE_OK) return status;
+  if (has_changed(c, "forces", NULL)) status = scree_scene_apply_forces(scene, error);
   if (status != SCREE_OK) return status;
   memcpy(scene->world->options.gravity, scene->plan.gravity, sizeof scene->plan.gravity);
   if (has_changed(c, "geometry", NULL)) status = set_geometry(c, scene, error);

@@ -141,6 +141,13 @@ static void take_table(scree_wall_motion *m, const scree_table *table, scree_mot
   m->row_count = table->count;
 }
 
+static void take_sine(scree_wall_motion *m, double amplitude, double frequency, double phase) {
+  m->law = SCREE_MOTION_SINE;
+  m->amplitude = amplitude;
+  m->frequency = frequency;
+  m->phase = phase;
+}
+
 static scree_wall_motion motion_of(const scree_plan_motion *plan) {
   scree_wall_motion m = scree_default_wall_motion();
   m.from = plan->from;
@@ -159,15 +166,13 @@ static scree_wall_motion motion_of(const scree_plan_motion *plan) {
     memcpy(m.axis, t->axis, sizeof m.axis);
     memcpy(m.through, t->through, sizeof m.through);
     m.speed = isnan(t->speed) ? 0 : t->speed;
+    if (!isnan(t->amplitude)) take_sine(&m, t->amplitude, t->frequency, t->phase);
     take_table(&m, &t->table, SCREE_MOTION_SPEEDS);
     take_table(&m, &t->positions, SCREE_MOTION_POSITIONS);
   } else {
     const scree_plan_vibrate *v = plan->vibrate;
-    m.law = SCREE_MOTION_SINE;
     memcpy(m.axis, v->along, sizeof m.axis);
-    m.amplitude = v->amplitude;
-    m.frequency = v->frequency;
-    m.phase = v->phase;
+    take_sine(&m, v->amplitude, v->frequency, v->phase);
   }
   return m;
 }

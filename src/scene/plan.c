@@ -321,15 +321,24 @@ static const scree_field rotate_fields[] = {
      "[time in s, speed in rad/s], linear between", NULL},
     {"positions", SCREE_FIELD_TABLE, AT(positions), 0, 0, "s|rad",
      "or [time in s, angle in rad], linear between", NULL},
+    {"amplitude", SCREE_FIELD_REAL, AT(amplitude), 0, 1e3, "rad", "or it rocks so far both ways",
+     NULL},
+    {"frequency", SCREE_FIELD_REAL, AT(frequency), 0, 1e5, "Hz", "", NULL},
+    {"phase", SCREE_FIELD_REAL, AT(phase), -7, 7, "rad", "of the sine", NULL},
 };
 #undef AT
 static scree_status check_rotate(const scree_reader *r, const void *record) {
   const scree_plan_rotate *t = record;
-  const bool there[] = {given(&t->speed), t->table.count > 0, t->positions.count > 0};
-  scree_status status = scree_plan_one_of(r, &t->place, there, 3, "speed, table, positions");
+  const bool there[] = {given(&t->speed), t->table.count > 0, t->positions.count > 0,
+                        given(&t->amplitude)};
+  scree_status status =
+      scree_plan_one_of(r, &t->place, there, 4, "speed, table, positions, amplitude");
+  if (status == SCREE_OK && there[3] != given(&t->frequency))
+    status = scree_fail_place(r, &t->place, "amplitude and frequency go together");
   return status == SCREE_OK ? scree_plan_check_direction(r, &t->place, "axis", t->axis) : status;
 }
-static const scree_plan_rotate rotate_defaults = {{0}, {0, 0, 1}, {0, 0, 0}, NAN, {0}, {0}};
+static const scree_plan_rotate rotate_defaults = {
+    .axis = {0, 0, 1}, .speed = NAN, .amplitude = NAN, .frequency = NAN};
 static const scree_record rotate_record = {
     "rotate", FIELDS(rotate_fields), sizeof(scree_plan_rotate), &rotate_defaults, check_rotate};
 
@@ -726,6 +735,7 @@ static const scree_field plan_fields[] = {
     {"domain", SCREE_FIELD_RECORD, AT(domain), 0, 0, "", "what leaves it is taken out",
      &domain_record},
     {"sensors", SCREE_FIELD_NAMED, AT(sensors), 0, 0, "", "", &scree_plan_sensor_record},
+    {"forces", SCREE_FIELD_NAMED, AT(forces), 0, 0, "", "on bodies", &scree_plan_force_record},
     {"phases", SCREE_FIELD_NAMED, AT(phases), 0, 0, "",
      "follow each other; after the last the scene ends", &phase_record},
     {"stop", SCREE_FIELD_RECORD, AT(stop), 0, 0, "", "what ends it before its time", &stop_record},

@@ -87,6 +87,7 @@ typedef struct scree_plan_translate {
 typedef struct scree_plan_rotate {
   scree_place place;
   double axis[3], through[3], speed;
+  double amplitude, frequency, phase; /* rad, Hz, rad: it rocks */
   scree_table table, positions;
 } scree_plan_rotate;
 
@@ -235,6 +236,26 @@ typedef struct scree_plan_sensor {
   scree_plan_grid *grid;
 } scree_plan_sensor;
 
+/* law: 0 Schiller and Naumann, 1 Stokes */
+typedef struct scree_plan_drag {
+  scree_place place;
+  double density, viscosity, velocity[3];
+  int law;
+  bool buoyancy;
+} scree_plan_drag;
+
+/* One of force, acceleration, per_volume, drag. */
+typedef struct scree_plan_force {
+  scree_place place;
+  scree_texts of;
+  scree_plan_box *box;
+  scree_plan_cylinder *cylinder;
+  double from, until, force[3], acceleration[3], per_volume[3];
+  scree_plan_drag *drag;
+  int by; /* of the table: 0 x, 1 y, 2 z, 3 t */
+  scree_table table;
+} scree_plan_force;
+
 typedef struct scree_plan_stop {
   scree_place place;
   double still, rest, filled, after;
@@ -287,7 +308,7 @@ typedef struct scree_plan {
   size_t tick;
   scree_plan_contact *contact;
   scree_records families; /* the shapes of the file (scree_plan_expand) */
-  scree_records materials, pairs, shapes, geometry, inlets, outlets, sensors, phases;
+  scree_records materials, pairs, shapes, geometry, inlets, outlets, sensors, phases, forces;
   scree_records parameters, presets;
   scree_plan_domain *domain;
   scree_plan_bodies *bodies;
@@ -311,6 +332,8 @@ scree_status scree_plan_expand(scree_plan *plan, scree_arena *arena, scree_error
 extern const scree_record scree_plan_size_record;
 /* plan_parts.c */
 extern const scree_record scree_plan_slide_record, scree_plan_hinge_record;
+/* plan_forces.c */
+extern const scree_record scree_plan_force_record;
 
 /* Reads and checks it all but the files it names. */
 scree_status scree_plan_read(const scree_reader *reader, const scree_yaml *root, scree_plan *plan);

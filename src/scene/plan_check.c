@@ -162,6 +162,21 @@ static scree_status check_sensors(const scree_reader *r, const scree_plan *plan)
   return status;
 }
 
+/* Each acts on shapes or materials that there are. */
+static scree_status check_forces(const scree_reader *r, const scree_plan *plan) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < plan->forces.count; i++) {
+    const scree_plan_force *f = SCREE_PLAN_AT(plan, forces, scree_plan_force, i);
+    for (size_t k = 0; status == SCREE_OK && k < f->of.count; k++) {
+      const char *name = f->of.items[k];
+      if (scree_plan_find(&plan->materials, sizeof(scree_plan_material), name) ==
+          plan->materials.count)
+        status = NEED(shapes, scree_plan_shape, "shape or material", name, &f->place);
+    }
+  }
+  return status;
+}
+
 static scree_status check_phases(const scree_reader *r, const scree_plan *plan) {
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < plan->phases.count; i++) {
@@ -213,6 +228,7 @@ scree_status scree_plan_check(const scree_reader *r, const void *record) {
   if (status == SCREE_OK) status = check_containers(r, plan);
   if (status == SCREE_OK) status = check_outlets(r, plan);
   if (status == SCREE_OK) status = check_phases(r, plan);
+  if (status == SCREE_OK) status = check_forces(r, plan);
   if (status == SCREE_OK) status = check_periodic(r, plan);
   return status == SCREE_OK ? check_sensors(r, plan) : status;
 }

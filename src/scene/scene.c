@@ -483,8 +483,11 @@ static scree_status advance(scree_scene *scene, size_t step_count, scree_error *
   while (step_count > 0 && !scene->end) {
     scree_status status = scree_scene_decide(scene, error);
     if (status != SCREE_OK || scene->end) return status;
-    size_t steps = scene->has_parts ? 1 : steps_to_decision(scene, step_count);
+    bool anew = scene->has_parts || scene->plan.forces.count; /* what acts in each step */
+    size_t steps = anew ? 1 : steps_to_decision(scene, step_count);
     if (scene->has_parts) status = scree_scene_move_parts(scene, error);
+    if (status == SCREE_OK && scene->plan.forces.count)
+      status = scree_scene_apply_forces(scene, error);
     if (status != SCREE_OK) return status;
     status = scree_world_step(scene->world, steps, error);
     if (status != SCREE_OK) return status;

@@ -344,6 +344,9 @@ double scree_scene_wall_work(const scree_scene *scene, size_t geometry);
 double scree_scene_push(const scree_scene *scene, size_t geometry);
 double scree_scene_parts_balance(const scree_scene *scene);
 
+/* forces.c: of the coming step. */
+scree_status scree_scene_apply_forces(scree_scene *scene, scree_error *error);
+
 /* impacts.c: likewise. */
 scree_status scree_scene_plan_impacts(scree_scene *scene, scree_scene_sensor *sensor,
                                       scree_error *error);

@@ -44,6 +44,8 @@ static double arm_of(const scree_scene *scene, size_t geometry, const scree_plan
   return far;
 }
 
+static const double two_pi = 6.283185307179586;
+
 /* m/s of its fastest point; motions act together. */
 static double speed_of_geometry(const scree_scene *scene, size_t index) {
   const scree_plan_geometry *g = SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, index);
@@ -55,11 +57,13 @@ static double speed_of_geometry(const scree_scene *scene, size_t index) {
     const scree_plan_vibrate *v = m->vibrate;
     if (t && !isnan(t->velocity[0])) speed += vec3_norm(vec3_load(t->velocity));
     if (t) speed += largest_of(&t->table, false) + largest_of(&t->positions, true);
-    if (r)
-      speed += arm_of(scene, index, r) *
-               ((isnan(r->speed) ? 0 : fabs(r->speed)) + largest_of(&r->table, false) +
-                largest_of(&r->positions, true));
-    if (v) speed += 6.283185307179586 * v->frequency * fabs(v->amplitude);
+    if (r) {
+      double most = isnan(r->speed) ? 0 : fabs(r->speed);
+      if (!isnan(r->amplitude)) most = two_pi * r->frequency * r->amplitude;
+      most += largest_of(&r->table, false) + largest_of(&r->positions, true);
+      speed += arm_of(scene, index, r) * most;
+    }
+    if (v) speed += two_pi * v->frequency * fabs(v->amplitude);
   }
   return speed;
 }
