@@ -5,8 +5,9 @@
 #   bench/liggghts.sh [SEEDS]
 #
 # SEEDS (default 10) runs a scene and engine, of half a minute at most; needs liggghts (apt-get install liggghts).
-# Writes results/liggghts.md. LIGGGHTS has its rolling model CDT, a constant couple; here it is a spring and dashpot
-# up to the same couple.
+# Writes results/liggghts.md. LIGGGHTS has its rolling model CDT, a constant couple; in the tube also EPSD, a spring up to
+# the same couple, without a dashpot and with one of 0.3 of critical besides. Here it is a spring and such a dashpot, both
+# together up to the same couple.
 set -euo pipefail
 . "$(dirname "$0")/lib.sh"
 seeds=${1:-10}
@@ -47,9 +48,9 @@ sheet 0.015 0 0.036 0 >"$scenes/ring.stl"
 
 # property NAME PAIR WALL: of sphere and sphere, sphere and wall.
 property() { echo "fix $1 all property/global $1 peratomtypepair 2 $2 $3 $3 $2"; }
-# lammps SCENE PLACES: the input; damping 2 eta sqrt(m K) of e = 0.3, force cut off at 0.
+# lammps SCENE PLACES ROLLING [VISCOUS]: the input; damping 2 eta sqrt(m K) of e = 0.3, force cut off at 0.
 lammps() {
-  local options='absolute_damping on limitForce on' model='model hooke/stiffness tangential history rolling_friction cdt'
+  local options='absolute_damping on limitForce on' model="model hooke/stiffness tangential history rolling_friction $3"
   cat <<I
 atom_style granular
 atom_modify map array
@@ -70,6 +71,7 @@ I
   property gammat_abs 0.373919 0.528802
   property coefficientFriction 0.5 0.5
   property coefficientRollingFriction 0.2 0.2
+  [ -z "${4:-}" ] || property coefficientRollingViscousDamping "$4" "$4"
   property coefficientRestitution 0.3 0.3
   echo "pair_style gran $model $options"
   echo 'pair_coeff * *'
@@ -116,10 +118,10 @@ of_places() {
     { n++; r2 += $2 * $2 + $3 * $3; x = $2; if ($4 >= -0.01) above[file]++ }
     END { print scene == "tube" ? 1000 * sqrt(r2 / n) : scene == "roll" ? 1000 * x : above[1] - above[2] }' "${@:2}"
 }
-# peer SCENE PLACES: value and CPU seconds.
+# peer SCENE PLACES ROLLING [VISCOUS]: value and CPU seconds.
 peer() {
   rm -f "$scenes"/{places,first,last}.txt
-  lammps "$1" "$2" >"$scenes/in"
+  lammps "$@" >"$scenes/in"
   local TIMEFORMAT=%U seconds
   seconds=$({ time liggghts -in "$scenes/in" -log "$scenes/log" >"$scenes/screen" 2>&1; } 2>&1) || tail -3 "$scenes/screen" >&2
   local files=("$scenes/last.txt")
@@ -133,7 +135,11 @@ for ((seed = 1; seed <= seeds; seed++)); do
   for scene in tube orifice roll; do
     [ $scene != roll ] || [ "$seed" = 1 ] || continue
     echo "$scene scree $("$bin/bench_spheres" $scene "$scenes/at")" >>"$rows"
-    echo "$scene liggghts $(peer $scene "$scenes/at")" >>"$rows"
+    echo "$scene liggghts,cdt $(peer $scene "$scenes/at" cdt)" >>"$rows"
+    [ $scene = tube ] || continue
+    for viscous in 0 0.3; do
+      echo "$scene liggghts,epsd,$viscous $(peer $scene "$scenes/at" epsd $viscous)" >>"$rows"
+    done
   done
 done
 

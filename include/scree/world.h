@@ -78,7 +78,7 @@ SCREE_API scree_status scree_world_set_contact(scree_world *world, size_t materi
 typedef struct scree_material_contact {
   double restitution, friction; /* as of scree_material */
   double rolling_friction; /* mu_r: a sphere resists rolling with a torque of up to mu_r R F, 1/R
-                              the sum of both spheres' 1/r; type C of Ai and others 2011 */
+                              the sum of both spheres' 1/r (docs/background/physics.md) */
   double pull_off;         /* N with which any two that touch hold each other; default 0 */
   double surface_energy;   /* J/m2, w: holds with 3/2 pi w R besides, the pull-off force of Johnson,
                               Kendall and Roberts 1971; 1/R the sum of both sides' 1/r, where r of

@@ -215,9 +215,10 @@ static inline vec3 scree_slide(const scree_slider *law, scree_anchor *anchor, do
   return force;
 }
 
-/* Rolling resistance (Ai and others 2011, type C): a spring and dashpot against the relative
- * turning about axes along the surface, as the tangential ones against sliding: the couple is at
- * most mu_r R times the force `pressed` along n. The pair keeps the spring, which the last drift
+/* Rolling resistance (Ai and others 2011, type C, but that the limit is the whole couple's): a
+ * spring and dashpot against the relative turning about axes along the surface, as the tangential
+ * ones against sliding: the couple is at most mu_r R times the force `pressed` along n. The pair
+ * keeps the spring, which the last drift
  * turned to `rolled`; `seen` is the turning that the dashpot sees. */
 static inline vec3 scree_roll(scree_pair *pair, vec3 n, vec3 rolled, vec3 seen, double pressed,
                               double *energy) {
