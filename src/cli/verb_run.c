@@ -26,7 +26,8 @@ static const cli_option options[] = {
      "Print the scene as it would be run, with units and comments, and stop.", 0, 0, NULL},
     {"template", CLI_TEXT, AT(template_name), "NAME",
      "Print a commented scene to start from: hopper, drum, tilting-box, drawdown, "
-     "hollow-cylinder, conveyor, vibrating-screen or shear-box.",
+     "hollow-cylinder, conveyor, vibrating-screen, shear-box, drum-lifters, paddle-mixer, tumbler, "
+     "hammer-mill or transfer-chute.",
      0, 0, NULL},
     {"resume", CLI_FLAG, AT(resume), NULL,
      "Go on from the checkpoint in DIR where there is one; without a file, with what is in it.", 0,
