@@ -84,7 +84,11 @@ typedef struct scree_answer_result {
   double single_low, single_high; /* of a single measurement */
   double noise;                   /* standard deviation of single runs */
   size_t run_count, missing;      /* runs that gave it; that gave none */
-  bool inside;                    /* what was measured lies in the interval of such measurements */
+  /* Runs at the posterior's mean, which nothing else is told from; the interval that their mean was
+   * expected in. Of a curve none. */
+  size_t check_count;
+  double check_mean, check_low, check_high;
+  bool inside; /* what was measured lies in the interval of such measurements */
   /* Of a curve, else 0 points. */
   size_t point_count;
   double *x, *y, *curve_mean, *curve_low, *curve_high;

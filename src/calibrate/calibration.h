@@ -109,6 +109,7 @@ struct scree_calibration {
   scree_arena run_arena;
   scree_planned_run *runs;
   size_t run_count, round_count;
+  bool checked; /* the last round is this file's check: runs at the answer, unknown to the model */
 };
 
 /* read.c: the value at a coordinate as the scene takes it, in the arena; NULL: memory is out. The
@@ -133,7 +134,11 @@ char *scree_calibration_path(const scree_calibration *c, const char *name);
 scree_status scree_rounds_read(scree_calibration *c, scree_error *error);
 /* Writes one more, whole or not at all. */
 scree_status scree_rounds_add(scree_calibration *c, const scree_place_pick *picks, size_t count,
-                              double seconds, scree_error *error);
+                              bool check, double seconds, scree_error *error);
+/* Rounds that the model is of. A check is one of them once the file is another. */
+size_t scree_rounds_fitted(const scree_calibration *c);
+/* How many runs of an experiment the first rounds have. */
+size_t scree_rounds_until(const scree_calibration *c, size_t experiment, size_t round_count);
 /* The study of an experiment with all its runs, opened and prepared. *study NULL: it has none. */
 scree_status scree_rounds_study(const scree_calibration *c, size_t experiment, scree_study **study,
                                 scree_error *error);

@@ -153,14 +153,6 @@ typedef struct fitting {
   scree_error *errors;
 } fitting;
 
-/* How many runs of an experiment the first rounds have. */
-static size_t runs_until(const scree_calibration *c, size_t experiment, size_t round_count) {
-  size_t count = 0;
-  for (size_t i = 0; i < c->run_count && c->runs[i].round < round_count; i++)
-    count += c->runs[i].experiment == experiment;
-  return count;
-}
-
 static void fit_some(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   fitting *f = context;
@@ -275,7 +267,7 @@ scree_status scree_calibration_fit(const scree_calibration *c, const scree_answe
   f.y = scree_alloc_zero(most, sizeof *f.y);
   if (model->model.items && model->first && model->count && model->bases && f.run_counts && f.y) {
     for (size_t e = 0; e < c->experiment_count; e++)
-      f.run_counts[e] = runs_until(c, e, round_count);
+      f.run_counts[e] = scree_rounds_until(c, e, round_count);
     status = lay_out(&f, error);
     if (status == SCREE_OK) status = fit_all(&f, error);
   } else {

@@ -3,6 +3,7 @@
 #include "base/math.h"
 #include "base/rng.h"
 #include "calibrate/calibration.h"
+#include "study/special.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -275,6 +276,31 @@ static scree_status describe_curve(analysis *a, size_t quantity, draws *d,
   return SCREE_OK;
 }
 
+/* What the runs at the answer gave, and where the process expects their mean. */
+static void describe_check(const analysis *a, size_t quantity, scree_answer_result *out) {
+  const scree_calibration *c = a->c;
+  const scree_quantity *q = &c->quantities[quantity];
+  const double *x = NULL;
+  size_t all = c->experiments[q->experiment].answer_count, n = 0;
+  double sum = 0;
+  for (size_t i = 0, run = 0; c->checked && i < c->run_count; i++) {
+    if (c->runs[i].experiment != q->experiment) continue;
+    double y = a->gathered.answers[q->experiment][run++ * all + q->first_answer];
+    if (c->runs[i].round < scree_rounds_fitted(c) || isnan(y)) continue;
+    x = c->runs[i].x;
+    sum += y;
+    n++;
+  }
+  out->check_count = n;
+  if (n == 0) return;
+  scree_gp_value value = scree_gp_at(a->model.model.items[a->model.first[quantity]].gp, x);
+  double half = scree_student_quantile(0.5 * (1 + a->r->confidence), 1e6) *
+                sqrt(value.variance + value.noise / (double)n);
+  out->check_mean = sum / (double)n;
+  out->check_low = value.mean - half;
+  out->check_high = value.mean + half;
+}
+
 static scree_status describe_answer(analysis *a, size_t quantity, draws *d) {
   const scree_quantity *q = &a->c->quantities[quantity];
   const scree_response *r = &a->model.model.items[a->model.first[quantity]];
@@ -297,12 +323,17 @@ static scree_status describe_answer(analysis *a, size_t quantity, draws *d) {
       .single_high = NAN,
       .noise = NAN,
       .run_count = scree_gp_run_count(r->gp),
+      .check_mean = NAN,
+      .check_low = NAN,
+      .check_high = NAN,
       .unexplained = NAN};
   if (!out->name || !out->experiment || !out->answer) return fail_memory(a);
-  out->missing = a->gathered.run_counts[q->experiment] - out->run_count;
+  out->missing =
+      scree_rounds_until(a->c, q->experiment, scree_rounds_fitted(a->c)) - out->run_count;
   if (a->r->sample_count == 0) return SCREE_OK;
   if (q->x) return describe_curve(a, quantity, d, out);
   describe_scalar(a, r, a->model.first[quantity], d, out);
+  describe_check(a, quantity, out);
   return SCREE_OK;
 }
 
@@ -422,7 +453,7 @@ static scree_status look_back(analysis *a, size_t rounds, double *row) {
 }
 
 static scree_status describe_history(analysis *a) {
-  size_t rounds = a->c->round_count, d = a->c->parameter_count;
+  size_t rounds = scree_rounds_fitted(a->c), d = a->c->parameter_count;
   size_t steps = rounds < MOST_HISTORY ? rounds : MOST_HISTORY;
   a->r->history = scree_arena_take(&a->arena, steps * (1 + d), sizeof *a->r->history);
   if (!a->r->history) return fail_memory(a);
@@ -443,7 +474,7 @@ static scree_status start(analysis *a, scree_calibration *c) {
   if (status == SCREE_OK && c->round_count == 0)
     status = scree_fail(a->error, SCREE_BAD_ARGUMENT, "%s: no run has been made yet", c->folder);
   if (status == SCREE_OK)
-    status = scree_calibration_fit(c, &a->gathered, c->round_count, &a->model, a->error);
+    status = scree_calibration_fit(c, &a->gathered, scree_rounds_fitted(c), &a->model, a->error);
   if (status != SCREE_OK) return status;
   const char *end;
   scree_calibration_result *r = a->r;

@@ -106,6 +106,11 @@ scree_status scree_calibration_open_folder(const char *folder, scree_calibration
 
 /* ---- rounds ---- */
 
+/* What was asked: another file goes on. */
+static void mark_of(const scree_calibration *c, char mark[SCREE_CHECKSUM_TEXT]) {
+  scree_checksum_text(scree_checksum_of(c->text, c->text_size), mark);
+}
+
 static char *round_path(const scree_calibration *c, size_t number) {
   char name[40];
   snprintf(name, sizeof name, "rounds/%04zu.yaml", number);
@@ -171,6 +176,7 @@ static scree_status read_run(scree_calibration *c, const char *path, const scree
 
 static scree_status read_round(scree_calibration *c, const char *path, scree_error *error) {
   scree_yaml root;
+  char mark[SCREE_CHECKSUM_TEXT];
   scree_status status = scree_yaml_read(path, &root, error);
   if (status != SCREE_OK) return status;
   bool mapping = root.kind == SCREE_YAML_MAPPING;
@@ -181,6 +187,9 @@ static scree_status read_round(scree_calibration *c, const char *path, scree_err
     status = check_names(c, path, scree_yaml_find(&root, "parameters"), error);
   for (size_t i = 0; status == SCREE_OK && i < runs->item_count; i++)
     status = read_run(c, path, &runs->items[i], error);
+  const char *check = status == SCREE_OK ? text_of(&root, "check") : NULL;
+  mark_of(c, mark);
+  c->checked = check && !strcmp(check, mark);
   scree_yaml_free(&root);
   return status;
 }
@@ -189,6 +198,7 @@ scree_status scree_rounds_read(scree_calibration *c, scree_error *error) {
   scree_status status = SCREE_OK;
   scree_arena_free(&c->run_arena);
   c->run_count = c->round_count = 0;
+  c->checked = false;
   while (status == SCREE_OK) {
     char *path = round_path(c, c->round_count + 1);
     if (!path) return scree_fail_memory(error, 0, "a path");
@@ -201,6 +211,17 @@ scree_status scree_rounds_read(scree_calibration *c, scree_error *error) {
   return status;
 }
 
+size_t scree_rounds_fitted(const scree_calibration *c) {
+  return c->round_count - c->checked;
+}
+
+size_t scree_rounds_until(const scree_calibration *c, size_t experiment, size_t round_count) {
+  size_t count = 0;
+  for (size_t i = 0; i < c->run_count && c->runs[i].round < round_count; i++)
+    count += c->runs[i].experiment == experiment;
+  return count;
+}
+
 static void put_text(FILE *stream, const char *text) {
   putc('"', stream);
   for (; *text; text++) {
@@ -211,7 +232,7 @@ static void put_text(FILE *stream, const char *text) {
 }
 
 scree_status scree_rounds_add(scree_calibration *c, const scree_place_pick *picks, size_t count,
-                              double seconds, scree_error *error) {
+                              bool check, double seconds, scree_error *error) {
   char *path = round_path(c, c->round_count + 1);
   if (!path) return scree_fail_memory(error, 0, "a path");
   scree_output output;
@@ -219,7 +240,13 @@ scree_status scree_rounds_add(scree_calibration *c, const scree_place_pick *pick
   scree_free(path);
   if (status != SCREE_OK) return status;
   FILE *s = output.stream;
-  fprintf(s, "seconds: %.3f\nparameters: [", seconds);
+  fprintf(s, "seconds: %.3f\n", seconds);
+  if (check) {
+    char mark[SCREE_CHECKSUM_TEXT];
+    mark_of(c, mark);
+    fprintf(s, "check: \"%s\"\n", mark);
+  }
+  fputs("parameters: [", s);
   for (size_t p = 0; p < c->parameter_count; p++) {
     fputs(p ? ", " : "", s);
     put_text(s, c->parameters[p].place.name);
@@ -240,11 +267,6 @@ scree_status scree_rounds_add(scree_calibration *c, const scree_place_pick *pick
 }
 
 /* ---- the end ---- */
-
-/* What was asked: another file goes on. */
-static void mark_of(const scree_calibration *c, char mark[SCREE_CHECKSUM_TEXT]) {
-  scree_checksum_text(scree_checksum_of(c->text, c->text_size), mark);
-}
 
 scree_status scree_rounds_stop(scree_calibration *c, const char *reason, double seconds,
                                scree_error *error) {

@@ -1,5 +1,6 @@
 /* The loop of a worker: take runs, wait for those of others, plan the next ones. */
 #include "base/file.h"
+#include "base/number.h"
 #include "base/platform.h"
 #include "calibrate/calibration.h"
 #include "calibrate/ensemble.h"
@@ -12,7 +13,7 @@
 /* More runs do not narrow a posterior whose width is that of the measurements: it ends when this
  * share of the variance, at most, is the emulators'. */
 static const double settled_share = 0.03;
-enum { REFERENCE = 128 };
+enum { REFERENCE = 128, CHECKS = 3 };
 
 /* ---- the posterior ---- */
 
@@ -73,7 +74,7 @@ static scree_status plan_start(scree_calibration *c, scree_error *error) {
         count++;
       }
   }
-  if (status == SCREE_OK) status = scree_rounds_add(c, picks, count, 0, error);
+  if (status == SCREE_OK) status = scree_rounds_add(c, picks, count, false, 0, error);
   scree_free(picks);
   scree_free(unit);
   return status;
@@ -101,33 +102,71 @@ static scree_status ask(const scree_calibration *c, const scree_calibration_mode
   return status;
 }
 
+/* The coordinate of the mean over the posterior, of a list of the value nearest to it. */
+static double answer_at(const scree_calibration *c, size_t k, const double *samples, size_t count) {
+  const scree_plan_parameter *p = &c->parameters[k];
+  char number[SCREE_NUMBER_SIZE];
+  double mean = 0;
+  for (size_t i = 0; i < count; i++) {
+    double x = samples[i * c->parameter_count + k];
+    mean += (p->values.count ? x : scree_parameter_value(p, x)) / (double)count;
+  }
+  if (p->values.count) return scree_parameter_snap(p, mean);
+  scree_number_format_digits(mean, 9, number);
+  return scree_parameter_coordinate(p, number);
+}
+
+/* Some runs of every experiment at the answer: what they give beside what is expected of them shows
+ * whether it can be relied on. They come on top of the budget. */
+static scree_status plan_check(scree_calibration *c, const scree_calibration_model *m, double begun,
+                               scree_error *error) {
+  size_t d = c->parameter_count, sample_count, count = CHECKS * c->experiment_count;
+  double *samples;
+  scree_status status = scree_calibration_sample(c, &m->model, 1, &samples, &sample_count, error);
+  if (status != SCREE_OK) return status;
+  scree_place_pick *picks = scree_alloc(count, sizeof *picks);
+  if (!picks) status = scree_fail_memory(error, 0, "the check at the answer");
+  for (size_t i = 0; status == SCREE_OK && i < count; i++) {
+    picks[i].experiment = i / CHECKS;
+    for (size_t k = 0; k < d; k++) picks[i].x[k] = answer_at(c, k, samples, sample_count);
+  }
+  if (status == SCREE_OK)
+    status = scree_rounds_add(c, picks, count, true, scree_processor_time() - begun, error);
+  scree_free(picks);
+  scree_free(samples);
+  return status;
+}
+
 static scree_status plan_next(scree_calibration *c, const scree_answers *g, size_t batch,
                               scree_error *error) {
   double begun = scree_processor_time(), left = 1;
   const scree_plan_budget *budget = c->plan.budget;
   size_t count = c->run_count < budget->runs ? budget->runs - c->run_count : 0;
   if (count > batch) count = batch;
-  if (count == 0 || g->seconds > budget->time)
-    return scree_rounds_stop(c, "the budget is spent", 0, error);
+  bool spent = count == 0 || g->seconds > budget->time,
+       last = c->checked || scree_calibration_is_search(c);
+  const char *reason = spent ? "the budget is spent" : NULL;
+  if (spent && last) return scree_rounds_stop(c, reason, 0, error);
   scree_calibration_model m;
   scree_error why;
-  scree_status status = scree_calibration_fit(c, g, c->round_count, &m, &why);
+  scree_status status = scree_calibration_fit(c, g, scree_rounds_fitted(c), &m, &why);
   if (status != SCREE_OK)
     return scree_fail(error, status, "%.400s%s%.500s", why.message,
                       g->failure_count ? "; of those that failed: " : "",
                       g->failure_count ? g->failures[0] : "");
-  scree_place_pick *picks = scree_alloc(count, sizeof *picks);
+  scree_place_pick *picks = scree_alloc(count + 1, sizeof *picks);
   if (!picks)
     status = scree_fail_memory(error, 0, "the next runs");
   else if (scree_calibration_is_search(c))
     status = scree_search_next(c, &m, g, count, picks, &left, error);
-  else
+  else if (!spent)
     status = ask(c, &m, g, count, picks, &left, error);
+  if (left < settled_share && !spent) reason = "more runs would tell no more";
   double seconds = scree_processor_time() - begun;
-  if (status == SCREE_OK)
-    status = left < settled_share
-                 ? scree_rounds_stop(c, "more runs would tell no more", seconds, error)
-                 : scree_rounds_add(c, picks, count, seconds, error);
+  if (status == SCREE_OK && !reason)
+    status = scree_rounds_add(c, picks, count, false, seconds, error);
+  else if (status == SCREE_OK)
+    status = last ? scree_rounds_stop(c, reason, seconds, error) : plan_check(c, &m, begun, error);
   scree_free(picks);
   scree_calibration_model_free(c, &m);
   return status;

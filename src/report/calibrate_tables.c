@@ -81,6 +81,25 @@ static void print_answers(const scree_calibration_result *r, FILE *s) {
   }
 }
 
+/* Whether runs at the answer give what is expected of them. */
+static void print_check(const scree_calibration_result *r, FILE *s) {
+  bool begun = false;
+  for (size_t i = 0; i < r->answer_count; i++) {
+    const scree_answer_result *a = &r->answers[i];
+    if (a->check_count == 0) continue;
+    if (!begun) {
+      fputs("\nchecked by runs at", s);
+      for (size_t k = 0; k < r->parameter_count; k++)
+        fprintf(s, "%s %s %.4g", k ? "," : "", r->parameters[k].name, r->parameters[k].mean);
+      fputs("\n", s);
+      begun = true;
+    }
+    bool good = a->check_mean >= a->check_low && a->check_mean <= a->check_high;
+    fprintf(s, "%-24s %12.5g, the mean of %zu; expected [%12.5g, %12.5g]%s\n", a->name,
+            a->check_mean, a->check_count, a->check_low, a->check_high, good ? "" : "  OUTSIDE");
+  }
+}
+
 static void print_advice(const scree_calibration_result *r, FILE *s) {
   bool all = true;
   for (size_t k = 0; k < r->parameter_count; k++) all = all && r->parameters[k].identified;
@@ -120,6 +139,7 @@ void scree_calibration_print(const scree_calibration_result *result, FILE *strea
   print_parameters(result, stream);
   print_trades(result, stream);
   print_answers(result, stream);
+  print_check(result, stream);
   print_advice(result, stream);
 }
 
@@ -190,6 +210,12 @@ static void put_answer(scree_json *json, const scree_answer_result *a) {
   scree_json_count(json, "runs", a->run_count);
   scree_json_count(json, "missing", a->missing);
   scree_json_bool(json, "inside", a->inside);
+  scree_json_row_object(json, "check");
+  scree_json_count(json, "runs", a->check_count);
+  scree_json_number(json, "mean", a->check_mean);
+  scree_json_number(json, "low", a->check_low);
+  scree_json_number(json, "high", a->check_high);
+  scree_json_end(json);
   if (a->point_count) {
     put_numbers(json, "x", a->x, a->point_count);
     put_numbers(json, "y", a->y, a->point_count);
