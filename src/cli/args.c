@@ -4,6 +4,7 @@
 #include "cli/options.h"
 #include "cli/terminal.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
@@ -121,6 +122,13 @@ scree_status cli_name_in_error(const char *word, scree_error *error) {
   return error->status;
 }
 
+const char *cli_comma_hint(const char *text) {
+  for (const char *c = strchr(text, ','); c; c = strchr(c + 1, ','))
+    if (c > text && isdigit((unsigned char)c[-1]) && isdigit((unsigned char)c[1]))
+      return ": has a decimal comma; write a point, as in 0.5";
+  return "";
+}
+
 int cli_misuse(const cli_verb *verb, const char *format, ...) {
   va_list arguments;
   char message[CLI_PRINTABLE_BYTES];
@@ -232,15 +240,16 @@ static int parse_length(const cli_verb *verb, const cli_option *option, const ch
   if (!cli_length_from_text(text, metres))
     return cli_misuse(verb,
                       "--%s %s: not a length such as 0.27mm (m, cm, mm, um, km, inch, ft; without "
-                      "a unit, m)",
-                      option->name, text);
+                      "a unit, m)%s",
+                      option->name, text, cli_comma_hint(text));
   return in_range(option, *metres) ? 0 : out_of_range(verb, option, text);
 }
 
 static int parse_fraction(const cli_verb *verb, const cli_option *option, const char *text,
                           double *value) {
   if (!cli_fraction_from_text(text, value))
-    return cli_misuse(verb, "--%s %s: not a share such as 0.005 or 0.5%%", option->name, text);
+    return cli_misuse(verb, "--%s %s: not a share such as 0.005 or 0.5%%%s", option->name, text,
+                      cli_comma_hint(text));
   return in_range(option, *value) ? 0 : out_of_range(verb, option, text);
 }
 
@@ -297,7 +306,7 @@ static int store(const cli_verb *verb, const cli_option *option, const char *tex
     return parse_count(verb, option, text, value);
   case CLI_REAL:
     if (!cli_real_from_text(text, &real))
-      return cli_misuse(verb, "--%s %s: not a number", option->name, text);
+      return cli_misuse(verb, "--%s %s: not a number%s", option->name, text, cli_comma_hint(text));
     if (!in_range(option, real)) return out_of_range(verb, option, text);
     *(double *)value = real;
     return 0;

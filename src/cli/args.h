@@ -118,6 +118,8 @@ scree_status cli_refuse(scree_error *error, scree_status status, const char *pat
 scree_status cli_name_in_error(const char *word, scree_error *error);
 /* Says what is wrong with the call on stderr and how to get help; returns the exit code 2. */
 int cli_misuse(const cli_verb *verb, const char *format, ...) SCREE_PRINTF(2, 3);
+/* What to add where a text is no number: a word on a comma between digits, else "". */
+const char *cli_comma_hint(const char *text);
 
 /* "mm" to 1e-3; false where the word is no unit of length. */
 bool cli_unit_from_text(const char *text, double *metres);

@@ -279,8 +279,8 @@ static int run_choose(const cli_call *call) {
     return cli_misuse(
         call->verb,
         "--tolerance '%s': must be a list of NAME=BOUND as in mean=0.3%%,hausdorff=2mm, "
-        "bounds above 0 and up to 100%%, lengths with a unit and of mean and hausdorff alone",
-        a->tolerance);
+        "bounds above 0 and up to 100%%, lengths with a unit and of mean and hausdorff alone%s",
+        a->tolerance, cli_comma_hint(a->tolerance));
   if (a->paper && a->rule != RULE_UNSET && a->rule != SCREE_RULE_PAPER)
     return cli_misuse(call->verb, "--paper is --rule paper");
   run.report.rule = a->paper                ? SCREE_RULE_PAPER

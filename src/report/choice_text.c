@@ -16,8 +16,8 @@ static const double NOTABLE_RATIO = 1.5;
 static const double PAPER_COUNT = 762008, NOTABLE_RESOLUTION = 3;
 /* And it is none where the count would hardly change. */
 static const double NOTABLE_GROWTH = 0.1;
-/* A width that changes by more than is allowed unless asked otherwise has lost a feature. */
-static const double NOTABLE_WIDTH = 0.03;
+/* A width that changes by more is told with the count. */
+static const double NOTABLE_WIDTH = 0.02;
 /* Mean angle of the normals over pi (18 degrees): what stands out less than the distances allowed
  * is flattened. */
 static const double NOTABLE_NORMALS = 0.1;
@@ -153,6 +153,21 @@ static const char *place_text(double metres, double step, char buffer[NUMBER_BYT
 }
 #define PLACE(metres, step) place_text(metres, step, (char[NUMBER_BYTES]){0})
 
+/* What of the dimensions is another than the scan's, a sentence each; name: "" or "NAME: ". */
+static void say_widths(sentences *s, const char *name, const scree_choice *c) {
+  static const char *const sides[] = {"length", "width", "height"};
+  for (int i = 0; i < 3; i++) {
+    double change = scree_fidelity_change(c->fidelity, c->recommended_row,
+                                          (scree_shape_change)(SCREE_CHANGE_LENGTH + i)),
+           side =
+               1e3 * scree_fidelity_scan(c->fidelity, (scree_scan_fact)(SCREE_SCAN_BOX_LENGTH + i));
+    if (fabs(change) > NOTABLE_WIDTH)
+      say(s, "%s%s %s is %s mm, not %s mm, %s %% (--tolerance widths=1%% keeps it).", name,
+          *name ? "the" : "The", sides[i], NUMBER(side * (1 + change), 4), NUMBER(side, 4),
+          CHANGE(change));
+  }
+}
+
 static void say_recommended(sentences *s, const scree_choice_report *report,
                             const scree_choice *c) {
   const scree_fidelity *f = c->fidelity;
@@ -178,6 +193,7 @@ static void say_recommended(sentences *s, const scree_choice_report *report,
       PLACE(at[1], step), PLACE(at[2], step), walls,
       CHANGE(scree_fidelity_change(f, row, SCREE_CHANGE_INERTIA)),
       CHANGE(scree_fidelity_change(f, row, SCREE_CHANGE_AREA)));
+  say_widths(s, "", c);
   say_limit(s, report, c);
   if (pick->triangle_count > c->paper.triangle_count)
     say(s,
@@ -249,6 +265,11 @@ static void say_set(sentences *s, const scree_choice_report *report) {
   say(s, "Use each shape's own count, %s%s%s triangles: all keep the same tolerances.",
       count_text(least, low), least < most ? " to " : "",
       least < most ? count_text(most, high) : "");
+  for (size_t i = 0; i < report->entry_count; i++) {
+    char name[64];
+    snprintf(name, sizeof name, "%.60s: ", report->entries[i].name);
+    say_widths(s, name, report->entries[i].choice);
+  }
   say_common_rp(s, report, "The paper's criterion gives one", ", but fidelities that differ");
 }
 
@@ -270,20 +291,9 @@ size_t scree_choice_answer(const scree_choice_report *report, size_t entry,
 /* ---- Warnings ---- */
 
 static void warn_of_losses(sentences *s, const scree_choice_report *report, const scree_choice *c) {
-  static const char *const sides[] = {"length", "width", "height"};
   const scree_fidelity *f = c->fidelity;
   size_t row = c->recommended_row;
   char count[NUMBER_BYTES];
-  for (int i = 0; i < 3; i++) {
-    double change = scree_fidelity_change(f, row, (scree_shape_change)(SCREE_CHANGE_LENGTH + i)),
-           side = 1e3 * scree_fidelity_scan(f, (scree_scan_fact)(SCREE_SCAN_BOX_LENGTH + i));
-    if (fabs(change) > NOTABLE_WIDTH)
-      say(s,
-          "The %s is %s mm, not %s mm: a feature thinner than the tolerances %s (--tolerance "
-          "widths=3%% keeps it).",
-          sides[i], NUMBER(side * (1 + change), 4), NUMBER(side, 4),
-          change < 0 ? "is lost" : "has grown");
-  }
   double normals = scree_fidelity_error(f, row, SCREE_ERROR_NORMALS);
   if (normals > NOTABLE_NORMALS)
     say(s,

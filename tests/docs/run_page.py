@@ -8,7 +8,7 @@ Fenced blocks are taken in their order:
   ```python           is run by python3, which finds the module scree; takes needs= and long too
   ```yaml file=NAME   becomes the file NAME (any language)
 Each picture that a tutorial shows must be among the files that the commands made; UPDATE=1 copies it into the page's
-place. What the page quotes in backticks as the program's answer, `Use N triangles ...`, must be what the program said.
+place. A how-to finds what it speaks of in the folder (howto.sh). What the page quotes in backticks as the program's answer, `Use N triangles ...`, must be what the program said.
 Exit code 77 where there is nothing to run."""
 import os
 import re
@@ -56,6 +56,9 @@ def main(program, library, page, long=False):
                                 "PYTHONPATH": f"{ROOT}/python", "SCREE_LIBRARY": os.path.abspath(library)}
     count, skipped, heard = 0, False, ""
     with tempfile.TemporaryDirectory() as folder:
+        if "/howto/" in os.path.abspath(page):
+            with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "howto.sh"), encoding="utf-8") as file:
+                run("sh", file.read(), folder, environment)
         for language, flags, body in blocks(text):
             if "file" in flags:
                 with open(os.path.join(folder, flags["file"]), "w", encoding="utf-8") as file:
