@@ -6,17 +6,6 @@
 
 static const double g = 9.81;
 
-/* Up to a time; false where the scene ended before. */
-static bool run_until(scree_scene *scene, double time) {
-  scree_error error;
-  double dt = scree_world_time_step(scree_scene_view(scene), NULL);
-  while (!scree_scene_end(scene) && scree_world_time(scree_scene_view(scene)) < time) {
-    double left = (time - scree_world_time(scree_scene_view(scene))) / dt;
-    CHECK_OK(scree_scene_advance(scene, left > 2 ? (size_t)left : 1, &error), error);
-  }
-  return !scree_scene_end(scene);
-}
-
 static scree_body body_of(const scree_scene *scene, size_t index) {
   scree_body body;
   scree_world_get_body(scree_scene_view(scene), index, &body);

@@ -56,11 +56,15 @@ static inline double now_of(const scree_scene *scene, const char *name) {
   return value;
 }
 
-/* Up to a time, not past it. */
-static inline void run_until(scree_scene *scene, double time) {
+/* Up to a time; false where the scene ended before. */
+static inline bool run_until(scree_scene *scene, double time) {
   scree_error error;
-  while (scree_world_time(scree_scene_view(scene)) < time)
-    CHECK_OK(scree_scene_advance(scene, 1, &error), error);
+  double dt = scree_world_time_step(scree_scene_view(scene), NULL);
+  while (!scree_scene_end(scene) && scree_world_time(scree_scene_view(scene)) < time) {
+    double left = (time - scree_world_time(scree_scene_view(scene))) / dt;
+    CHECK_OK(scree_scene_advance(scene, left > 2 ? (size_t)left : 1, &error), error);
+  }
+  return !scree_scene_end(scene);
 }
 
 #endif
