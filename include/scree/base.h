@@ -64,9 +64,10 @@ SCREE_API void scree_reset_memory_peak(void);
 SCREE_API void scree_set_threads(int thread_count);
 SCREE_API int scree_threads(void);
 
-/* Where the steps of worlds are computed from now on: "cpu" (the default), "cuda", or "cuda:N" for
- * the NVIDIA device of that number. The results are the same bits. SCREE_BAD_ARGUMENT for another
- * name; SCREE_NO_BACKEND, with what is missing, where it is not there: the choice stays then. */
+/* Where worlds that were not told otherwise (scree_world_set_backend) are stepped from now on:
+ * "cpu" (the default), "cuda", or "cuda:N" for the NVIDIA device of that number. The results are
+ * the same bits. SCREE_BAD_ARGUMENT for another name; SCREE_NO_BACKEND, with what is missing, where
+ * it is not there: the choice stays then. */
 SCREE_API scree_status scree_set_backend(const char *name, scree_error *error);
 /* The same without choosing it; description: what is there, in a few words. */
 SCREE_API scree_status scree_check_backend(const char *name, char description[256],

@@ -223,6 +223,10 @@ SCREE_API double scree_world_body_mass(const scree_world *world, size_t index);
 /* Takes a body out; its index stays and is not used again. */
 SCREE_API void scree_world_remove_body(scree_world *world, size_t index);
 
+/* Where this world is stepped from now on, by the names of scree_set_backend, with the same bits.
+ * It may go from one to the other at any time, but not from one device to another. */
+SCREE_API scree_status scree_world_set_backend(scree_world *world, const char *name,
+                                               scree_error *error);
 /* Advances by step_count steps. SCREE_DIVERGED, with step, body and cause in the message, when the
  * run leaves the model's range: an overlap beyond the limit, a body moving more than that in one
  * step or two past each other by more than the thinner's thinnest wall, bodies put into each other

@@ -191,6 +191,11 @@ class World(Saved):
         rows, live = self.bodies().position, self.live()
         return rows[live] if hasattr(rows, "dtype") else [list(map(float, (rows[i, k] for k in range(3)))) for i in live]
 
+    def set_backend(self, name: str) -> None:
+        """"cpu", "cuda" or "cuda:1": where it is stepped from now on, with the same bits."""
+        with self._c.turn.taken(steps=True):
+            lib.world_set_backend(self, name)
+
     def step(self, count: int = 1) -> None:
         """Advances by whole steps; Error with status DIVERGED where the run leaves its model."""
         with self._c.turn.taken(steps=True):

@@ -12,11 +12,11 @@
 static const scree_backend *chosen = &scree_backend_cpu;
 static int chosen_device = 0;
 
-const scree_backend *scree_backend_chosen(void) {
-  return chosen;
+const scree_backend *scree_backend_of(const scree_world *world) {
+  return world->backend ? world->backend : chosen;
 }
-int scree_backend_device(void) {
-  return chosen_device;
+int scree_backend_device_of(const scree_world *world) {
+  return world->backend ? world->device : chosen_device;
 }
 
 /* "cpu", "cuda" or "cuda:N". */
@@ -48,6 +48,24 @@ scree_status scree_set_backend(const char *name, scree_error *error) {
   scree_status status = scree_check_backend(name, description, error);
   if (status == SCREE_OK) chosen = find(name, &chosen_device);
   return status;
+}
+
+scree_status scree_world_set_backend(scree_world *world, const char *name, scree_error *error) {
+  char description[256];
+  int device;
+  scree_status status = scree_check_backend(name, description, error);
+  if (status) return status;
+  const scree_backend *backend = find(name, &device);
+  int there = scree_cuda_device_of(world);
+  if (backend == &scree_backend_cuda && there >= 0 && there != device)
+    return scree_fail(
+        error, SCREE_BAD_ARGUMENT,
+        "backend '%s': the world is on cuda:%d already; it stays there, or goes on on "
+        "the processor",
+        name, there);
+  world->backend = backend;
+  world->device = device;
+  return SCREE_OK;
 }
 
 scree_status scree_world_bring(const scree_world *world, unsigned parts, scree_error *error) {

@@ -27,9 +27,12 @@ typedef struct scree_backend {
 
 extern const scree_backend scree_backend_cpu, scree_backend_cuda;
 
-/* What scree_set_backend chose last. */
-const scree_backend *scree_backend_chosen(void);
-int scree_backend_device(void);
+/* Where the world steps: what scree_world_set_backend chose for it, or scree_set_backend for all.
+ */
+const scree_backend *scree_backend_of(const scree_world *world);
+int scree_backend_device_of(const scree_world *world);
+/* cuda.c: of a world that has stepped on a device the number of that device; else -1. */
+int scree_cuda_device_of(const scree_world *world);
 
 /* Before arrays of these parts are read. Where a device does not give them back, the world has
  * diverged; it shows what it had before, without its neighbours. */

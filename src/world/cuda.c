@@ -261,7 +261,7 @@ static void release(scree_world *w) {
 }
 
 static scree_status begin(scree_world *w, scree_error *error) {
-  int device = scree_backend_device();
+  int device = scree_backend_device_of(w);
   if (w->on_device) return scree_cuda_use(w->on_device->queue.device, error);
   struct scree_device_world *d = scree_alloc_zero(1, sizeof *d);
   if (d) d->image = scree_alloc_zero(1, sizeof *d->image);
@@ -276,6 +276,10 @@ static scree_status begin(scree_world *w, scree_error *error) {
   return status ? status : scree_cuda_open_queue(&d->queue, error);
 }
 
+int scree_cuda_device_of(const scree_world *w) {
+  return w->on_device ? w->on_device->queue.device : -1;
+}
+
 const scree_backend scree_backend_cuda = {"cuda", begin, step, bring, change, sum, release};
 
 #else
@@ -284,6 +288,11 @@ static scree_status unsupported(scree_world *world, scree_error *error) {
   (void)world;
   char description[256];
   return scree_cuda_open(0, description, error);
+}
+
+int scree_cuda_device_of(const scree_world *world) {
+  (void)world;
+  return -1;
 }
 
 const scree_backend scree_backend_cuda = {"cuda", unsupported, NULL, NULL, NULL, NULL, NULL};

@@ -491,7 +491,7 @@ scree_status scree_world_step(scree_world *world, size_t step_count, scree_error
     if (error) *error = world->failure;
     return world->failure.status;
   }
-  const scree_backend *backend = scree_backend_chosen();
+  const scree_backend *backend = scree_backend_of(world);
   scree_status status = check_time_step(world, error);
   if (!status) status = backend->begin(world, error);
   if (status) return status;

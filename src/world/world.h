@@ -440,6 +440,8 @@ struct scree_world {
     size_t byte_count;
   } kept;
   scree_timings timings;
+  const struct scree_backend *backend; /* NULL: what scree_set_backend chose */
+  int device;
   struct scree_device_world *on_device; /* cuda_state.h; NULL: it never was on one */
   struct scree_sums *sums;              /* of a device: what the parts of an observation come to */
 };

@@ -135,6 +135,7 @@ static scree_status step_world(void *context, scree_error *error) {
   scree_status status = scree_check_backend(backend, description, error);
   if (status == SCREE_OK) status = scree_set_backend(backend, error);
   if (status == SCREE_OK) status = make_world(context, &world, error);
+  if (status == SCREE_OK) status = scree_world_set_backend(world, backend, error);
   if (status == SCREE_OK) status = scree_world_keep(world, file, 25, error);
   if (status == SCREE_OK) status = scree_world_step(world, 60, error);
   if (status == SCREE_OK)

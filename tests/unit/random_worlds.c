@@ -109,9 +109,8 @@ static void check_checkpoint(scree_world *world) {
   CHECK_OK(scree_world_save(world, file, true, &error), error);
   CHECK_OK(scree_world_load(file, &loaded, &error), error);
   scree_status first = scree_world_step(world, 40, &error);
-  CHECK_OK(scree_set_backend("cpu", &unused), unused);
+  CHECK_OK(scree_world_set_backend(loaded, "cpu", &unused), unused);
   scree_status second = scree_world_step(loaded, 40, &other);
-  CHECK_OK(scree_set_backend(backend, &unused), unused);
   assert_int_equal(first, second);
   if (first != SCREE_OK) assert_string_equal(error.message, other.message);
   scree_checksum a = scree_world_hash(world), b = scree_world_hash(loaded);
