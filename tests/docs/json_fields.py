@@ -22,7 +22,8 @@ VERBS = {  # heading: calls that together print every field
     "scree measure": [["measure", SOLID]],
     "scree distance": [["distance", SOLID, BALL, "--points", "100"]],
     "scree run, repose, drop and pile": [["repose", SOLID, "--particles", "2", "--pack-time", "0.02", "--settle-time",
-                                          "0.01", "--lift-time", "0.01", "--hold-time", "0.01", "-j", "1"]],
+                                          "0.01", "--lift-time", "0.01", "--hold-time", "0.01", "-j", "1", "-o", "heap"],
+                                         ["run", "-o", "heap", "--resume", "--change", "gravity=5"]],
     "scree pile of a scan, an outline or a picture": [["pile", SOLID]],
     "scree check and scree repair": [["check", SOLID, "missing.stl"], ["repair", "open.off", "-o", "r.stl"]],
 }
