@@ -238,6 +238,22 @@ SCREE_API const double *scree_scene_wear(const scree_scene *scene, size_t wall,
 SCREE_API const double *scree_scene_worn(const scree_scene *scene, size_t wall,
                                          size_t *triangle_count);
 
+/* How long bodies stayed that have left, as a `residence` sensor counts them: a histogram by class.
+ */
+typedef struct scree_residence {
+  size_t class_count, bin_count;
+  double from, until; /* s: the bins' ends, equally wide; NaN where none has left */
+  double *counts;     /* of class c in bin b the one at c bin_count + b */
+} scree_residence;
+/* The sensor of that index, and its classes; NULL past the last. */
+SCREE_API const char *scree_scene_residence_name(const scree_scene *scene, size_t index);
+SCREE_API const char *scree_scene_residence_class(const scree_scene *scene, size_t index,
+                                                  size_t class_index);
+SCREE_API scree_status scree_scene_measure_residence(const scree_scene *scene, size_t index,
+                                                     scree_residence *residence,
+                                                     scree_error *error);
+SCREE_API void scree_residence_free(scree_residence *residence);
+
 /* ---- Piles ---- */
 
 /* How a pile is measured: the fields of a `pile` sensor. */

@@ -65,6 +65,36 @@ static void json_piles(scree_json *json, const scree_scene_entry *entry, const s
   scree_json_end(json);
 }
 
+static scree_status json_residences(scree_json *json, const scree_scene *scene,
+                                    scree_error *error) {
+  scree_status status = SCREE_OK;
+  scree_json_array(json, "residence");
+  for (size_t i = 0; status == SCREE_OK && scree_scene_residence_name(scene, i); i++) {
+    scree_residence r;
+    status = scree_scene_measure_residence(scene, i, &r, error);
+    if (status != SCREE_OK) break;
+    scree_json_object(json, NULL);
+    scree_json_text(json, "name", scree_scene_residence_name(scene, i));
+    scree_json_number(json, "from", r.from);
+    scree_json_number(json, "until", r.until);
+    scree_json_array(json, "classes");
+    for (size_t c = 0; c < r.class_count; c++) {
+      scree_json_row_object(json, NULL);
+      scree_json_text(json, "name", scree_scene_residence_class(scene, i, c));
+      scree_json_row_array(json, "counts");
+      for (size_t b = 0; b < r.bin_count; b++)
+        scree_json_number(json, NULL, r.counts[c * r.bin_count + b]);
+      scree_json_end(json);
+      scree_json_end(json);
+    }
+    scree_json_end(json);
+    scree_json_end(json);
+    scree_residence_free(&r);
+  }
+  scree_json_end(json);
+  return status;
+}
+
 static void json_costs(scree_json *json, const scree_scene *scene) {
   scree_scene_costs c = scree_scene_get_costs(scene);
   scree_json_object(json, "costs");
@@ -144,8 +174,8 @@ static void json_columns(scree_json *json, const scree_scene *scene, const doubl
   scree_json_end(json);
 }
 
-static void write_scene(FILE *stream, const scree_scene_entry *entry, const double *last,
-                        const scree_pile *piles) {
+static scree_status write_scene(FILE *stream, const scree_scene_entry *entry, const double *last,
+                                const scree_pile *piles, scree_error *error) {
   const scree_scene *scene = entry->scene;
   const scree_world *world = scree_scene_view(scene);
   scree_json json = scree_json_start(stream);
@@ -165,8 +195,10 @@ static void write_scene(FILE *stream, const scree_scene_entry *entry, const doub
   json_changes(&json, scene);
   json_piles(&json, entry, piles);
   json_parts(&json, scene);
+  scree_status status = json_residences(&json, scene, error);
   json_columns(&json, scene, last);
   scree_json_end(&json);
+  return status;
 }
 
 static scree_status measure_piles(const scree_scene_entry *entry, scree_pile **piles,
@@ -191,8 +223,11 @@ scree_status scree_scene_json_write(const scree_scene_entry *entry, const char *
   if (status == SCREE_OK) status = measure_piles(entry, &piles, error);
   if (status == SCREE_OK) status = scree_output_open(path, overwrite, &output, error);
   if (status == SCREE_OK) {
-    write_scene(output.stream, entry, last, piles);
-    status = scree_output_commit(&output, error);
+    status = write_scene(output.stream, entry, last, piles, error);
+    if (status == SCREE_OK)
+      status = scree_output_commit(&output, error);
+    else
+      scree_output_discard(&output);
   }
   scree_free(piles);
   scree_free(last);

@@ -233,6 +233,8 @@ static void take_books(const scree_scene *was, scree_scene *is) {
   is->entered_mass = was->entered_mass;
   is->left_mass = was->left_mass;
   is->entered_energy = was->entered_energy;
+  memcpy(is->table_low, was->table_low, sizeof is->table_low);
+  memcpy(is->table_high, was->table_high, sizeof is->table_high);
   is->left_energy = was->left_energy;
   is->left_count = was->left_count;
   is->end = was->end;
@@ -325,10 +327,35 @@ static scree_status take_series(const scree_scene *was, scree_scene *is, scree_e
   return SCREE_OK;
 }
 
+/* Its place now, by its name; UINT32_MAX: there is none any more. */
+static uint32_t place_now(const scree_records *was, const scree_records *is, size_t size,
+                          uint32_t index) {
+  if (index >= was->count) return index;
+  const scree_place *place =
+      (const scree_place *)(const void *)((const char *)was->items + index * size);
+  size_t now = scree_plan_find(is, size, place->name);
+  return now < is->count ? (uint32_t)now : UINT32_MAX;
+}
+
+/* By which inlets and outlets bodies came and went. */
+static void take_stays(const scree_scene *was, scree_scene *is) {
+  const scree_plan *from = &was->plan, *to = &is->plan;
+  is->stays = was->stays;
+  for (size_t b = 0; b < is->stays.count; b++) {
+    scree_scene_stay *s = &is->stays.items[b];
+    s->inlet = place_now(&from->inlets, &to->inlets, sizeof(scree_plan_inlet), s->inlet);
+    s->outlet = s->outlet == from->outlets.count
+                    ? (uint32_t)to->outlets.count
+                    : place_now(&from->outlets, &to->outlets, sizeof(scree_plan_outlet), s->outlet);
+  }
+}
+
 /* The lists of bodies and of contacts that impacts follow change hands. */
 static void take_lists(scree_scene *was, scree_scene *is) {
   is->shape_of = was->shape_of;
   is->entered_at = was->entered_at;
+  take_stays(was, is);
+  was->stays.items = NULL;
   if (is->hit_steps) is->hits = was->hits;
   was->shape_of.items = NULL;
   was->entered_at.items = NULL;

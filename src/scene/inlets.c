@@ -255,12 +255,14 @@ scree_status scree_scene_admit(scree_scene *scene, size_t shape, const scree_bod
                                scree_error *error) {
   scree_scene_shape *s = &scene->shapes[shape];
   if (!SCREE_RESERVE(&scene->shape_of, scene->shape_of.count + 1) ||
-      !SCREE_RESERVE(&scene->entered_at, scene->entered_at.count + 1))
+      !SCREE_RESERVE(&scene->entered_at, scene->entered_at.count + 1) ||
+      !SCREE_RESERVE(&scene->stays, scene->stays.count + 1))
     return scree_fail_memory(error, scene->shape_of.count * sizeof *body, "bodies");
   scree_status status = scree_scene_add_body(s, scene->world, body, error);
   if (status != SCREE_OK) return status;
   scene->shape_of.items[scene->shape_of.count++] = (uint32_t)shape;
   scene->entered_at.items[scene->entered_at.count++] = scree_world_time(scene->world);
+  scene->stays.items[scene->stays.count++] = (scree_scene_stay){NAN, UINT32_MAX, UINT32_MAX};
   const double *moments = s->particle->measures.inertia;
   mat3 turn = quat_to_mat3(scree_body_turn(body));
   vec3 v = vec3_load(body->velocity), g = vec3_load(scene->plan.gravity),
@@ -287,6 +289,7 @@ scree_status scree_scene_enter(scree_scene *scene, scree_scene_inlet *inlet, siz
     return scree_fail_memory(error, scene->present.count * sizeof *p, "bodies");
   scree_status status = scree_scene_admit(scene, shape, &body, error);
   if (status != SCREE_OK) return status;
+  scene->stays.items[scene->stays.count - 1].inlet = (uint32_t)(inlet - scene->inlets);
   inlet->mass += s->mass;
   inlet->entered++;
   inlet->counts[which]++;

@@ -142,7 +142,7 @@ scree_status scree_motion_open(scree_motion_file *file, const char *path, double
   if (!file->path) return scree_fail_memory(error, strlen(path), "a path");
   scree_status status = go_on ? keep_frames(file, time, error) : SCREE_OK;
   if (status == SCREE_OK && file->stream) {
-    while (time >= scree_motion_next(file)) file->count++;
+    while (file->last >= scree_motion_next(file)) file->count++; /* one due now is not there yet */
     return SCREE_OK;
   }
   if (status == SCREE_OK) status = begin(file, error);

@@ -35,7 +35,8 @@ static size_t outlet_at(const scree_scene *scene, const double p[3], double time
 static void take_out(scree_scene *scene, size_t b, const scree_body *body, size_t index) {
   double mass = scree_world_body_mass(scene->world, b);
   scree_scene_outlet *outlet = &scene->outlets[index];
-  scree_scene_note_leaving(scene, b);
+  scene->stays.items[b].left = scree_world_time(scene->world);
+  scene->stays.items[b].outlet = (uint32_t)index;
   if (outlet->left == 0) {
     outlet->first_time = scree_world_time(scene->world);
     memcpy(outlet->first_place, body->position, sizeof outlet->first_place);

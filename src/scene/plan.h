@@ -219,6 +219,9 @@ typedef struct scree_plan_grid {
 
 typedef struct scree_plan_residence {
   scree_place place;
+  int by;                     /* SCREE_BY_... */
+  const char *inlet, *outlet; /* NULL: any */
+  size_t bins;
 } scree_plan_residence;
 
 /* One of them. */

@@ -152,6 +152,11 @@ static scree_status check_sensors(const scree_reader *r, const scree_plan *plan)
     }
     for (size_t k = 0; status == SCREE_OK && s->pile && k < s->pile->during.count; k++)
       status = NEED(phases, scree_plan_phase, "phase", s->pile->during.items[k], &s->pile->place);
+    if (status == SCREE_OK && s->residence && s->residence->inlet)
+      status = NEED(inlets, scree_plan_inlet, "inlet", s->residence->inlet, &s->residence->place);
+    if (status == SCREE_OK && s->residence && s->residence->outlet)
+      status =
+          NEED(outlets, scree_plan_outlet, "outlet", s->residence->outlet, &s->residence->place);
     if (status == SCREE_OK && s->slope && is_along(s->slope->axis, plan->gravity))
       status =
           scree_fail_place(r, &s->place, "axis along gravity: from above a surface has no slope");

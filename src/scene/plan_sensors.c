@@ -97,9 +97,20 @@ static const scree_record segregation_record = {"segregation", FIELDS(segregatio
                                                 sizeof(scree_plan_segregation),
                                                 &segregation_defaults, check_segregation};
 
-static const scree_plan_residence residence_defaults = {{0}};
+#define AT(member) offsetof(scree_plan_residence, member)
+static const scree_field residence_fields[] = {
+    {"by", SCREE_FIELD_WORD, AT(by), 0, 0, "size|shape|material",
+     "classes: of a shape's sizes each, all of a shape, all of a material", NULL},
+    {"inlet", SCREE_FIELD_TEXT, AT(inlet), 0, 0, "", "of those that came by it; not given: all",
+     NULL},
+    {"outlet", SCREE_FIELD_TEXT, AT(outlet), 0, 0, "", "of those that left by it; not given: all",
+     NULL},
+    {"bins", SCREE_FIELD_COUNT, AT(bins), 1, 10000, "", "of the histogram", NULL},
+};
+#undef AT
+static const scree_plan_residence residence_defaults = {.bins = 20};
 static const scree_record residence_record = {
-    "residence", NULL, 0, sizeof(scree_plan_residence), &residence_defaults, NULL};
+    "residence", FIELDS(residence_fields), sizeof(scree_plan_residence), &residence_defaults, NULL};
 
 #define AT(member) offsetof(scree_plan_impacts, member)
 static const scree_field impacts_fields[] = {

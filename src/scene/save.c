@@ -121,8 +121,8 @@ static void code_hits(scree_codec *c, scree_scene *scene) {
 }
 
 void scree_scene_code_sensor(scree_codec *c, scree_scene *scene, scree_scene_sensor *sensor) {
-  double *arrays[] = {sensor->count, sensor->mass, sensor->sum, sensor->sum2};
-  for (size_t k = 0; k < 4; k++) scree_code_reals(c, arrays[k], SCREE_SCENE_SHAPES(scene) + 1);
+  double *arrays[] = {sensor->count, sensor->mass};
+  for (size_t k = 0; k < 2; k++) scree_code_reals(c, arrays[k], SCREE_SCENE_SHAPES(scene) + 1);
   scree_code_reals(c, sensor->wear, sensor->wear_count);
   scree_code_reals(c, sensor->worn, sensor->wear_count);
   if (sensor->impacts) code_impacts(c, sensor->impacts);
@@ -142,12 +142,13 @@ void scree_scene_code_sensor(scree_codec *c, scree_scene *scene, scree_scene_sen
 
 static void code_bodies(scree_codec *c, scree_scene *scene) {
   size_t count = scene->shape_of.count;
-  scree_code_count(c, &count, 12);
+  scree_code_count(c, &count, 28);
   if (scree_codec_good(c) &&
-      (!SCREE_RESERVE(&scene->shape_of, count) || !SCREE_RESERVE(&scene->entered_at, count)))
+      (!SCREE_RESERVE(&scene->shape_of, count) || !SCREE_RESERVE(&scene->entered_at, count) ||
+       !SCREE_RESERVE(&scene->stays, count)))
     c->out_of_memory = true;
   if (!scree_codec_good(c)) return;
-  scene->shape_of.count = scene->entered_at.count = count;
+  scene->shape_of.count = scene->entered_at.count = scene->stays.count = count;
   for (size_t i = 0; i < count; i++) {
     scree_code_u32(c, &scene->shape_of.items[i]);
     if (c->loading && scene->shape_of.items[i] >= SCREE_SCENE_SHAPES(scene)) {
@@ -156,6 +157,12 @@ static void code_bodies(scree_codec *c, scree_scene *scene) {
     }
   }
   scree_code_reals(c, scene->entered_at.items, count);
+  for (size_t i = 0; i < count; i++) {
+    scree_scene_stay *stay = &scene->stays.items[i];
+    scree_code_real(c, &stay->left);
+    scree_code_u32(c, &stay->inlet);
+    scree_code_u32(c, &stay->outlet);
+  }
 }
 
 static void code_series(scree_codec *c, scree_scene *scene) {

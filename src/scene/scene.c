@@ -385,6 +385,7 @@ void scree_scene_free(scree_scene *scene) {
   scree_free(scene->series.items);
   scree_free(scene->shape_of.items);
   scree_free(scene->entered_at.items);
+  scree_free(scene->stays.items);
   scree_free(scene->present.items);
   scree_free(scene->changes.items);
   scree_free(scene->text);

@@ -101,8 +101,7 @@ typedef struct scree_scene_sensor {
   const scree_plan_sensor *plan;
   size_t first_column;
   size_t geometry;      /* of a wall or a position */
-  double *count, *mass; /* of a flow and of residence, by shape, all shapes last */
-  double *sum, *sum2;   /* of residence, s and s2, likewise */
+  double *count, *mass; /* of a flow, by shape, all shapes last */
   double *wear;         /* of a wall: J by triangle of its meshes, one of each other wall */
   double *worn;         /* likewise, m3 that are worn off */
   size_t wear_count;
@@ -113,6 +112,12 @@ typedef struct scree_scene_sensor {
     size_t count, capacity;
   } side;
 } scree_scene_sensor;
+
+/* How a body came and went: s, NaN while it is in; UINT32_MAX: from a table, and while it is in. */
+typedef struct scree_scene_stay {
+  double left;
+  uint32_t inlet, outlet;
+} scree_scene_stay;
 
 typedef struct scree_scene_column {
   char name[96];
@@ -152,6 +157,10 @@ struct scree_scene {
     double *items; /* s: when each body entered */
     size_t count, capacity;
   } entered_at;
+  struct {
+    scree_scene_stay *items; /* of each body */
+    size_t count, capacity;
+  } stays;
   struct {
     scree_placement *items; /* scratch of inlets */
     size_t count, capacity;
@@ -325,7 +334,6 @@ bool scree_scene_is_watching(const scree_scene *scene, const scree_scene_sensor 
 scree_status scree_scene_plan_columns(scree_scene *scene, scree_error *error);
 /* Of flows: who crossed since the last tick. */
 scree_status scree_scene_watch_flows(scree_scene *scene, scree_error *error);
-void scree_scene_note_leaving(scree_scene *scene, size_t body);
 scree_status scree_scene_record(scree_scene *scene, scree_error *error);
 /* wear.c: how many numbers a wall's wear is; room for all; what a tick adds. */
 size_t scree_scene_wear_cells(const scree_scene *scene, size_t wall);
@@ -346,6 +354,14 @@ double scree_scene_parts_balance(const scree_scene *scene);
 
 /* forces.c: of the coming step. */
 scree_status scree_scene_apply_forces(scree_scene *scene, scree_error *error);
+
+/* residence.c: its columns; its tables. */
+scree_status scree_scene_read_residence(const scree_scene *scene, const scree_scene_sensor *sensor,
+                                        double *at, scree_error *error);
+void scree_scene_put_stays(const scree_scene *scene, const scree_scene_sensor *sensor,
+                           FILE *stream);
+scree_status scree_scene_put_histogram(const scree_scene *scene, const scree_scene_sensor *sensor,
+                                       FILE *stream, scree_error *error);
 
 /* impacts.c: likewise. */
 scree_status scree_scene_plan_impacts(scree_scene *scene, scree_scene_sensor *sensor,

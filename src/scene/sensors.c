@@ -1,5 +1,5 @@
-/* Sensors as columns of numbers: what each is called, what it reads now, and what flows and
- * residence gather from tick to tick. */
+/* Sensors as columns of numbers: what each is called, what it reads now, and what flows
+ * gather from tick to tick. */
 #include "scene/grid.h"
 #include "scene/impacts.h"
 
@@ -189,15 +189,16 @@ static bool add_sensor(scree_scene *scene, const scree_scene_sensor *sensor) {
   if (plan->grid)
     return add_all(scene, name, grid) && add_classes(scene, name, "lacey", "", SCREE_BY_SHAPE);
   if (plan->impacts) return add_impacts(scene, sensor);
-  return add_by_class(scene, name, "count", "", SCREE_BY_SIZE) &&
-         add_by_class(scene, name, "mean", "s", SCREE_BY_SIZE) &&
-         add_by_class(scene, name, "sd", "s", SCREE_BY_SIZE);
+  const int by = plan->residence->by;
+  return add_by_class(scene, name, "count", "", by) && add_by_class(scene, name, "mean", "s", by) &&
+         add_by_class(scene, name, "sd", "s", by) && add_by_class(scene, name, "p10", "s", by) &&
+         add_by_class(scene, name, "median", "s", by) && add_by_class(scene, name, "p90", "s", by);
 }
 
 static bool allocate_sums(scree_scene *scene, scree_scene_sensor *sensor) {
-  double **arrays[] = {&sensor->count, &sensor->mass, &sensor->sum, &sensor->sum2};
+  double **arrays[] = {&sensor->count, &sensor->mass};
   size_t count = SCREE_SCENE_SHAPES(scene) + 1;
-  for (size_t i = 0; i < 4; i++) {
+  for (size_t i = 0; i < 2; i++) {
     *arrays[i] = scree_arena_take(&scene->arena, count, sizeof **arrays[i]);
     if (!*arrays[i]) return false;
     memset(*arrays[i], 0, count * sizeof **arrays[i]);
@@ -289,21 +290,6 @@ scree_status scree_scene_watch_flows(scree_scene *scene, scree_error *error) {
   for (size_t i = 0; status == SCREE_OK && i < scene->plan.sensors.count; i++)
     if (scene->sensors[i].plan->flow) status = watch_flow(scene, &scene->sensors[i], error);
   return status;
-}
-
-void scree_scene_note_leaving(scree_scene *scene, size_t body) {
-  double stay = scree_world_time(scene->world) - scene->entered_at.items[body];
-  size_t all = SCREE_SCENE_SHAPES(scene);
-  for (size_t i = 0; i < scene->plan.sensors.count; i++) {
-    scree_scene_sensor *sensor = &scene->sensors[i];
-    if (!sensor->plan->residence) continue;
-    const size_t places[2] = {scene->shape_of.items[body], all};
-    for (int k = 0; k < 2; k++) {
-      sensor->count[places[k]]++;
-      sensor->sum[places[k]] += stay;
-      sensor->sum2[places[k]] += stay * stay;
-    }
-  }
 }
 
 /* ---- reading ---- */
@@ -447,18 +433,6 @@ static bool pile_is_due(const scree_scene *scene, const scree_plan_pile *plan) {
   return floor(time / every) > floor(before / every);
 }
 
-static void read_residence(const scree_scene *scene, const scree_scene_sensor *sensor, double *at) {
-  size_t shapes = SCREE_SCENE_SHAPES(scene);
-  put_by_shape(scene, sensor->count, 1, &at);
-  for (int what = 0; what < 2; what++)
-    for (size_t k = 0; k <= (shapes > 1 ? shapes : 0); k++) {
-      size_t s = k ? k - 1 : shapes;
-      double n = sensor->count[s], mean = sensor->sum[s] / n;
-      double variance = (sensor->sum2[s] - n * mean * mean) / (n - 1);
-      *at++ = what == 0 ? (n > 0 ? mean : NAN) : n > 1 ? sqrt(fmax(0, variance)) : NAN;
-    }
-}
-
 static scree_status read_sensor(const scree_scene *scene, const scree_scene_sensor *sensor,
                                 bool all, double *values, scree_error *error) {
   const scree_plan_sensor *plan = sensor->plan;
@@ -487,7 +461,7 @@ static scree_status read_sensor(const scree_scene *scene, const scree_scene_sens
   else if (plan->impacts)
     read_impacts(scene, sensor, values[0], at);
   else
-    read_residence(scene, sensor, at);
+    status = scree_scene_read_residence(scene, sensor, at, error);
   return status;
 }
 

@@ -170,11 +170,29 @@ static scree_status write_grid(const scree_scene *scene, const scree_scene_senso
   return scree_output_commit(&output, error);
 }
 
+/* ---- residence ---- */
+
+static scree_status write_residence(const scree_scene *scene, const scree_scene_sensor *sensor,
+                                    const char *folder, scree_error *error) {
+  scree_output output;
+  scree_status status = open_table(folder, sensor, "residence.csv", &output, error);
+  if (status != SCREE_OK) return status;
+  scree_scene_put_stays(scene, sensor, output.stream);
+  status = scree_output_commit(&output, error);
+  if (status == SCREE_OK) status = open_table(folder, sensor, "histogram.csv", &output, error);
+  if (status != SCREE_OK) return status;
+  status = scree_scene_put_histogram(scene, sensor, output.stream, error);
+  if (status == SCREE_OK) return scree_output_commit(&output, error);
+  scree_output_discard(&output);
+  return status;
+}
+
 scree_status scree_scene_write_tables(const scree_scene *scene, const char *folder,
                                       scree_error *error) {
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < scene->plan.sensors.count; i++) {
     const scree_scene_sensor *sensor = &scene->sensors[i];
+    if (sensor->plan->residence) status = write_residence(scene, sensor, folder, error);
     if (sensor->grid) status = write_grid(scene, sensor, folder, error);
     if (sensor->impacts) status = write_spectra(scene, sensor, folder, error);
     if (sensor->impacts && status == SCREE_OK) status = write_bodies(scene, sensor, folder, error);

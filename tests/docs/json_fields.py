@@ -23,7 +23,8 @@ VERBS = {  # heading: calls that together print every field
     "scree distance": [["distance", SOLID, BALL, "--points", "100"]],
     "scree run, repose, drop and pile": [["repose", SOLID, "--particles", "2", "--pack-time", "0.02", "--settle-time",
                                           "0.01", "--lift-time", "0.01", "--hold-time", "0.01", "-j", "1", "-o", "heap"],
-                                         ["run", "-o", "heap", "--resume", "--change", "gravity=5"]],
+                                         ["run", "-o", "heap", "--resume", "--change", "gravity=5"],
+                                         ["run", "hopper.yaml", "--set", "time=0.01", "--set", "inlets.feed.count=9"]],
     "scree pile of a scan, an outline or a picture": [["pile", SOLID]],
     "scree check and scree repair": [["check", SOLID, "missing.stl"], ["repair", "open.off", "-o", "r.stl"]],
 }
@@ -73,6 +74,8 @@ section = document.split("\n## JSON\n")[1].split("\n## ")[0].split("\n### ")
 tables = {part.split("\n")[0]: documented(part) for part in section[1:]}
 common, failed = documented(section[0]), False
 assert len(common) == 6
+with open("hopper.yaml", "wb") as file:
+    file.write(subprocess.run([program, "run", "--template", "hopper"], stdout=subprocess.PIPE, check=True).stdout)
 for heading, calls in VERBS.items():
     found = set()
     for call in calls:
@@ -84,12 +87,7 @@ failed |= compare("scree export of a surface", fields_of(open("solid.json", "rb"
 subprocess.run([program, "drop", "sphere:20mm=2", "--time", "0.01", "--no-picture", "-o", "pour", "-q"], check=True,
                stdout=subprocess.DEVNULL)
 poured = fields_of(open("pour/result.json", "rb").read())
-with open("hopper.yaml", "wb") as file:
-    file.write(subprocess.run([program, "run", "--template", "hopper"], stdout=subprocess.PIPE, check=True).stdout)
-ran = fields_of(subprocess.run(
-    [program, "run", "hopper.yaml", "--json", "--set", "time=0.01", "--set", "inlets.feed.count=9"], stdout=subprocess.PIPE,
-    check=True).stdout)
-unknown = (poured | ran) - tables["scree run, repose, drop and pile"] - common - {"piles"}
+unknown = poured - tables["scree run, repose, drop and pile"] - common - {"piles"}
 print("\n".join(f"not in the table: {field}" for field in sorted(unknown)))
 failed |= bool(unknown)
 subprocess.run([program, "simplify", SOLID, "-n", "12", "--density", "3", "-o", "level.stl", "-q"], check=True)

@@ -1,5 +1,6 @@
 /* What sensors read against closed forms: means and spreads over a window, the slope of a part of a
- * surface, mixing. Every series is the same for any number of threads, and when cut and resumed. */
+ * surface, mixing, residence. Every series is the same for any number of threads, and when cut and
+ * resumed. */
 #include "scene/scene.h"
 #include "support/check.h"
 #include "support/folder.h"
@@ -226,11 +227,100 @@ static void mixing(void **state) {
   assert_true(least > 0.98 && sum > 0.993);
 }
 
+/* ---- residence ---- */
+
+/* Plug flow: balls laid on a belt of 0.5 m/s from two places go with it to its end, one kind 1 m
+ * and one 0.5 m, from anywhere in 40 mm. */
+static const char belt[] =
+    "time: 6\n"
+    "materials: {m: {young: 1e5, density: 1000, restitution: 0.1, friction: 0.5}}\n"
+    "shapes: {far: {sphere: 9 mm}, near: {sphere: 8 mm}}\n"
+    "geometry: {belt: {box: [2, 0.4, 0.02], at: [0.5, 0, -0.01], surface_velocity: [0.5, 0, 0]}}\n"
+    "inlets:\n"
+    "  start: {box: {min: [-0.02, -0.15, 0.003], max: [0.02, -0.01, 0.013]}, shapes: far, rate: "
+    "20, "
+    "velocity: [0.5, 0, 0]}\n"
+    "  middle: {box: {min: [0.48, 0.01, 0.003], max: [0.52, 0.15, 0.013]}, shapes: near, rate: 10, "
+    "velocity: [0.5, 0, 0]}\n"
+    "outlets:\n"
+    "  left: {box: {min: [1, 0, -1], max: [2, 1, 1]}}\n"
+    "  right: {box: {min: [1, -1, -1], max: [2, 0, 1]}}\n"
+    "sensors:\n"
+    "  stay: {residence: {bins: 10}}\n"
+    "  late: {residence: {inlet: start, outlet: right}, from: 5}\n"
+    "  none: {residence: {inlet: start, outlet: left, by: material}}\n";
+
+static double sum_of(const char *name, const char *begin, int column) {
+  char line[400];
+  FILE *file = fopen(in_folder(name), "r");
+  assert_non_null(file);
+  double sum = 0;
+  assert_non_null(fgets(line, sizeof line, file));
+  while (fgets(line, sizeof line, file)) {
+    char *at = line;
+    if (strncmp(line, begin, strlen(begin)) != 0) continue;
+    for (int k = 0; k < column; k++) at = strchr(at, ',') + 1;
+    sum += strtod(at, NULL);
+  }
+  fclose(file);
+  return sum;
+}
+
+static void residence(void **state) {
+  (void)state;
+  scree_error error;
+  scree_scene *scene = run_both(belt);
+  double tick = (double)scene->tick_steps * scene->time_step, spread = 0.04 / 0.5;
+  const struct {
+    const char *of;
+    double time; /* s */
+  } kinds[] = {{"far", 2}, {"near", 1}};
+  for (size_t i = 0; i < 2; i++) {
+    static const char *const what[] = {"count", "mean", "sd", "p10", "median", "p90"};
+    double v[6], time = kinds[i].time;
+    for (int k = 0; k < 6; k++) {
+      char column[64];
+      snprintf(column, sizeof column, "stay.%s.%s", what[k], kinds[i].of);
+      v[k] = value_of(scene, column);
+    }
+    assert_true(v[0] > 30);
+    CHECK_NEAR(v[1], time + 0.5 * tick, 0.2 * spread);
+    CHECK_NEAR(v[4], time + 0.5 * tick, 0.3 * spread);
+    /* from an even spread of places */
+    CHECK_NEAR(v[2], spread / sqrt(12), 0.35 * spread / sqrt(12));
+    CHECK_NEAR(v[5] - v[3], 0.8 * spread, 0.4 * spread);
+  }
+  double count = value_of(scene, "stay.count");
+  CHECK_NEAR(value_of(scene, "stay.count.far") + value_of(scene, "stay.count.near"), count, 0);
+  double late = value_of(scene, "late.count");
+  assert_true(late > 10 && late < 0.4 * value_of(scene, "stay.count.far"));
+  assert_true(isnan(value_of(scene, "late.mean.near")));
+  CHECK_NEAR(value_of(scene, "none.count"), 0, 0);
+  scree_residence r;
+  CHECK_OK(scree_scene_measure_residence(scene, 0, &r, &error), error);
+  double sums[2] = {0};
+  for (size_t b = 0; b < 20; b++) sums[b / 10] += r.counts[b];
+  CHECK_NEAR(sums[0] + sums[1], count, 0);
+  CHECK_NEAR(r.from, 1, 1.5 * spread);
+  CHECK_NEAR(r.until, 2, 1.5 * spread);
+  for (size_t b = 0; b < 5; b++) CHECK_NEAR(r.counts[b], 0, 0);
+  for (size_t b = 15; b < 20; b++) CHECK_NEAR(r.counts[b], 0, 0);
+  scree_residence_free(&r);
+  CHECK_OK(scree_scene_write_tables(scene, in_folder("."), &error), error);
+  CHECK_NEAR(sum_of("sensor-stay-histogram.csv", ",", 3), count, 0);
+  CHECK_NEAR(sum_of("sensor-stay-histogram.csv", ",", 4), 1, 1e-6);
+  CHECK_NEAR(sum_of("sensor-stay-histogram.csv", "far,", 3), sums[0], 0);
+  CHECK_NEAR(sum_of("sensor-stay-residence.csv", "", 6) / count, value_of(scene, "stay.mean"),
+             1e-6);
+  scree_scene_free(scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(windows),
       cmocka_unit_test(slopes),
       cmocka_unit_test(mixing),
+      cmocka_unit_test(residence),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -104,14 +104,25 @@ static scree_status write_bodies(void *context, scree_error *error) {
   return scree_scene_bodies_write(context, in_folder("memory.csv"), true, error);
 }
 
+static scree_status measure_residence(void *context, scree_error *error) {
+  scree_residence residence;
+  scree_status status = scree_scene_measure_residence(context, 0, &residence, error);
+  if (status == SCREE_OK) scree_residence_free(&residence);
+  return status;
+}
+
 static void out_of_memory(void **state) {
   (void)state;
   scree_error error;
   scree_scene *scene;
   CHECK_OK(scree_text_write("shape,x,y,z\nball,0,0,1\n", in_folder("state.csv"), true, &error),
            error);
-  CHECK_OK(create("time: 0.5\n" SHAPES "bodies: {file: state.csv}\n", &scene, &error), error);
+  CHECK_OK(create("time: 0.5\n" SHAPES "bodies: {file: state.csv}\n"
+                  "sensors: {stay: {residence: {}}}\n",
+                  &scene, &error),
+           error);
   check_allocation_failures(write_bodies, scene);
+  check_allocation_failures(measure_residence, scene);
   scree_scene_free(scene);
 }
 

@@ -332,7 +332,7 @@ static scree_status live(void *context, scree_error *error) {
   if (status == SCREE_OK) status = scree_scene_file_column(file, 3, column, error);
   if (status == SCREE_OK) status = scree_scene_create(file, NULL, &scene, error);
   scree_scene_file_free(file);
-  double values[64];
+  double values[200]; /* the columns of its sensors, and more */
   if (status == SCREE_OK) status = scree_scene_advance(scene, 40, error);
   if (status == SCREE_OK) status = scree_scene_measure(scene, values, error);
   if (status == SCREE_OK) status = scree_scene_save(scene, in_folder("memory.scree"), true, error);
