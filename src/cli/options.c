@@ -14,6 +14,7 @@ const cli_meaning cli_meanings[] = {
     {.name = "cavities", .meaning = "How much volume of cavities is filled."},
     {.name = "cell", .meaning = "Side of the cells of a height field."},
     {.name = "centre", .meaning = "Put the centre of mass at the origin."},
+    {.name = "change", .meaning = "Go on with another value of a field."},
     {.name = "checkpoint", .meaning = "Clock time between checkpoints."},
     {.name = "clump", .meaning = "Spheres of the clump that stands for each shape."},
     {.name = "color-by", .meaning = "What surfaces are coloured by."},

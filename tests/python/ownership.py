@@ -200,7 +200,7 @@ class Threads(unittest.TestCase):
     FREE = {"time", "step_count"}
     ARGUMENTS = {"add_body": lambda: (scree.Particle.sphere(0.01), 0), "add_wall": lambda: ("plane", 0), "body": lambda: (0,),
                  "export": lambda: ("folder",), "remove_body": lambda: (0,), "run": lambda: (0.1,), "save": lambda: ("w.scree",),
-                 "set_body": lambda: (0,), "set_body_force": lambda: (0,), "set_contact": lambda: (0, 0, 0.5, 0.5),
+                 "set_backend": lambda: ("cpu",), "set_body": lambda: (0,), "set_body_force": lambda: (0,), "set_contact": lambda: (0, 0, 0.5, 0.5),
                  "set_pair": lambda: (0, 0), "set_wall_motion": lambda: (0,), "set_wall_surface": lambda: (0,),
                  "set_wall_velocity": lambda: (0,), "wall_force": lambda: (0,), "wall_power": lambda: (0,),
                  "write_vtp": lambda: ("w.vtp",), "write_json": lambda: ("w.json",), "geometry_note": lambda: (0,), "__reduce__": lambda: (), "__len__": lambda: (),
