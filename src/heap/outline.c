@@ -187,7 +187,8 @@ static size_t take_part(picture *p, size_t seed, size_t *pixels) {
 
 /* Only the largest piece stays: specks and dust go. */
 static scree_status find_columns(picture *p, scree_error *error) {
-  size_t n = p->width * p->height, most = 0;
+  const size_t width = p->width, n = width * p->height;
+  size_t most = 0;
   size_t *pixels = scree_alloc(n, sizeof *pixels);
   if (!pixels) return scree_fail_memory(error, n * sizeof *pixels, "a silhouette");
   for (size_t i = 0; i < n; i++) {
@@ -195,16 +196,16 @@ static scree_status find_columns(picture *p, scree_error *error) {
     size_t count = take_part(p, i, pixels);
     if (count <= most) continue;
     most = count;
-    for (size_t c = 0; c < p->width; c++) p->top[c] = p->bottom[c] = NAN;
+    for (size_t c = 0; c < width; c++) p->top[c] = p->bottom[c] = NAN;
     for (size_t k = 0; k < count; k++) {
-      size_t column = pixels[k] % p->width;
-      double row = (double)(pixels[k] / p->width);
+      size_t column = pixels[k] % width;
+      double row = (double)(pixels[k] / width);
       p->top[column] = fmin(p->top[column], row);
       p->bottom[column] = fmax(p->bottom[column], row + 1);
     }
   }
   scree_free(pixels);
-  for (size_t c = 0; c < p->width; c++)
+  for (size_t c = 0; c < width; c++)
     if (p->top[c] == 0)
       return scree_fail(error, SCREE_BAD_FILE,
                         "the heap reaches the picture's upper edge in column %zu", c + 1);
