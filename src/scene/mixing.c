@@ -95,7 +95,8 @@ static bool take_mixture(const scree_scene *scene, const scree_scene_sensor *sen
   }
   if (m.count) qsort(m.bodies, m.count, sizeof *m.bodies, by_cell);
   for (size_t i = 0; i < m.count; i++)
-    m.cells += i == 0 || memcmp(m.bodies[i].cell, m.bodies[i - 1].cell, sizeof m.bodies[i].cell);
+    m.cells +=
+        i == 0 || memcmp(m.bodies[i].cell, m.bodies[i - 1].cell, sizeof m.bodies[i].cell) != 0;
   *mixed = m;
   return true;
 }
