@@ -188,11 +188,11 @@ static void code_parts(scree_codec *c, scree_scene *scene) {
 static void code_text(scree_codec *c, scree_scene *scene, const char **text) {
   bool there = *text != NULL;
   scree_code_bool(c, &there);
-  if (!there || !scree_codec_good(c)) return;
   if (!c->loading) {
-    scree_code_text(c, *text, strlen(*text));
+    if (*text) scree_code_text(c, *text, strlen(*text));
     return;
   }
+  if (!there || !scree_codec_good(c)) return;
   char *read = scree_decode_text(c), *kept = NULL;
   if (read) kept = scree_arena_take(&scene->arena, strlen(read) + 1, 1);
   if (kept)
