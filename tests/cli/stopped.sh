@@ -34,6 +34,7 @@ attempt() {
 
 i=1
 while [ $i -le 18 ]; do
+  [ $i -lt 18 ] || span=$((20 * span)) # the last ends, also where others came meanwhile
   seconds=$(echo $((span / 14 * i)) | awk '{ printf "%.4f", $1 / 1e9 }')
   rm -rf new
   : >before
