@@ -11,10 +11,7 @@ static const double g = 9.81, pi = 3.14159265358979;
 /* Balls of 10 mm and of 1 mm, 2,500 kg/m3, that nothing touches. */
 static scree_scene *fly(const char *bodies, const char *rest) {
   char text[2000];
-  FILE *file = fopen(in_folder("bodies.csv"), "wb");
-  assert_non_null(file);
-  fputs(bodies, file);
-  fclose(file);
+  put_in_folder("bodies.csv", bodies);
   snprintf(text, sizeof text,
            "materials: {m: {young: 1e7, density: 2500}, light: {young: 1e7, density: 2500}}\n"
            "shapes: {ball: {sphere: 0.01, material: m}, grit: {sphere: 0.001, material: light}}\n"
@@ -22,20 +19,7 @@ static scree_scene *fly(const char *bodies, const char *rest) {
            "domain: {min: [-99, -99, -99], max: [99, 99, 99]}\n"
            "output: {series: 0.01}\n%s",
            rest);
-  scree_error error;
-  scree_scene_file *made = NULL;
-  scree_scene *scene = NULL;
-  CHECK_OK(scree_scene_file_parse(text, strlen(text), in_folder("test.yaml"), &made, &error),
-           error);
-  CHECK_OK(scree_scene_create(made, NULL, &scene, &error), error);
-  scree_scene_file_free(made);
-  return scene;
-}
-
-static scree_body body_of(const scree_scene *scene, size_t index) {
-  scree_body body;
-  scree_world_get_body(scree_scene_view(scene), index, &body);
-  return body;
+  return create_at(text, in_folder("test.yaml"));
 }
 
 /* a = -k x, k = 400/s2: x = A cos(20 t). */

@@ -7,16 +7,6 @@
 
 static const double g = 9.81;
 
-static double column_now(const scree_scene *scene, const char *name) {
-  double values[200];
-  scree_error error;
-  size_t k = 0;
-  assert_true(scree_scene_column_count(scene) <= 200);
-  CHECK_OK(scree_scene_measure(scene, values, &error), error);
-  while (strcmp(scree_scene_column_name(scene, k), name) != 0) k++;
-  return values[k];
-}
-
 /* A ball that falls by h comes with m g h and loses 1 - e^2 of it; the first of all its hits, as
  * the time ends before the second. */
 static void dropped_balls(void **state) {
@@ -39,14 +29,14 @@ static void dropped_balls(void **state) {
       scree_scene *scene = create(text);
       run_to_end(scene);
       double m = scree_world_body_mass(scree_scene_view(scene), 0),
-             fell = column_now(scene, "entered_energy") - m * g * r;
-      assert_int_equal((int)column_now(scene, "hits.count"), 1);
-      assert_int_equal((int)column_now(scene, "hits.count.ball-floor"), 1);
-      assert_int_equal((int)column_now(scene, "hits.count.ball-ball"), 0);
-      CHECK_NEAR(column_now(scene, "hits.approach.ball-floor"), fell, 0.01 * fell);
-      CHECK_NEAR(column_now(scene, "hits.normal.ball-floor"), 0.75 * fell, 0.015 * fell);
-      CHECK_NEAR(column_now(scene, "hits.tangential"), 0, 1e-9 * fell);
-      CHECK_NEAR(column_now(scene, "hits.damage"), fell - 1e-3 * g * h, 0.01 * fell);
+             fell = now_of(scene, "entered_energy") - m * g * r;
+      assert_int_equal((int)now_of(scene, "hits.count"), 1);
+      assert_int_equal((int)now_of(scene, "hits.count.ball-floor"), 1);
+      assert_int_equal((int)now_of(scene, "hits.count.ball-ball"), 0);
+      CHECK_NEAR(now_of(scene, "hits.approach.ball-floor"), fell, 0.01 * fell);
+      CHECK_NEAR(now_of(scene, "hits.normal.ball-floor"), 0.75 * fell, 0.015 * fell);
+      CHECK_NEAR(now_of(scene, "hits.tangential"), 0, 1e-9 * fell);
+      CHECK_NEAR(now_of(scene, "hits.damage"), fell - 1e-3 * g * h, 0.01 * fell);
       scree_scene_free(scene);
     }
 }
@@ -71,40 +61,24 @@ static void sums_are_the_ledgers(void **state) {
   run_to_end(scene);
   scree_world_observe(scree_scene_view(scene), &o);
   double lost = o.dissipated_dashpot + o.dissipated_friction,
-         told = column_now(scene, "hits.normal") + column_now(scene, "hits.tangential");
-  assert_true(column_now(scene, "hits.count") > 100);
+         told = now_of(scene, "hits.normal") + now_of(scene, "hits.tangential");
+  assert_true(now_of(scene, "hits.count") > 100);
   assert_true(lost > 1e-3);
   CHECK_NEAR(told, lost, 0.005 * lost);
-  CHECK_NEAR(column_now(scene, "hits.normal"), o.dissipated_dashpot, 0.005 * lost);
+  CHECK_NEAR(now_of(scene, "hits.normal"), o.dissipated_dashpot, 0.005 * lost);
   double classes = 0;
   static const char *const names[] = {"ball-ball",  "ball-brick",  "brick-brick", "ball-floor",
                                       "ball-shell", "brick-floor", "brick-shell"};
   for (size_t i = 0; i < 7; i++) {
     char column[64];
     snprintf(column, sizeof column, "hits.normal.%s", names[i]);
-    classes += column_now(scene, column);
+    classes += now_of(scene, column);
   }
-  CHECK_NEAR(classes, column_now(scene, "hits.normal"), 1e-12 * lost);
-  double late = column_now(scene, "late.normal");
-  assert_true(late > 0 && late < column_now(scene, "hits.normal"));
-  assert_true(column_now(scene, "late.count.m-m") < column_now(scene, "hits.count"));
+  CHECK_NEAR(classes, now_of(scene, "hits.normal"), 1e-12 * lost);
+  double late = now_of(scene, "late.normal");
+  assert_true(late > 0 && late < now_of(scene, "hits.normal"));
+  assert_true(now_of(scene, "late.count.m-m") < now_of(scene, "hits.count"));
   scree_scene_free(scene);
-}
-
-/* Sums of a column of numbers of a CSV file. */
-static double sum_of(const char *name, int column) {
-  char line[400];
-  FILE *file = fopen(in_folder(name), "r");
-  assert_non_null(file);
-  double sum = 0;
-  assert_non_null(fgets(line, sizeof line, file));
-  while (fgets(line, sizeof line, file)) {
-    char *at = line;
-    for (int k = 0; k < column; k++) at = strchr(at, ',') + 1;
-    sum += strtod(at, NULL);
-  }
-  fclose(file);
-  return sum;
 }
 
 static scree_scene *complete(const char *folder, const char *text, bool resume) {
@@ -124,21 +98,22 @@ static void tables(void **state) {
   char half[sizeof mixed + 10];
   const char *folder = in_folder("cut");
   scree_scene *scene = complete(folder, mixed, false);
-  double count = column_now(scene, "hits.count"), normal = column_now(scene, "hits.normal"),
-         tangential = column_now(scene, "hits.tangential");
+  double count = now_of(scene, "hits.count"), normal = now_of(scene, "hits.normal"),
+         tangential = now_of(scene, "hits.tangential");
   scree_checksum hash = scree_world_hash(scree_scene_view(scene));
   scree_scene_free(scene);
-  for (int k = 6; k < 9; k++) CHECK_NEAR(sum_of("cut/sensor-hits-spectra.csv", k), count, 0);
-  CHECK_NEAR(sum_of("cut/sensor-hits-bodies.csv", 4), normal, 1e-6 * normal);
-  CHECK_NEAR(sum_of("cut/sensor-hits-bodies.csv", 5), tangential, 1e-6 * tangential);
+  for (int k = 6; k < 9; k++)
+    CHECK_NEAR(sum_in_folder("cut/sensor-hits-spectra.csv", "", k), count, 0);
+  CHECK_NEAR(sum_in_folder("cut/sensor-hits-bodies.csv", "", 4), normal, 1e-6 * normal);
+  CHECK_NEAR(sum_in_folder("cut/sensor-hits-bodies.csv", "", 5), tangential, 1e-6 * tangential);
   snprintf(half, sizeof half, "time: 0.237%s", mixed + 9);
   scree_scene_free(complete(folder, half, false));
   scene = complete(folder, mixed, true);
   scree_checksum again = scree_world_hash(scree_scene_view(scene));
   assert_memory_equal(&hash, &again, sizeof hash);
-  CHECK_NEAR(column_now(scene, "hits.count"), count, 0);
-  CHECK_NEAR(column_now(scene, "hits.normal"), normal, 0);
-  CHECK_NEAR(sum_of("cut/sensor-hits-spectra.csv", 6), count, 0);
+  CHECK_NEAR(now_of(scene, "hits.count"), count, 0);
+  CHECK_NEAR(now_of(scene, "hits.normal"), normal, 0);
+  CHECK_NEAR(sum_in_folder("cut/sensor-hits-spectra.csv", "", 6), count, 0);
   scree_scene_free(scene);
 }
 

@@ -12,27 +12,6 @@
 
 static const double pi = 3.14159265358979;
 
-/* A scene whose files lie in the test's folder. */
-static scree_scene *create_here(const char *text) {
-  scree_error error;
-  scree_scene_file *file = NULL;
-  scree_scene *scene = NULL;
-  CHECK_OK(scree_scene_file_parse(text, strlen(text), in_folder("test.yaml"), &file, &error),
-           error);
-  CHECK_OK(scree_scene_create(file, NULL, &scene, &error), error);
-  scree_scene_file_free(file);
-  return scene;
-}
-
-static double value_of(const scree_scene *scene, const char *name) {
-  scree_error error;
-  double *values = calloc(scree_scene_column_count(scene), sizeof *values);
-  CHECK_OK(scree_scene_measure(scene, values, &error), error);
-  double value = values[column_of(scene, name)];
-  free(values);
-  return value;
-}
-
 static scree_scene_summary summary_of(const scree_scene *scene, const char *name) {
   return scree_scene_summarise(scene, column_of(scene, name), NAN, NAN);
 }
@@ -41,7 +20,8 @@ static scree_scene_summary summary_of(const scree_scene *scene, const char *name
 static scree_scene *run_both(const char *text) {
   scree_error error;
   const char *path = in_folder("half.scree");
-  scree_scene *whole = create_here(text), *cut = create_here(text);
+  scree_scene *whole = create_at(text, in_folder("test.yaml")),
+              *cut = create_at(text, in_folder("test.yaml"));
   scree_set_threads(1);
   run_to_end(whole);
   scree_set_threads(3);
@@ -108,19 +88,20 @@ static void slopes(void **state) {
       fprintf(table, "%.17g,%.17g,%.17g\n", x, 0.012 * j, 1 + z);
     }
   fclose(table);
-  scree_scene *scene = create_here(
-      "time: 0.001\nshapes: {ball: {sphere: 0.012}}\nbodies: {file: roof.csv}\n"
-      "sensors:\n"
-      "  left: {slope: {axis: [0, 1, 0], box: {min: [-1, -1, 0], max: [0, 1, 2]}}}\n"
-      "  right: {slope: {axis: [0, 1, 0], box: {min: [0, -1, 0], max: [1, 1, 2]}}}\n"
-      "  behind: {slope: {axis: [0, -1, 0], box: {min: [0, -1, 0], max: [1, 1, 2]}}}\n"
-      "  nothing: {slope: {axis: [0, 1, 0], box: {min: [2, -1, 0], max: [3, 1, 2]}}}\n");
-  double left = value_of(scene, "left.angle_deg"), right = value_of(scene, "right.angle_deg");
+  scree_scene *scene =
+      create_at("time: 0.001\nshapes: {ball: {sphere: 0.012}}\nbodies: {file: roof.csv}\n"
+                "sensors:\n"
+                "  left: {slope: {axis: [0, 1, 0], box: {min: [-1, -1, 0], max: [0, 1, 2]}}}\n"
+                "  right: {slope: {axis: [0, 1, 0], box: {min: [0, -1, 0], max: [1, 1, 2]}}}\n"
+                "  behind: {slope: {axis: [0, -1, 0], box: {min: [0, -1, 0], max: [1, 1, 2]}}}\n"
+                "  nothing: {slope: {axis: [0, 1, 0], box: {min: [2, -1, 0], max: [3, 1, 2]}}}\n",
+                in_folder("test.yaml"));
+  double left = now_of(scene, "left.angle_deg"), right = now_of(scene, "right.angle_deg");
   CHECK_NEAR(fabs(left), 20, 0.5);
   CHECK_NEAR(fabs(right), 35, 0.7);
   assert_true(left * right < 0);
-  CHECK_NEAR(value_of(scene, "behind.angle_deg"), -right, 1e-9);
-  assert_true(isnan(value_of(scene, "nothing.angle_deg")));
+  CHECK_NEAR(now_of(scene, "behind.angle_deg"), -right, 1e-9);
+  assert_true(isnan(now_of(scene, "nothing.angle_deg")));
   scree_scene_forecast f;
   scree_scene_foretell(scene, &f);
   CHECK_NEAR(f.body_count, count, 0);
@@ -188,17 +169,17 @@ static void mixing(void **state) {
   write_block("halves.csv", halves);
   scree_scene *scene = mixture("halves.csv");
   /* cells of 5 x 5 x 5 each have one colour */
-  CHECK_NEAR(value_of(scene, "wide.lacey.red"), 0, 1e-12);
-  CHECK_NEAR(value_of(scene, "wide.lacey.blue"), 0, 1e-12);
-  CHECK_NEAR(value_of(scene, "by_m.lacey.m"), 0, 1e-12);
-  CHECK_NEAR(value_of(scene, "wide.per_cell"), 125, 0);
-  CHECK_NEAR(value_of(scene, "box.lacey.red"), 0, 1e-12);
+  CHECK_NEAR(now_of(scene, "wide.lacey.red"), 0, 1e-12);
+  CHECK_NEAR(now_of(scene, "wide.lacey.blue"), 0, 1e-12);
+  CHECK_NEAR(now_of(scene, "by_m.lacey.m"), 0, 1e-12);
+  CHECK_NEAR(now_of(scene, "wide.per_cell"), 125, 0);
+  CHECK_NEAR(now_of(scene, "box.lacey.red"), 0, 1e-12);
   /* the axes of a cylinder's eight sectors may not be x and y: those that are cut have both */
-  assert_true(value_of(scene, "round.lacey.red") < 0.3);
-  CHECK_NEAR(value_of(scene, "four.lacey.red"), 0, 1e-12);
+  assert_true(now_of(scene, "round.lacey.red") < 0.3);
+  CHECK_NEAR(now_of(scene, "four.lacey.red"), 0, 1e-12);
   /* of single balls nothing can be told, and why is */
-  assert_true(isnan(value_of(scene, "fine.lacey.red")));
-  CHECK_NEAR(value_of(scene, "fine.per_cell"), 1, 0);
+  assert_true(isnan(now_of(scene, "fine.lacey.red")));
+  CHECK_NEAR(now_of(scene, "fine.per_cell"), 1, 0);
   char text[SCREE_REMARK];
   assert_true(scree_scene_doubt(scene, 0, text));
   assert_non_null(strstr(text, "sensors.fine: 4000 bodies in 4000 cells"));
@@ -207,8 +188,8 @@ static void mixing(void **state) {
 
   write_block("checkers.csv", checkers);
   scene = mixture("checkers.csv"); /* more even than by chance: mixed, not above */
-  CHECK_NEAR(value_of(scene, "wide.lacey.red"), 1, 0);
-  CHECK_NEAR(value_of(scene, "box.lacey.red"), 1, 0);
+  CHECK_NEAR(now_of(scene, "wide.lacey.red"), 1, 0);
+  CHECK_NEAR(now_of(scene, "box.lacey.red"), 1, 0);
   scree_scene_free(scene);
 
   /* by chance: 32 cells of 125, whose own scatter is 0.06, and the mean of many is 1 */
@@ -216,10 +197,10 @@ static void mixing(void **state) {
   for (int run = 0; run < 12; run++) {
     write_block("dice.csv", dice);
     scene = mixture("dice.csv");
-    double index = value_of(scene, "wide.lacey.red");
-    CHECK_NEAR(value_of(scene, "by_m.lacey.m"), index, 0);
-    CHECK_NEAR(value_of(scene, "box.lacey.red"), index, 1e-12);
-    assert_true(index <= 1 && value_of(scene, "round.lacey.red") <= 1);
+    double index = now_of(scene, "wide.lacey.red");
+    CHECK_NEAR(now_of(scene, "by_m.lacey.m"), index, 0);
+    CHECK_NEAR(now_of(scene, "box.lacey.red"), index, 1e-12);
+    assert_true(index <= 1 && now_of(scene, "round.lacey.red") <= 1);
     sum += index / 12;
     least = fmin(least, index);
     scree_scene_free(scene);
@@ -250,22 +231,6 @@ static const char belt[] =
     "  late: {residence: {inlet: start, outlet: right}, from: 5}\n"
     "  none: {residence: {inlet: start, outlet: left, by: material}}\n";
 
-static double sum_of(const char *name, const char *begin, int column) {
-  char line[400];
-  FILE *file = fopen(in_folder(name), "r");
-  assert_non_null(file);
-  double sum = 0;
-  assert_non_null(fgets(line, sizeof line, file));
-  while (fgets(line, sizeof line, file)) {
-    char *at = line;
-    if (strncmp(line, begin, strlen(begin)) != 0) continue;
-    for (int k = 0; k < column; k++) at = strchr(at, ',') + 1;
-    sum += strtod(at, NULL);
-  }
-  fclose(file);
-  return sum;
-}
-
 static void residence(void **state) {
   (void)state;
   scree_error error;
@@ -281,7 +246,7 @@ static void residence(void **state) {
     for (int k = 0; k < 6; k++) {
       char column[64];
       snprintf(column, sizeof column, "stay.%s.%s", what[k], kinds[i].of);
-      v[k] = value_of(scene, column);
+      v[k] = now_of(scene, column);
     }
     assert_true(v[0] > 30);
     CHECK_NEAR(v[1], time + 0.5 * tick, 0.2 * spread);
@@ -290,12 +255,12 @@ static void residence(void **state) {
     CHECK_NEAR(v[2], spread / sqrt(12), 0.35 * spread / sqrt(12));
     CHECK_NEAR(v[5] - v[3], 0.8 * spread, 0.4 * spread);
   }
-  double count = value_of(scene, "stay.count");
-  CHECK_NEAR(value_of(scene, "stay.count.far") + value_of(scene, "stay.count.near"), count, 0);
-  double late = value_of(scene, "late.count");
-  assert_true(late > 10 && late < 0.4 * value_of(scene, "stay.count.far"));
-  assert_true(isnan(value_of(scene, "late.mean.near")));
-  CHECK_NEAR(value_of(scene, "none.count"), 0, 0);
+  double count = now_of(scene, "stay.count");
+  CHECK_NEAR(now_of(scene, "stay.count.far") + now_of(scene, "stay.count.near"), count, 0);
+  double late = now_of(scene, "late.count");
+  assert_true(late > 10 && late < 0.4 * now_of(scene, "stay.count.far"));
+  assert_true(isnan(now_of(scene, "late.mean.near")));
+  CHECK_NEAR(now_of(scene, "none.count"), 0, 0);
   scree_residence r;
   CHECK_OK(scree_scene_measure_residence(scene, 0, &r, &error), error);
   double sums[2] = {0};
@@ -307,10 +272,10 @@ static void residence(void **state) {
   for (size_t b = 15; b < 20; b++) CHECK_NEAR(r.counts[b], 0, 0);
   scree_residence_free(&r);
   CHECK_OK(scree_scene_write_tables(scene, in_folder("."), &error), error);
-  CHECK_NEAR(sum_of("sensor-stay-histogram.csv", ",", 3), count, 0);
-  CHECK_NEAR(sum_of("sensor-stay-histogram.csv", ",", 4), 1, 1e-6);
-  CHECK_NEAR(sum_of("sensor-stay-histogram.csv", "far,", 3), sums[0], 0);
-  CHECK_NEAR(sum_of("sensor-stay-residence.csv", "", 6) / count, value_of(scene, "stay.mean"),
+  CHECK_NEAR(sum_in_folder("sensor-stay-histogram.csv", ",", 3), count, 0);
+  CHECK_NEAR(sum_in_folder("sensor-stay-histogram.csv", ",", 4), 1, 1e-6);
+  CHECK_NEAR(sum_in_folder("sensor-stay-histogram.csv", "far,", 3), sums[0], 0);
+  CHECK_NEAR(sum_in_folder("sensor-stay-residence.csv", "", 6) / count, now_of(scene, "stay.mean"),
              1e-6);
   scree_scene_free(scene);
 }

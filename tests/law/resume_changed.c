@@ -29,25 +29,8 @@ static const char equipment[] =
     "output: {series: 0.1}\n";
 
 static scree_scene *make(void) {
-  FILE *file = fopen(in_folder("bodies.csv"), "wb");
-  assert_non_null(file);
-  fputs("shape,x,y,z,vx,vz\nball,0,0,5,0.3,0\nbrick,2,0,0.01,1,0\n", file);
-  fclose(file);
-  scree_error error;
-  scree_scene_file *made = NULL;
-  scree_scene *scene = NULL;
-  CHECK_OK(scree_scene_file_parse(equipment, sizeof equipment - 1, in_folder("test.yaml"), &made,
-                                  &error),
-           error);
-  CHECK_OK(scree_scene_create(made, NULL, &scene, &error), error);
-  scree_scene_file_free(made);
-  return scene;
-}
-
-static scree_body body_of(const scree_scene *scene, size_t index) {
-  scree_body body;
-  scree_world_get_body(scree_scene_view(scene), index, &body);
-  return body;
+  put_in_folder("bodies.csv", "shape,x,y,z,vx,vz\nball,0,0,5,0.3,0\nbrick,2,0,0.01,1,0\n");
+  return create_at(equipment, in_folder("test.yaml"));
 }
 
 static void walls_rates_and_gravity(void **state) {
@@ -126,16 +109,14 @@ static scree_scene *go_on(int threads, bool by_checkpoint) {
   scree_set_threads(threads);
   scree_scene *scene = make();
   run_until(scene, 0.4);
-  FILE *file = fopen(in_folder("change.yaml"), "wb");
-  assert_non_null(file);
-  fputs("time: 1\nmaterials: {m: {friction: 0.2, restitution: 0.3}}\n"
-        "geometry: {gate: {slide: {along: [1, 0, 0], mass: 3}, motion: []}, vane: {motion: "
-        "[{vibrate: {along: [0, 0, 1], amplitude: 0.01, frequency: 5}}]}}\n"
-        "inlets: {more: {box: {min: [7, 0, 0.2], max: [8, 2, 0.6]}, shapes: {brick: 1}, count: "
-        "9}}\n"
-        "sensors: {hits: {impacts: {}}, floor: {wall: floor}, door: {part: gate}}\n",
-        file);
-  fclose(file);
+  put_in_folder(
+      "change.yaml",
+      "time: 1\nmaterials: {m: {friction: 0.2, restitution: 0.3}}\n"
+      "geometry: {gate: {slide: {along: [1, 0, 0], mass: 3}, motion: []}, vane: {motion: "
+      "[{vibrate: {along: [0, 0, 1], amplitude: 0.01, frequency: 5}}]}}\n"
+      "inlets: {more: {box: {min: [7, 0, 0.2], max: [8, 2, 0.6]}, shapes: {brick: 1}, count: "
+      "9}}\n"
+      "sensors: {hits: {impacts: {}}, floor: {wall: floor}, door: {part: gate}}\n");
   const char *what = in_folder("change.yaml");
   CHECK_OK(scree_scene_change(&scene, &what, 1, &error), error);
   if (by_checkpoint) {

@@ -6,22 +6,6 @@
 
 static const double g = 9.81;
 
-static scree_body body_of(const scree_scene *scene, size_t index) {
-  scree_body body;
-  scree_world_get_body(scree_scene_view(scene), index, &body);
-  return body;
-}
-
-static double column_now(const scree_scene *scene, const char *name) {
-  double values[100];
-  scree_error error;
-  size_t k = 0;
-  assert_true(scree_scene_column_count(scene) <= 100);
-  CHECK_OK(scree_scene_measure(scene, values, &error), error);
-  while (strcmp(scree_scene_column_name(scene, k), name) != 0) k++;
-  return values[k];
-}
-
 /* What a box that was set on a belt of 0.6 m/s has slid away is m v^2 / 2, on the belt's upper face
  * alone; the volume is k m g times the way v^2/(2 mu g). */
 static void check_wear(const scree_scene *scene) {
@@ -40,7 +24,7 @@ static void check_wear(const scree_scene *scene) {
   }
   CHECK_NEAR(all, work, 0.1 * work); /* its landing is a few short hits */
   CHECK_NEAR(above, all, 0);
-  CHECK_NEAR(column_now(scene, "load.wear"), all, 1e-12);
+  CHECK_NEAR(now_of(scene, "load.wear"), all, 1e-12);
   const double *worn = scree_scene_worn(scene, 0, &count), volume = 1e-9 * work / 0.3;
   double lost = 0, deepest = 0;
   for (size_t t = 0; t < count; t++) {
@@ -50,8 +34,8 @@ static void check_wear(const scree_scene *scene) {
   CHECK_NEAR(lost, volume, 0.1 * volume);
   CHECK_NEAR(lost, 1e-9 * all / 0.3, 1e-3 * lost); /* all of it slips */
   print_message("worn volume %.4g of %.4g m3\n", lost, volume);
-  CHECK_NEAR(column_now(scene, "load.worn_volume"), lost, 0);
-  CHECK_NEAR(column_now(scene, "load.worn_depth"), deepest, 1e-12 * deepest);
+  CHECK_NEAR(now_of(scene, "load.worn_volume"), lost, 0);
+  CHECK_NEAR(now_of(scene, "load.worn_depth"), deepest, 1e-12 * deepest);
 }
 
 /* A box set on a belt slides until it has the belt's speed: v = mu g t, then v stays. */
@@ -233,7 +217,7 @@ static void surface(void **state) {
     scree_scene *scene = create(text);
     run_until(scene, 1e-9);
     fill_drum(scene, a, u, rows[i].angle);
-    CHECK_NEAR(column_now(scene, "s.angle_deg"), 57.29577951308232 * rows[i].angle, 1);
+    CHECK_NEAR(now_of(scene, "s.angle_deg"), 57.29577951308232 * rows[i].angle, 1);
     scree_scene_free(scene);
   }
 }

@@ -38,3 +38,26 @@ const char *in_folder(const char *name) {
   snprintf(path, sizeof paths[0], "%s/%s", folder, name);
   return path;
 }
+
+void put_in_folder(const char *name, const char *text) {
+  FILE *file = fopen(in_folder(name), "wb");
+  assert_non_null(file);
+  fputs(text, file);
+  fclose(file);
+}
+
+double sum_in_folder(const char *name, const char *begin, int column) {
+  char line[400];
+  FILE *file = fopen(in_folder(name), "r");
+  assert_non_null(file);
+  double sum = 0;
+  assert_non_null(fgets(line, sizeof line, file));
+  while (fgets(line, sizeof line, file)) {
+    char *at = line;
+    if (strncmp(line, begin, strlen(begin)) != 0) continue;
+    for (int k = 0; k < column; k++) at = strchr(at, ',') + 1;
+    sum += strtod(at, NULL);
+  }
+  fclose(file);
+  return sum;
+}

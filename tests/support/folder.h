@@ -12,5 +12,9 @@ int remove_folder(void **state);
 
 /* The path of a name in the folder; good until the eighth call after it. */
 const char *in_folder(const char *name);
+/* A text as a file in it. */
+void put_in_folder(const char *name, const char *text);
+/* The sum of a column, from 0, of the rows of a CSV file in it that begin so. */
+double sum_in_folder(const char *name, const char *begin, int column);
 
 #endif

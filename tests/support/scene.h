@@ -8,14 +8,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-static inline scree_scene *create(const char *text) {
+/* Files that it names lie beside `path`. */
+static inline scree_scene *create_at(const char *text, const char *path) {
   scree_error error;
   scree_scene_file *file = NULL;
   scree_scene *scene = NULL;
-  CHECK_OK(scree_scene_file_parse(text, strlen(text), "test.yaml", &file, &error), error);
+  CHECK_OK(scree_scene_file_parse(text, strlen(text), path, &file, &error), error);
   CHECK_OK(scree_scene_create(file, NULL, &scene, &error), error);
   scree_scene_file_free(file);
   return scene;
+}
+
+static inline scree_scene *create(const char *text) {
+  return create_at(text, "test.yaml");
+}
+
+static inline scree_body body_of(const scree_scene *scene, size_t index) {
+  scree_body body;
+  scree_world_get_body(scree_scene_view(scene), index, &body);
+  return body;
 }
 
 static inline void run_to_end(scree_scene *scene) {

@@ -135,10 +135,7 @@ static void a_scan_without_a_floor_is_told(void **state) {
 /* ---- outlines ---- */
 
 static scree_status read_text(const char *text, scree_outline *outline, scree_error *error) {
-  FILE *file = fopen(in_folder("outline.csv"), "wb");
-  assert_non_null(file);
-  fputs(text, file);
-  (void)fclose(file);
+  put_in_folder("outline.csv", text);
   return scree_outline_read(in_folder("outline.csv"), 1e-3, outline, error);
 }
 
