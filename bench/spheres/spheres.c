@@ -30,7 +30,7 @@ static scree_world *make_world(void) {
   scree_world_options options = scree_default_world_options();
   options.time_step = time_step;
   scree_material material = scree_default_material();
-  material.stiffness = 2 * stiffness / diameter;
+  material.young = 2 * stiffness / diameter;
   material.density = 2500;
   material.rolling_friction = 0.2;
   need(scree_world_create(&options, &world, &error), &error);

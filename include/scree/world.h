@@ -48,14 +48,14 @@ typedef struct scree_world_options {
 SCREE_API scree_world_options scree_default_world_options(void);
 
 typedef struct scree_material {
-  double stiffness;        /* N/m2, the E of K = E L; default 1e8; 1e11 for walls (the paper) */
+  double young;            /* N/m2, the E of K = E L; default 1e8; 1e11 for walls (the paper); of
+                              SCREE_LAW_HERTZ Young's modulus */
   double density;          /* kg/m3; default 2000 (not in the paper) */
   double restitution;      /* in (0, 1]; default 0.3 (the paper) */
   double friction;         /* at least 0; default 0.5 (the paper) */
   double rolling_friction; /* of spheres, at least 0; default 0: rolls freely */
   double surface_energy;   /* J/m2, at least 0; default 0: does not stick */
-  double poisson; /* in [0, 0.5]; default 0.3; of SCREE_LAW_HERTZ, which takes `stiffness` for
-                     Young's modulus, Pa */
+  double poisson;          /* in [0, 0.5]; default 0.3; of SCREE_LAW_HERTZ */
 } scree_material;
 SCREE_API scree_material scree_default_material(void);
 SCREE_API scree_material scree_default_wall_material(void);

@@ -87,7 +87,7 @@ class World(Saved):
         lib.world_save(self, path, overwrite)
 
     def add_material(self, wall: bool = False, **values: Any) -> int:
-        """Its index. stiffness (N/m2), density (kg/m3), restitution, friction, rolling_friction,
+        """Its index. young (N/m2), density (kg/m3), restitution, friction, rolling_friction,
         surface_energy (J/m2), poisson (of the law hertz); wall: the defaults of walls."""
         return lib.world_add_material(self, set_fields(lib.default_wall_material(), values, "material") if wall else values)
 

@@ -70,7 +70,7 @@ static scree_status add_materials(const scree_scene *scene, scree_world *world,
   for (size_t i = 0; status == SCREE_OK && i < plan->materials.count; i++) {
     const scree_plan_material *m = material_at(scene, i);
     scree_material made = usual;
-    made.stiffness = m->young;
+    made.young = m->young;
     made.density = m->density;
     made.restitution = m->restitution;
     made.friction = m->friction;

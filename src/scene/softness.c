@@ -199,7 +199,7 @@ static double young_that_holds(const scree_scene *scene, const scree_scene_softn
     other = scree_world_wall_at(world, scene->geometry[s->other].first_wall)->given.material;
   else
     other = scene->shapes[s->other].material;
-  double a = world->materials[material].stiffness, b = world->materials[other].stiffness;
+  double a = world->materials[material].young, b = world->materials[other].young;
   if (material == other) return a * s->stiffer;
   double least = s->stiffer * a * b / (a + b);
   return least < b ? least * b / (b - least) : (double)INFINITY;

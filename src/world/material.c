@@ -15,12 +15,12 @@
 
 scree_material scree_default_material(void) {
   return (scree_material){
-      .stiffness = 1e8, .density = 2000, .restitution = 0.3, .friction = 0.5, .poisson = 0.3};
+      .young = 1e8, .density = 2000, .restitution = 0.3, .friction = 0.5, .poisson = 0.3};
 }
 
 scree_material scree_default_wall_material(void) {
   return (scree_material){
-      .stiffness = 1e11, .density = 2000, .restitution = 0.3, .friction = 0.5, .poisson = 0.3};
+      .young = 1e11, .density = 2000, .restitution = 0.3, .friction = 0.5, .poisson = 0.3};
 }
 
 static double restitution_of(double eta) {
@@ -117,9 +117,8 @@ scree_status scree_world_add_material(scree_world *world, const scree_material *
                                       size_t *index, scree_error *error) {
   if (world->material_count == SCREE_MATERIALS)
     return scree_fail(error, SCREE_LIMIT, "world: at most %d materials", SCREE_MATERIALS);
-  if (!(material->stiffness > 0 && isfinite(material->stiffness)))
-    return scree_fail(error, SCREE_BAD_ARGUMENT, "world: stiffness %g N/m2; above 0",
-                      material->stiffness);
+  if (!(material->young > 0 && isfinite(material->young)))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "world: young %g N/m2; above 0", material->young);
   if (!(material->density > 0 && isfinite(material->density)))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: density %g kg/m3; above 0",
                       material->density);

@@ -59,7 +59,7 @@ static void code_options(scree_codec *c, scree_world_options *o) {
 }
 
 static void code_material(scree_codec *c, scree_material *m) {
-  scree_code_real(c, &m->stiffness);
+  scree_code_real(c, &m->young);
   scree_code_real(c, &m->density);
   scree_code_real(c, &m->restitution);
   scree_code_real(c, &m->friction);

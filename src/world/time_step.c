@@ -36,15 +36,14 @@ void scree_set_stiffness(const scree_world *world, const scree_contact_sides *si
                          scree_pair_law *law) {
   const scree_material *a = &world->materials[sides->material_a],
                        *b = &world->materials[sides->material_b];
-  double ka = a->stiffness * sides->size, kb = b->stiffness * sides->size,
+  double ka = a->young * sides->size, kb = b->young * sides->size,
          factor = world->options.stiffness_factor;
   law->stiffness = factor * ka * kb / (ka + kb);
   law->hertz = law->mindlin = 0;
   if (world->options.law != SCREE_LAW_HERTZ || !(is_round(sides->a) || is_round(sides->b))) return;
-  double ease = (1 - a->poisson * a->poisson) / a->stiffness +
-                (1 - b->poisson * b->poisson) / b->stiffness,
-         shear_ease = 2 * (2 - a->poisson) * (1 + a->poisson) / a->stiffness +
-                      2 * (2 - b->poisson) * (1 + b->poisson) / b->stiffness,
+  double ease = (1 - a->poisson * a->poisson) / a->young + (1 - b->poisson * b->poisson) / b->young,
+         shear_ease = 2 * (2 - a->poisson) * (1 + a->poisson) / a->young +
+                      2 * (2 - b->poisson) * (1 + b->poisson) / b->young,
          root = sqrt(1 / (curvature_of(sides->a) + curvature_of(sides->b)));
   law->hertz = 4.0 / 3 * factor * root / ease;
   law->mindlin = 8 * factor * root / shear_ease;

@@ -62,7 +62,7 @@ static void choose_speeds(const scree_particle *particle, double *fast, double *
   scree_particle_measures m;
   scree_particle_measure(particle, &m);
   scree_material material = scree_default_material();
-  double mass = 0.5 * material.density * m.volume, stiffness = 0.5 * material.stiffness * m.size,
+  double mass = 0.5 * material.density * m.volume, stiffness = 0.5 * material.young * m.size,
          time = sqrt(mass / stiffness), step = 0.5 * 3.14159265358979 * time / 20;
   *fast = fmin(15.4, 2 * m.thickness / time);
   *refused = 1.5 * fmax(m.thickness, 8 * m.rounding) / step;

@@ -20,13 +20,13 @@ static scree_world *hertz_world(const hertz_setup *s) {
   o.gravity[2] = -s->gravity;
   scree_world *world = NULL;
   CHECK_OK(scree_world_create(&o, &world, &error), error);
-  scree_material m = {.stiffness = s->young,
+  scree_material m = {.young = s->young,
                       .poisson = s->poisson,
                       .density = s->density,
                       .restitution = s->restitution,
                       .friction = s->friction};
   CHECK_OK(scree_world_add_material(world, &m, NULL, &error), error);
-  m.stiffness = s->wall_young;
+  m.young = s->wall_young;
   m.poisson = s->wall_poisson;
   CHECK_OK(scree_world_add_material(world, &m, NULL, &error), error);
   return world;

@@ -18,7 +18,7 @@ static scree_world *tilted_world(double tilt, double friction, double steps) {
   scree_material m = scree_default_material();
   m.friction = friction;
   CHECK_OK(scree_world_add_material(world, &m, NULL, &error), error);
-  m.stiffness = 1e11;
+  m.young = 1e11;
   CHECK_OK(scree_world_add_material(world, &m, NULL, &error), error);
   law_floor(world);
   return world;

@@ -257,9 +257,9 @@ static scree_world *make_world(vec3 gravity) {
   scree_world *world = NULL;
   CHECK_OK(scree_world_create(&o, &world, &error), error);
   scree_material m = scree_default_material();
-  m.stiffness = stiffness;
+  m.young = stiffness;
   CHECK_OK(scree_world_add_material(world, &m, NULL, &error), error);
-  m.stiffness = 1e3 * stiffness;
+  m.young = 1e3 * stiffness;
   CHECK_OK(scree_world_add_material(world, &m, NULL, &error), error);
   return world;
 }

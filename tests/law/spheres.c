@@ -253,7 +253,7 @@ static void rolling_down(void **state) {
   CHECK_OK(scree_world_create(&o, &world, &error), error);
   scree_material m = scree_default_material();
   CHECK_OK(scree_world_add_material(world, &m, NULL, &error), error);
-  m.stiffness = 1e11;
+  m.young = 1e11;
   CHECK_OK(scree_world_add_material(world, &m, NULL, &error), error);
   law_floor(world);
   scree_particle *sphere = law_sphere(radius);

@@ -12,7 +12,7 @@ static scree_world *world_of(scree_law law) {
   scree_error error;
   scree_world *world = NULL;
   scree_world_options o = scree_default_world_options();
-  const scree_material m = {.stiffness = 1e9,
+  const scree_material m = {.young = 1e9,
                             .poisson = 0.33,
                             .density = 2700,
                             .restitution = restitution,

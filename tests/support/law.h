@@ -42,12 +42,12 @@ static inline scree_world *law_world(const law_setup *setup) {
   o.steps_per_contact = setup->steps_per_contact;
   scree_world *world = NULL;
   CHECK_OK(scree_world_create(&o, &world, &error), error);
-  scree_material m = {.stiffness = setup->stiffness,
+  scree_material m = {.young = setup->stiffness,
                       .density = setup->density,
                       .restitution = setup->restitution,
                       .friction = setup->friction};
   CHECK_OK(scree_world_add_material(world, &m, NULL, &error), error);
-  m.stiffness = setup->wall_stiffness;
+  m.young = setup->wall_stiffness;
   CHECK_OK(scree_world_add_material(world, &m, NULL, &error), error);
   return world;
 }

@@ -14,7 +14,7 @@ static scree_world *make_world(double period, bool two_axes) {
   scree_world *world;
   scree_world_options o = scree_default_world_options();
   scree_wall floor = {.kind = SCREE_WALL_PLANE, .axis = {0, 0, 1}};
-  scree_material grain = {.stiffness = 1e6, .density = 2000, .restitution = 0.5, .friction = 0.4};
+  scree_material grain = {.young = 1e6, .density = 2000, .restitution = 0.5, .friction = 0.4};
   o.period[0] = period;
   if (two_axes) o.period[1] = period;
   CHECK_OK(scree_world_create(&o, &world, &error), error);

@@ -125,7 +125,7 @@ static int run_seed(uint64_t seed, const scree_mesh *sheet, size_t *contacts) {
   scree_world_options o = random_options(&rng);
   if (!accepted(scree_world_create(&o, &world, &error), &error)) return 0;
   for (int i = 0; i < 3; i++) {
-    scree_material m = {.stiffness = pow(10, between(&rng, 6, 11))};
+    scree_material m = {.young = pow(10, between(&rng, 6, 11))};
     m.density = value(&rng, 100, 5000);
     m.restitution = value(&rng, 0.05, 1);
     m.friction = value(&rng, 0, 1);

@@ -27,7 +27,7 @@ static void free_shapes(void) {
 static void add_material(scree_world *world) {
   scree_error error;
   scree_material material = scree_default_material();
-  material.stiffness = 1e6;
+  material.young = 1e6;
   CHECK_OK(scree_world_add_material(world, &material, NULL, &error), error);
 }
 
