@@ -151,8 +151,8 @@ SCREE_API const char *scree_world_view_name(scree_world_view view);
  * about 60 bytes a triangle in the file, the same again in memory. */
 SCREE_API scree_status scree_world_vtp_write(const scree_world *world, scree_world_view view,
                                              const char *path, bool overwrite, scree_error *error);
-/* The walls of a scene as they stand, with the wear of each triangle besides: `wear`, J/m2 of
- * sliding work (scree_scene_wear), and `worn`, m of depth (scree_scene_worn). As
+/* The walls of a scene as they stand, with the maps of scree_scene_wall_map besides, NaN where no
+ * wall sensor looks: `pressure [Pa]`, `shear [Pa]`, `wear [J/m2]`, `worn depth [m]`. As
  * scree_world_vtp_write. */
 SCREE_API scree_status scree_scene_walls_vtp_write(const scree_scene *scene, const char *path,
                                                    bool overwrite, scree_error *error);

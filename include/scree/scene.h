@@ -142,6 +142,8 @@ SCREE_API bool scree_scene_doubt(const scree_scene *scene, size_t index, char te
 
 /* Names belong to the scene; NULL past the last. */
 SCREE_API const char *scree_scene_shape_name(const scree_scene *scene, size_t index);
+/* What it is called in the file, of which there may be several sizes. */
+SCREE_API const char *scree_scene_shape_family(const scree_scene *scene, size_t index);
 SCREE_API const char *scree_scene_shape_source(const scree_scene *scene, size_t index);
 SCREE_API scree_particle *scree_scene_shape_particle(const scree_scene *scene, size_t index);
 SCREE_API const char *scree_scene_geometry_name(const scree_scene *scene, size_t index);
@@ -230,13 +232,26 @@ typedef struct scree_scene_summary {
 SCREE_API scree_scene_summary scree_scene_summarise(const scree_scene *scene, size_t column,
                                                     double from, double until);
 
-/* J of sliding work on each triangle of a wall that a wall sensor looks at (of one that is no mesh,
- * one number): what wears it. NULL for other walls. The scene's own; valid until it is advanced. */
-SCREE_API const double *scree_scene_wear(const scree_scene *scene, size_t wall,
-                                         size_t *triangle_count);
-/* Likewise m3 that are worn off, by the pairs' `wear` (Archard 1953). */
-SCREE_API const double *scree_scene_worn(const scree_scene *scene, size_t wall,
-                                         size_t *triangle_count);
+/* What a wall sensor gathers by triangle in its window (`from`, `until`). */
+typedef enum scree_wall_map {
+  SCREE_MAP_PRESSURE, /* Pa: normal force over area, mean over time; pressing is positive */
+  SCREE_MAP_SHEAR,    /* Pa: size of the tangential force over area, mean over time */
+  SCREE_MAP_WEAR,     /* J/m2: work of sliding */
+  SCREE_MAP_WORN,     /* m: depth that is worn off, by the pairs' `wear` (Archard 1953) */
+  SCREE_MAP_COUNT
+} scree_wall_map;
+/* "pressure", "Pa"; NULL past the last. */
+SCREE_API const char *scree_wall_map_name(scree_wall_map map);
+SCREE_API const char *scree_wall_map_unit(scree_wall_map map);
+/* Whether any wall sensor is there. */
+SCREE_API bool scree_scene_has_maps(const scree_scene *scene);
+/* How many numbers a map of that wall has: its triangles, or 1 of a wall that is no mesh. */
+SCREE_API size_t scree_scene_wall_cells(const scree_scene *scene, size_t wall);
+/* The map of the first wall sensor that looks at that wall, into values; false, and nothing, where
+ * none does. A contact counts for the triangle that it lies on. NaN of endless walls, and of
+ * means before the window. Cost: one pass over the triangles. */
+SCREE_API bool scree_scene_wall_map(const scree_scene *scene, size_t wall, scree_wall_map map,
+                                    double *values);
 
 /* How long bodies stayed that have left, as a `residence` sensor counts them: a histogram by class.
  */

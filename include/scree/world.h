@@ -274,7 +274,8 @@ typedef struct scree_contact {
   double overlap, weight; /* m; part of the pair's spring, at most 1/(1 - kappa) in all */
 } scree_contact;
 /* Calls for every touching feature in a fixed order, from a fresh evaluation of forces at the
- * present positions; changes nothing. False from the callback ends it. */
+ * present positions, with the mean of the last step where a pair takes it in parts; changes
+ * nothing. False from the callback ends it. */
 typedef bool scree_contact_visitor(void *context, const scree_contact *contact);
 SCREE_API scree_status scree_world_visit_contacts(const scree_world *world,
                                                   scree_contact_visitor *visit, void *context,

@@ -18,13 +18,31 @@ static const char *const kinds[CLI_FRAME_KINDS] = {"-bodies", "-points", "-conta
 static const char *const collections[CLI_FRAME_KINDS] = {"bodies.pvd", "points.pvd", "contacts.pvd",
                                                          "geometry.pvd"};
 
-static const char *const file_names[] = {
-    "checkpoint.scree",     "series.csv",   "motion.scree",    "scene.yaml",
-    "frame-#-bodies.vtp",   "bodies.pvd",   "geometry.pvd",    "scene.png",
-    "frame-#-geometry.vtp", "result.json",  "result.txt",      "stopped.scree",
-    "frame-#-points.vtp",   "points.pvd",   "contacts.pvd",    "frame-#-contacts.vtp",
-    "frame-#.scree",        "last.scree",   "provenance.json", "report.html",
-    "sensor-*.csv",         "sensor-*.vts", "bodies.csv",      "shape-#.vtp"};
+static const char *const file_names[] = {"checkpoint.scree",
+                                         "series.csv",
+                                         "motion.scree",
+                                         "scene.yaml",
+                                         "frame-#-bodies.vtp",
+                                         "bodies.pvd",
+                                         "geometry.pvd",
+                                         "scene.png",
+                                         "frame-#-geometry.vtp",
+                                         "result.json",
+                                         "result.txt",
+                                         "stopped.scree",
+                                         "frame-#-points.vtp",
+                                         "points.pvd",
+                                         "contacts.pvd",
+                                         "frame-#-contacts.vtp",
+                                         "frame-#.scree",
+                                         "last.scree",
+                                         "provenance.json",
+                                         "report.html",
+                                         "sensor-*.csv",
+                                         "sensor-*.vts",
+                                         "bodies.csv",
+                                         "shape-#.vtp",
+                                         "walls.vtp"};
 static const cli_run_files run_files = {file_names, sizeof file_names / sizeof *file_names};
 
 static scree_status no_memory(scree_error *error) {
@@ -386,6 +404,10 @@ static scree_status write_all(const cli_scene_run *r, const char *stopped, doubl
   if (status == SCREE_OK) status = write_json(r, stopped, seconds, path, error);
   if (status == SCREE_OK) status = path_of(r, "bodies.csv", path, error);
   if (status == SCREE_OK) status = scree_scene_bodies_write(r->scene, path, true, error);
+  if (status == SCREE_OK && scree_scene_has_maps(r->scene)) {
+    status = path_of(r, "walls.vtp", path, error);
+    if (status == SCREE_OK) status = scree_scene_walls_vtp_write(r->scene, path, true, error);
+  }
   if (status == SCREE_OK) status = path_of(r, "result.txt", path, error);
   if (status == SCREE_OK) status = scree_text_write(text, path, true, error);
   if (status == SCREE_OK) status = draw(r, error);

@@ -17,6 +17,7 @@ typedef struct sheet {
   size_t cell_count; /* that the arrays have room for */
   scree_vtk_array arrays[ARRAYS_MAX];
   size_t array_count;
+  char names[SCREE_MAP_COUNT][32]; /* of maps, with units */
 } sheet;
 
 static void free_sheet(sheet *s) {
@@ -463,26 +464,22 @@ scree_status scree_wall_mesh(const scree_world *world, size_t index, scree_mesh 
   return SCREE_OK;
 }
 
-static double triangle_area(const sheet *s, size_t t) {
-  const uint32_t *k = s->triangles + 3 * t;
-  return 0.5 * vec3_norm(vec3_triangle_normal(vec3_load(s->points + 3 * k[0]),
-                                              vec3_load(s->points + 3 * k[1]),
-                                              vec3_load(s->points + 3 * k[2])));
-}
-
-/* Over its area, of the wall's triangles from `begin` on; 0 where no sensor looks at it. */
-static void fill_by_area(const double *amounts, size_t count, const sheet *s, size_t begin,
-                         double *density) {
-  size_t triangles = s->triangle_count - begin;
-  double all = 0;
-  for (size_t t = 0; t < triangles; t++) all += triangle_area(s, begin + t);
-  for (size_t t = 0; t < triangles; t++) {
-    double area = count == triangles ? triangle_area(s, begin + t) : all;
-    density[begin + t] = amounts && area > 0 ? amounts[count == triangles ? t : 0] / area : 0;
+/* The maps of a scene's walls, a row of cells for each; NaN where no sensor looks. */
+static scree_status fill_maps(const scree_scene *scene, size_t wall, size_t begin, sheet *s,
+                              double *const maps[SCREE_MAP_COUNT], scree_error *error) {
+  size_t cells = scree_scene_wall_cells(scene, wall), triangles = s->triangle_count - begin;
+  double *values = scree_alloc(cells, sizeof *values);
+  if (!values) return scree_fail_memory(error, cells * sizeof *values, "a wall's map");
+  for (size_t m = 0; m < SCREE_MAP_COUNT; m++) {
+    bool known = scree_scene_wall_map(scene, wall, (scree_wall_map)m, values);
+    for (size_t t = 0; t < triangles; t++)
+      maps[m][begin + t] = known ? values[cells == triangles ? t : 0] : NAN;
   }
+  scree_free(values);
+  return SCREE_OK;
 }
 
-/* scene: whose wear it has; NULL: none. */
+/* scene: whose maps it has; NULL: none. */
 static scree_status make_walls(const scree_world *world, const scree_scene *scene, sheet *s,
                                scree_error *error) {
   size_t count = scree_world_wall_count(world), points = 0, triangles = 0;
@@ -496,16 +493,22 @@ static scree_status make_walls(const scree_world *world, const scree_scene *scen
   }
   if (points > UINT32_MAX) return too_many(error, points);
   int64_t *number = NULL, *kind = NULL;
-  double *wear = NULL, *worn = NULL;
-  if (make_room(s, points, triangles, triangles)) {
+  double *maps[SCREE_MAP_COUNT] = {NULL};
+  bool good = make_room(s, points, triangles, triangles);
+  if (good) {
     number = add_array(s, "wall", SCREE_VTK_INT64, 1);
     kind = add_array(s, "kind", SCREE_VTK_INT64, 1);
-    if (scene) wear = add_array(s, "wear", SCREE_VTK_FLOAT64, 1);
-    if (scene) worn = add_array(s, "worn", SCREE_VTK_FLOAT64, 1);
+    good = number && kind;
   }
-  if (!number || !kind || (scene && !(wear && worn)))
-    return scree_fail_memory(error, 48 * triangles, "the walls of a world");
-  for (size_t i = 0; i < count; i++) {
+  for (size_t m = 0; good && scene && m < SCREE_MAP_COUNT; m++) {
+    snprintf(s->names[m], sizeof s->names[m], "%s [%s]", scree_wall_map_name((scree_wall_map)m),
+             scree_wall_map_unit((scree_wall_map)m));
+    maps[m] = add_array(s, s->names[m], SCREE_VTK_FLOAT64, 1);
+    good = maps[m];
+  }
+  if (!good) return scree_fail_memory(error, 64 * triangles, "the walls of a world");
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < count; i++) {
     scree_wall wall;
     size_t begin = s->triangle_count;
     scree_world_get_wall(world, i, &wall);
@@ -514,14 +517,9 @@ static scree_status make_walls(const scree_world *world, const scree_scene *scen
       number[t] = (int64_t)i;
       kind[t] = wall.kind;
     }
-    if (!scene) continue;
-    size_t cells;
-    const double *work = scree_scene_wear(scene, i, &cells),
-                 *volume = scree_scene_worn(scene, i, &cells);
-    fill_by_area(work, cells, s, begin, wear);
-    fill_by_area(volume, cells, s, begin, worn);
+    if (scene) status = fill_maps(scene, i, begin, s, maps, error);
   }
-  return SCREE_OK;
+  return status;
 }
 
 /* ---- One file ---- */

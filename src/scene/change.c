@@ -227,7 +227,7 @@ static void take_books(const scree_scene *was, scree_scene *is) {
   is->time_step = was->time_step;
   is->tick_steps = was->tick_steps;
   is->next_tick = was->next_tick;
-  is->next_wear = was->next_wear;
+  is->next_map = was->next_map;
   is->next_hits = was->next_hits;
   is->still_ticks = was->still_ticks;
   is->entered_mass = was->entered_mass;
@@ -307,7 +307,7 @@ static scree_status take_sensors(const comparison *c, scree_scene *is, scree_err
   }
   uint64_t now = scree_world_step_count(was->world);
   if (is->hit_steps && !was->hit_steps) is->next_hits = now;
-  if (is->wear_steps && !was->wear_steps) is->next_wear = now;
+  if (is->map_steps && !was->map_steps) is->next_map = now;
   return status;
 }
 
@@ -435,7 +435,7 @@ static scree_status take_over(comparison *c, scree_scene *is, scree_error *error
   scree_scene_reopen(was, &is->plan);
   take_books(was, is);
   status = scree_scene_complete_plan(is, error);
-  if (status == SCREE_OK) status = scree_scene_plan_wear(is, error);
+  if (status == SCREE_OK) status = scree_scene_plan_maps(is, error);
   if (status == SCREE_OK) status = take_sensors(c, is, error);
   if (status == SCREE_OK) status = take_series(was, is, error);
   if (status != SCREE_OK) return status;

@@ -191,7 +191,7 @@ void scree_scene_foretell(const scree_scene *scene, scree_scene_forecast *foreca
   for (size_t s = 0; s < SCREE_SCENE_SHAPES(scene); s++)
     seconds = fmax(seconds, scene->shapes[s].particle->face_count ? mesh_seconds : body_seconds);
   for (size_t w = 0; w < scree_world_wall_count(scene->world); w++)
-    triangles += (double)scree_scene_wear_cells(scene, w);
+    triangles += (double)scree_scene_wall_cells(scene, w);
   f.body_steps = f.step_count * f.body_count;
   f.seconds = f.body_steps * seconds;
   double interval = scene->plan.output->frames;

@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-static const scree_seal seal = {"screeSCN", "checkpoint of a scree scene", "scene", 7};
+static const scree_seal seal = {"screeSCN", "checkpoint of a scree scene", "scene", 8};
 
 /* ---- the fields, in and out alike ---- */
 
@@ -45,7 +45,7 @@ static void code_progress(scree_codec *c, scree_scene *scene) {
                      &costs->processor_seconds, &scene->frame_coordination};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   scree_code_u64(c, &costs->body_steps);
-  scree_code_u64(c, &scene->next_wear);
+  scree_code_u64(c, &scene->next_map);
   scree_code_u64(c, &costs->piece_count);
   scree_code_bool(c, &scene->is_frame);
   code_size(c, &scene->phase);
@@ -123,8 +123,8 @@ static void code_hits(scree_codec *c, scree_scene *scene) {
 void scree_scene_code_sensor(scree_codec *c, scree_scene *scene, scree_scene_sensor *sensor) {
   double *arrays[] = {sensor->count, sensor->mass};
   for (size_t k = 0; k < 2; k++) scree_code_reals(c, arrays[k], SCREE_SCENE_SHAPES(scene) + 1);
-  scree_code_reals(c, sensor->wear, sensor->wear_count);
-  scree_code_reals(c, sensor->worn, sensor->wear_count);
+  scree_code_reals(c, sensor->maps, SCREE_MAP_COUNT * sensor->cell_count);
+  scree_code_real(c, &sensor->watched);
   if (sensor->impacts) code_impacts(c, sensor->impacts);
   if (sensor->grid) {
     scree_code_reals(c, sensor->grid->sums, sensor->grid->number_count);
@@ -372,7 +372,7 @@ static scree_status load(loader *l) {
   code_geometry(&l->codec, scene);
   if (!scree_codec_good(&l->codec) || next_wall(scene) != scree_world_wall_count(scene->world))
     return fail_here(l);
-  status = scree_scene_plan_wear(scene, l->error);
+  status = scree_scene_plan_maps(scene, l->error);
   if (status != SCREE_OK) return status;
   code_state(&l->codec, scene);
   if (l->codec.position != l->codec.count) l->codec.failed = true;

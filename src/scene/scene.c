@@ -319,7 +319,7 @@ scree_status scree_scene_create_from(const scree_scene_file *file, scree_shape_s
   scree_status status = scree_scene_take_file(made, file, error);
   if (status == SCREE_OK) status = make_particles(made, file->folder, store, progress, error);
   if (status == SCREE_OK) status = scree_scene_set_up(made, file->folder, error);
-  if (status == SCREE_OK) status = scree_scene_plan_wear(made, error);
+  if (status == SCREE_OK) status = scree_scene_plan_maps(made, error);
   if (status == SCREE_OK) status = scree_scene_check_inlets(made, error);
   if (status == SCREE_OK) status = scree_scene_plan_layers(made, error);
   if (status == SCREE_OK) status = scree_scene_check_softness(made, error);
@@ -454,7 +454,7 @@ static size_t steps_to_decision(const scree_scene *scene, size_t wanted) {
   size_t steps = wanted < left ? wanted : (size_t)left, layer = scree_scene_steps_to_layer(scene);
   if (layer < steps) steps = layer;
   uint64_t done = scree_world_step_count(scene->world);
-  if (scene->wear_steps && scene->next_wear - done < steps) steps = scene->next_wear - done;
+  if (scene->map_steps && scene->next_map - done < steps) steps = scene->next_map - done;
   if (scene->hit_steps && scene->next_hits - done < steps) steps = scene->next_hits - done;
   uint64_t sample = scree_scene_next_sample(scene);
   if (sample - done < steps) steps = sample > done ? (size_t)(sample - done) : 1;
@@ -467,7 +467,7 @@ static size_t steps_to_decision(const scree_scene *scene, size_t wanted) {
 scree_status scree_scene_decide(scree_scene *scene, scree_error *error) {
   bool ticks = scree_world_step_count(scene->world) >= scene->next_tick;
   if (scree_world_time(scene->world) >= next_row(scene)) scree_scene_take_lost(scene);
-  scree_status status = scree_scene_watch_wear(scene, error);
+  scree_status status = scree_scene_watch_maps(scene, error);
   if (status == SCREE_OK) status = scree_scene_watch_impacts(scene, error);
   if (status == SCREE_OK) status = scree_scene_watch_grids(scene, error);
   if (status == SCREE_OK && ticks) status = tick(scene, error);
@@ -586,6 +586,11 @@ static const char *name_at(const scree_records *records, size_t size, size_t ind
 
 const char *scree_scene_shape_name(const scree_scene *scene, size_t index) {
   return name_at(&scene->plan.shapes, sizeof(scree_plan_shape), index);
+}
+const char *scree_scene_shape_family(const scree_scene *scene, size_t index) {
+  return index < SCREE_SCENE_SHAPES(scene)
+             ? scree_scene_class_name(scene, SCREE_BY_SHAPE, scene->shapes[index].family)
+             : NULL;
 }
 const char *scree_scene_shape_source(const scree_scene *scene, size_t index) {
   return index < SCREE_SCENE_SHAPES(scene) ? scene->shapes[index].source : NULL;

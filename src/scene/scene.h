@@ -102,9 +102,10 @@ typedef struct scree_scene_sensor {
   size_t first_column;
   size_t geometry;      /* of a wall or a position */
   double *count, *mass; /* of a flow, by shape, all shapes last */
-  double *wear;         /* of a wall: J by triangle of its meshes, one of each other wall */
-  double *worn;         /* likewise, m3 that are worn off */
-  size_t wear_count;
+  double *maps;   /* of a wall: each scree_wall_map by triangle of its meshes, one number of each
+                     other wall: N s, N s, J, m3 */
+  double watched; /* s in which they were gathered */
+  size_t cell_count;
   scree_scene_impacts *impacts;
   struct scree_scene_grid *grid;
   struct {
@@ -165,12 +166,12 @@ struct scree_scene {
     scree_placement *items; /* scratch of inlets */
     size_t count, capacity;
   } present;
-  bool *usual_density;    /* of materials: none is given; NULL where the file is not known */
-  double time_step, size; /* s; m: the smallest shape's */
-  uint64_t tick_steps;    /* between looks at inlets, outlets, flows and the end */
-  uint64_t next_tick;     /* step */
-  uint64_t wear_steps, next_wear;  /* likewise of looks at wear; 0: no sensor needs any */
-  uint64_t hit_steps, next_hits;   /* and of looks at impacts */
+  bool *usual_density;           /* of materials: none is given; NULL where the file is not known */
+  double time_step, size;        /* s; m: the smallest shape's */
+  uint64_t tick_steps;           /* between looks at inlets, outlets, flows and the end */
+  uint64_t next_tick;            /* step */
+  uint64_t map_steps, next_map;  /* likewise of looks at walls; 0: no sensor needs any */
+  uint64_t hit_steps, next_hits; /* and of looks at impacts */
   scree_scene_hits hits, hits_now; /* hits_now: scratch */
   bool has_parts;
   size_t still_ticks;
@@ -335,12 +336,13 @@ scree_status scree_scene_plan_columns(scree_scene *scene, scree_error *error);
 /* Of flows: who crossed since the last tick. */
 scree_status scree_scene_watch_flows(scree_scene *scene, scree_error *error);
 scree_status scree_scene_record(scree_scene *scene, scree_error *error);
-/* wear.c: how many numbers a wall's wear is; room for all; what a tick adds. */
-size_t scree_scene_wear_cells(const scree_scene *scene, size_t wall);
-scree_status scree_scene_plan_wear(scree_scene *scene, scree_error *error);
-scree_status scree_scene_watch_wear(scree_scene *scene, scree_error *error);
-/* m, of the wall's most worn triangle; 0 of what is endless. */
-double scree_scene_worn_depth(const scree_scene *scene, size_t wall);
+/* maps.c: room for all; what a look adds; the sums over a wall sensor's geometry (N s, N s, J, m3),
+ * and the highest of its triangles as scree_scene_wall_map. */
+scree_status scree_scene_plan_maps(scree_scene *scene, scree_error *error);
+scree_status scree_scene_watch_maps(scree_scene *scene, scree_error *error);
+scree_status scree_scene_read_maps(const scree_scene *scene, const scree_scene_sensor *sensor,
+                                   double sums[SCREE_MAP_COUNT], double highest[SCREE_MAP_COUNT],
+                                   scree_error *error);
 
 /* parts.c: room for those that forces move; their coming step; J, kinetic and potential, and what
  * one's walls have done on bodies; what the books of all miss. */

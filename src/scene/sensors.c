@@ -133,10 +133,11 @@ static bool is_hinge(const scree_scene *scene, const scree_scene_sensor *sensor)
 
 static bool add_sensor(scree_scene *scene, const scree_scene_sensor *sensor) {
   const scree_plan_sensor *plan = sensor->plan;
-  static const char *const wall[] = {"force_x",     "N",   "force_y",    "N",   "force_z",  "N",
-                                     "torque_x",    "N m", "torque_y",   "N m", "torque_z", "N m",
-                                     "power",       "W",   "energy",     "J",   "wear",     "J",
-                                     "worn_volume", "m3",  "worn_depth", "m",   NULL};
+  static const char *const wall[] = {
+      "force_x",       "N",   "force_y",     "N",   "force_z",    "N", "torque_x",         "N m",
+      "torque_y",      "N m", "torque_z",    "N m", "power",      "W", "energy",           "J",
+      "wear",          "J",   "worn_volume", "m3",  "worn_depth", "m", "highest_pressure", "Pa",
+      "highest_shear", "Pa",  NULL};
   static const char *const pile[] = {"sector_deg",
                                      "deg",
                                      "cone_deg",
@@ -368,7 +369,8 @@ static void read_region(const scree_scene *scene, const scree_plan_box *box, dou
   *at++ = count[shapes] > 0 ? speed / count[shapes] : NAN;
 }
 
-static void read_wall(const scree_scene *scene, const scree_scene_sensor *sensor, double *at) {
+static scree_status read_wall(const scree_scene *scene, const scree_scene_sensor *sensor,
+                              double *at, scree_error *error) {
   const scree_scene_geometry *g = &scene->geometry[sensor->geometry];
   for (int k = 0; k < 8; k++) at[k] = 0;
   for (size_t w = g->first_wall; w < g->first_wall + g->wall_count; w++) {
@@ -379,11 +381,15 @@ static void read_wall(const scree_scene *scene, const scree_scene_sensor *sensor
     for (int k = 0; k < 3; k++) at[k] += force[k], at[3 + k] += torque[k];
     at[6] += power, at[7] += energy;
   }
-  at[8] = at[9] = at[10] = 0;
-  for (size_t k = 0; k < sensor->wear_count; k++)
-    at[8] += sensor->wear[k], at[9] += sensor->worn[k];
-  for (size_t w = g->first_wall; w < g->first_wall + g->wall_count; w++)
-    at[10] = fmax(at[10], scree_scene_worn_depth(scene, w));
+  double sums[SCREE_MAP_COUNT], highest[SCREE_MAP_COUNT];
+  scree_status status = scree_scene_read_maps(scene, sensor, sums, highest, error);
+  if (status != SCREE_OK) return status;
+  at[8] = sums[SCREE_MAP_WEAR];
+  at[9] = sums[SCREE_MAP_WORN];
+  at[10] = highest[SCREE_MAP_WORN];
+  at[11] = highest[SCREE_MAP_PRESSURE];
+  at[12] = highest[SCREE_MAP_SHEAR];
+  return SCREE_OK;
 }
 
 /* Means over the cells: of speed and temperature by mass. */
@@ -443,7 +449,7 @@ static scree_status read_sensor(const scree_scene *scene, const scree_scene_sens
   else if (plan->region)
     read_region(scene, plan->region->box, sensor->count, sensor->mass, at);
   else if (plan->wall)
-    read_wall(scene, sensor, at);
+    status = read_wall(scene, sensor, at, error);
   else if (plan->part)
     read_part(scene, sensor->geometry, at);
   else if (plan->position)

@@ -1,5 +1,6 @@
 /* Contacts for reports: every pair is evaluated once more at the present positions on a copy of its
- * memory, so that looking changes nothing. */
+ * memory, so that looking changes nothing. A pair that takes its step in parts moves by the mean of
+ * their forces: its contacts share what this one lacks of it, by their weights. */
 #include "world/backend.h"
 #include "world/contact.h"
 #include "world/pairs.h"
@@ -26,6 +27,19 @@ static bool report(const scree_world *world, const scree_pair *pair,
   return visit(context, &contact);
 }
 
+static void share_mean(const scree_world *world, const scree_pair *pair, scree_pair_copy *copy) {
+  scree_contact_list *contacts = &copy->scratch.contacts;
+  if (pair->substeps <= 1) return;
+  double weights = 0;
+  for (size_t i = 0; i < contacts->count; i++) weights += fmax(0, contacts->items[i].weight);
+  vec3 lacks = vec3_sub(pair->wrench.force, copy->pair.wrench.force);
+  lacks = mat3_tmul_vec(&scree_pair_frame_b(world, pair)->rotation, lacks);
+  for (size_t i = 0; i < contacts->count; i++)
+    if (contacts->items[i].weight > 0)
+      contacts->items[i].force =
+          vec3_mad(contacts->items[i].force, lacks, contacts->items[i].weight / weights);
+}
+
 scree_status scree_world_visit_contacts(const scree_world *world, scree_contact_visitor *visit,
                                         void *context, scree_error *error) {
   scree_status status = scree_world_bring(world, SCREE_ALL_PARTS, error);
@@ -36,6 +50,7 @@ scree_status scree_world_visit_contacts(const scree_world *world, scree_contact_
     const scree_pair *pair = scree_pair_of(world, k);
     if (!pair || !pair->touching || scree_pair_is_removed(world, pair)) continue;
     good = scree_copy_pair(world, pair, &copy) && scree_evaluate_copy(world, &copy);
+    if (good) share_mean(world, pair, &copy);
     const scree_contact_list *contacts = &copy.scratch.contacts;
     for (size_t i = 0; i < contacts->count && good && going && copy.pair.touching; i++)
       if (contacts->items[i].weight > 0)

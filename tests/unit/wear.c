@@ -4,6 +4,7 @@
 #include "scree.h"
 #include "support/check.h"
 #include "support/folder.h"
+#include "support/scene.h"
 
 /* Memory that is read before it is written reads as 1.4e306; what grows, too. */
 static void *dirty_reallocate(void *context, void *block, size_t size) {
@@ -39,16 +40,6 @@ static const char text[] =
     "domain: {min: [-1, -1, -1], max: [1, 1, 1]}\n"
     "sensors: {table: {wall: table}, bar: {wall: bar}}\n";
 
-static scree_scene *make(void) {
-  scree_error error;
-  scree_scene_file *file;
-  scree_scene *scene;
-  CHECK_OK(scree_scene_file_parse(text, strlen(text), "wear.yaml", &file, &error), error);
-  CHECK_OK(scree_scene_create(file, NULL, &scene, &error), error);
-  scree_scene_file_free(file);
-  return scene;
-}
-
 typedef struct outcome {
   double wear, friction; /* J */
   uint64_t partings;
@@ -58,20 +49,19 @@ static outcome run(bool frames) {
   scree_error error;
   outcome out = {0};
   scree_observation o;
-  scree_scene *scene = make();
+  scree_scene *scene = create(text);
   while (!scree_scene_end(scene)) {
     CHECK_OK(scree_scene_advance(scene, 20, &error), error);
     if (frames)
       CHECK_OK(scree_scene_walls_vtp_write(scene, in_folder("walls.vtp"), true, &error), error);
     scree_world_observe(scree_scene_view(scene), &o);
   }
+  out.wear = now_of(scene, "table.wear") + now_of(scene, "bar.wear");
   for (size_t w = 0; w < scree_world_wall_count(scree_scene_view(scene)); w++) {
-    size_t count;
-    const double *wear = scree_scene_wear(scene, w, &count);
-    for (size_t i = 0; i < count; i++) {
-      assert_true(wear[i] >= 0);
-      out.wear += wear[i];
-    }
+    double wear[12];
+    assert_int_equal(scree_scene_wall_cells(scene, w), 12);
+    assert_true(scree_scene_wall_map(scene, w, SCREE_MAP_WEAR, wear));
+    for (size_t i = 0; i < 12; i++) assert_true(wear[i] >= 0);
   }
   out.friction = o.dissipated_friction;
   out.partings = o.depenetration_count;

@@ -1,5 +1,6 @@
 """Frames of `scree run` read by VTK itself: bodies.pvd is kept up, bodies are points with poses, a glyph of their shape
 gives their triangles. usage: check_frames.py PROGRAM"""
+import math
 import os
 import subprocess
 import sys
@@ -15,10 +16,10 @@ except ImportError:
 SCENE = """
 time: 0.1
 shapes: {ball: {sphere: 0.02}, brick: {box: [0.01, 0.02, 0.03]}}
-geometry: {floor: {plane: [0, 0, 1]}}
-inlets: {i: {box: {min: [0, 0, 0.01], max: [0.2, 0.2, 0.2]}, shapes: {ball: 1, brick: 1}, count: 20}}
+geometry: {floor: {plane: [0, 0, 1]}, table: {box: [0.3, 0.3, 0.01], at: [0.1, 0.1, 0.005]}}
+inlets: {i: {box: {min: [0, 0, 0.02], max: [0.2, 0.2, 0.2]}, shapes: {ball: 1, brick: 1}, count: 20}}
 output: {frames: 0.05}
-sensors: {field: {grid: {cylinder: {at: [0.1, 0.1, 0], radius: 0.15, length: 0.2}, cells: [3, 8, 4]}}}
+sensors: {load: {wall: table, from: 0.05}, field: {grid: {cylinder: {at: [0.1, 0.1, 0], radius: 0.15, length: 0.2}, cells: [3, 8, 4]}}}
 """
 folder = tempfile.mkdtemp()
 with open(f"{folder}/scene.yaml", "w", encoding="utf-8") as file:
@@ -67,4 +68,11 @@ assert reader.GetErrorCode() == 0 and grid.GetNumberOfCells() == 3 * 8 * 4
 cells = grid.GetCellData()
 assert [cells.GetArray(n).GetNumberOfComponents() for n in ("velocity [m/s]", "stress [Pa]", "share of ball")] == [3, 6, 1]
 assert 0 < max(cells.GetArray("solid fraction").GetRange()) < 0.7
+# maps of a wall: of the table, by triangle, and not of the floor
+walls = read("walls.vtp").GetCellData()
+kinds = walls.GetArray("kind")
+for name in ("pressure [Pa]", "shear [Pa]", "wear [J/m2]", "worn depth [m]"):
+    values = [walls.GetArray(name).GetValue(i) for i in range(walls.GetNumberOfTuples())]
+    assert [math.isnan(v) for v in values] == [kinds.GetValue(i) != 3 for i in range(len(values))], (name, values)
+    assert name == "worn depth [m]" or max(v for v in values if not math.isnan(v)) > 0, name
 print("20 bodies in 4 frames")

@@ -1,0 +1,218 @@
+/* Maps of geometry by triangle, in the window of a wall sensor: pressure and shear, the means over
+ * time of a triangle's normal forces and of the sizes of its tangential ones, over its area; the
+ * work of sliding, |F_t . v_t| over time, F_t the tangential force of a contact and v_t how fast
+ * the body slides there; the worn volume, k F_n |v_t| over time, of contacts at the Coulomb limit
+ * (Archard 1953, "Contact and rubbing of flat surfaces"; k is his coefficient over the hardness).
+ * Contacts are looked at every few steps, several times in the shortest, and counted for all of
+ * them: over many looks the sum is the integral. */
+#include "particle/closest.h"
+#include "scene/scene.h"
+
+#include "base/alloc.h"
+
+#include <string.h>
+
+/* Whether the sensor maps that wall; *first is then the place of the wall's first number. */
+static bool maps_wall(const scree_scene *scene, const scree_scene_sensor *sensor, size_t wall,
+                      size_t *first) {
+  const scree_scene_geometry *g = &scene->geometry[sensor->geometry];
+  if (!sensor->maps || wall < g->first_wall || wall >= g->first_wall + g->wall_count) return false;
+  *first = 0;
+  for (size_t w = g->first_wall; w < wall; w++) *first += scree_scene_wall_cells(scene, w);
+  return true;
+}
+
+size_t scree_scene_wall_cells(const scree_scene *scene, size_t wall_index) {
+  scree_wall wall;
+  scree_world_get_wall(scene->world, wall_index, &wall);
+  return wall.kind == SCREE_WALL_MESH ? wall.mesh->triangle_count : 1;
+}
+
+scree_status scree_scene_plan_maps(scree_scene *scene, scree_error *error) {
+  for (size_t i = 0; i < scene->plan.sensors.count; i++) {
+    scree_scene_sensor *sensor = &scene->sensors[i];
+    const scree_scene_geometry *g = &scene->geometry[sensor->geometry];
+    if (!sensor->plan->wall) continue;
+    scene->map_steps = (uint64_t)fmax(1, floor(scene->plan.contact->steps));
+    for (size_t w = 0; w < g->wall_count; w++)
+      sensor->cell_count += scree_scene_wall_cells(scene, g->first_wall + w);
+    size_t numbers = SCREE_MAP_COUNT * sensor->cell_count;
+    sensor->maps = scree_arena_take(&scene->arena, numbers, sizeof *sensor->maps);
+    if (!sensor->maps)
+      return scree_fail_memory(error, numbers * sizeof *sensor->maps, "a wall's maps");
+    memset(sensor->maps, 0, numbers * sizeof *sensor->maps);
+  }
+  return SCREE_OK;
+}
+
+static vec3 velocity_at(vec3 velocity, vec3 spin, vec3 middle, vec3 p) {
+  return vec3_add(velocity, vec3_cross(spin, vec3_sub(p, middle)));
+}
+
+/* s */
+static double between_looks(const scree_scene *scene) {
+  return (double)scene->map_steps * scene->time_step;
+}
+
+static const double at_limit =
+    0.999; /* of the Coulomb limit: what is stuck creeps, and wears not */
+
+/* What the contact adds in the time between two looks: N s, N s, J, and m3 at a wear of `rate`. */
+static void measure_contact(const scree_scene *scene, const scree_wall *wall, double friction,
+                            double rate, const scree_contact *c, double amounts[SCREE_MAP_COUNT]) {
+  scree_body b;
+  scree_world_get_body(scene->world, c->body, &b);
+  const double time = between_looks(scene);
+  vec3 p = vec3_load(c->position), n = vec3_load(c->normal), force = vec3_load(c->force),
+       at = vec3_load(wall->position);
+  vec3 v =
+      velocity_at(vec3_load(b.velocity), vec3_load(b.angular_velocity), vec3_load(b.position), p);
+  v = vec3_sub(v, velocity_at(vec3_load(wall->velocity), vec3_load(wall->angular_velocity), at, p));
+  v = vec3_sub(v, velocity_at(vec3_load(wall->surface_velocity),
+                              vec3_load(wall->surface_angular_velocity), at, p));
+  const double press = vec3_dot(force, n), load = fmax(0, press);
+  vec3 across = vec3_mad(force, n, -press), along = vec3_mad(v, n, -vec3_dot(v, n));
+  const bool slips = vec3_norm(across) >= at_limit * friction * load;
+  amounts[SCREE_MAP_PRESSURE] = press * time;
+  amounts[SCREE_MAP_SHEAR] = vec3_norm(across) * time;
+  amounts[SCREE_MAP_WEAR] = fmax(0, -vec3_dot(across, v)) * time;
+  amounts[SCREE_MAP_WORN] = slips ? rate * load * vec3_norm(along) * time : 0;
+}
+
+/* 1/Pa, of what the body and the wall are made of. */
+static double rate_of(const scree_scene *scene, const size_t made_of[2]) {
+  const scree_plan *plan = &scene->plan;
+  for (size_t i = plan->pairs.count; i-- > 0;) {
+    const scree_plan_pair *p = SCREE_PLAN_AT(plan, pairs, scree_plan_pair, i);
+    size_t k[2];
+    for (int side = 0; side < 2; side++)
+      k[side] =
+          scree_plan_find(&plan->materials, sizeof(scree_plan_material), p->between.items[side]);
+    if ((k[0] == made_of[0] && k[1] == made_of[1]) || (k[0] == made_of[1] && k[1] == made_of[0]))
+      return p->wear;
+  }
+  return 0;
+}
+
+/* The triangle of the wall that the contact is on. */
+static size_t cell_of(const scree_world_wall *wall, const double position[3]) {
+  const uint32_t root = 0;
+  uint32_t face = 0;
+  if (scree_wall_is_analytic(wall)) return 0;
+  const scree_frame *f = &wall->frame;
+  vec3 local = mat3_tmul_vec(&f->rotation, vec3_sub(vec3_load(position), f->position));
+  scree_nearest_face(wall->surface, &root, 1, local, INFINITY, &face);
+  return face;
+}
+
+static bool feel(void *context, const scree_contact *c) {
+  const scree_scene *scene = context;
+  size_t first, cell = SIZE_MAX;
+  double amounts[SCREE_MAP_COUNT];
+  for (size_t i = 0; c->wall && i < scene->plan.sensors.count; i++) {
+    scree_scene_sensor *sensor = &scene->sensors[i];
+    if (!maps_wall(scene, sensor, c->other, &first) || !scree_scene_is_watching(scene, sensor))
+      continue;
+    if (cell == SIZE_MAX) {
+      scree_wall wall;
+      scree_material_contact material;
+      scree_world_get_wall(scene->world, c->other, &wall);
+      const size_t made_of[2] = {scene->world->bodies.material[c->body], wall.material};
+      if (scree_world_get_pair(scene->world, made_of[0], made_of[1], &material, NULL)) return true;
+      measure_contact(scene, &wall, material.friction, rate_of(scene, made_of), c, amounts);
+      cell = cell_of(scree_world_wall_at(scene->world, c->other), c->position);
+    }
+    for (size_t m = 0; m < SCREE_MAP_COUNT; m++)
+      sensor->maps[m * sensor->cell_count + first + cell] += amounts[m];
+  }
+  return true;
+}
+
+scree_status scree_scene_watch_maps(scree_scene *scene, scree_error *error) {
+  if (!scene->map_steps || scree_world_step_count(scene->world) < scene->next_map) return SCREE_OK;
+  bool any = false;
+  scene->next_map += scene->map_steps;
+  for (size_t i = 0; i < scene->plan.sensors.count; i++) {
+    scree_scene_sensor *sensor = &scene->sensors[i];
+    if (!sensor->maps || !scree_scene_is_watching(scene, sensor)) continue;
+    sensor->watched += between_looks(scene);
+    any = true;
+  }
+  return any ? scree_world_visit_contacts(scene->world, feel, scene, error) : SCREE_OK;
+}
+
+static double triangle_area(const scree_mesh *mesh, size_t t) {
+  vec3 corner[3];
+  for (int k = 0; k < 3; k++)
+    corner[k] = vec3_load(mesh->positions + 3 * (size_t)mesh->triangles[3 * t + (size_t)k]);
+  return 0.5 * vec3_norm(vec3_triangle_normal(corner[0], corner[1], corner[2]));
+}
+
+/* Of a wall that is no mesh; an endless one, m2: 0. */
+static double area_of(const scree_wall *wall) {
+  const double pi = 3.14159265358979323846, r = wall->radius;
+  if (wall->kind == SCREE_WALL_DISC) return pi * r * r;
+  return wall->kind == SCREE_WALL_CYLINDER ? 2 * pi * r * wall->length : 0;
+}
+
+static void read_map(const scree_scene *scene, const scree_scene_sensor *sensor, size_t index,
+                     size_t first, scree_wall_map map, double *values) {
+  scree_wall wall;
+  const double *amounts = sensor->maps + map * sensor->cell_count + first;
+  const double over = map == SCREE_MAP_PRESSURE || map == SCREE_MAP_SHEAR ? sensor->watched : 1;
+  scree_world_get_wall(scene->world, index, &wall);
+  for (size_t t = 0; t < scree_scene_wall_cells(scene, index); t++) {
+    double area = wall.kind == SCREE_WALL_MESH ? triangle_area(wall.mesh, t) : area_of(&wall);
+    values[t] = area > 0 && over > 0 ? amounts[t] / (over * area) : NAN;
+  }
+}
+
+bool scree_scene_wall_map(const scree_scene *scene, size_t wall, scree_wall_map map,
+                          double *values) {
+  size_t first;
+  for (size_t i = 0; i < scene->plan.sensors.count; i++) {
+    const scree_scene_sensor *sensor = &scene->sensors[i];
+    if (!maps_wall(scene, sensor, wall, &first)) continue;
+    read_map(scene, sensor, wall, first, map, values);
+    return true;
+  }
+  return false;
+}
+
+scree_status scree_scene_read_maps(const scree_scene *scene, const scree_scene_sensor *sensor,
+                                   double sums[SCREE_MAP_COUNT], double highest[SCREE_MAP_COUNT],
+                                   scree_error *error) {
+  const scree_scene_geometry *g = &scene->geometry[sensor->geometry];
+  double *values = scree_alloc(sensor->cell_count, sizeof *values);
+  if (!values)
+    return scree_fail_memory(error, sensor->cell_count * sizeof *values, "a wall's maps");
+  for (size_t m = 0; m < SCREE_MAP_COUNT; m++) {
+    size_t first = 0;
+    sums[m] = 0;
+    highest[m] = NAN;
+    for (size_t w = 0; w < g->wall_count; w++) {
+      read_map(scene, sensor, g->first_wall + w, first, (scree_wall_map)m, values + first);
+      first += scree_scene_wall_cells(scene, g->first_wall + w);
+    }
+    for (size_t t = 0; t < sensor->cell_count; t++) {
+      sums[m] += sensor->maps[m * sensor->cell_count + t];
+      highest[m] = fmax(highest[m], values[t]);
+    }
+  }
+  scree_free(values);
+  return SCREE_OK;
+}
+
+bool scree_scene_has_maps(const scree_scene *scene) {
+  return scene->map_steps > 0;
+}
+
+const char *scree_wall_map_name(scree_wall_map map) {
+  static const char *const names[] = {"pressure", "shear", "wear", "worn depth"};
+  return (int)map >= 0 && map < SCREE_MAP_COUNT ? names[map] : NULL;
+}
+
+const char *scree_wall_map_unit(scree_wall_map map) {
+  static const char *const units[] = {"Pa", "Pa", "J/m2", "m"};
+  return (int)map >= 0 && map < SCREE_MAP_COUNT ? units[map] : NULL;
+}
