@@ -89,11 +89,6 @@ SCREE_API scree_status scree_scene_create_from(const scree_scene_file *file,
                                                scree_shape_store *store,
                                                const scree_progress *progress, scree_scene **scene,
                                                scree_error *error);
-/* m: the diameter of the largest shape of a file, which is made for it. */
-SCREE_API scree_status scree_scene_file_largest(const scree_scene_file *file,
-                                                scree_shape_store *store,
-                                                const scree_progress *progress, double *diameter,
-                                                scree_error *error);
 SCREE_API void scree_scene_free(scree_scene *scene);
 
 /* Advances by at most step_count time steps; stops earlier where the scene ends. SCREE_DIVERGED as

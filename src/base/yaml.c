@@ -7,7 +7,7 @@
 #include <string.h>
 #include <yaml.h>
 
-enum { LARGEST_FILE = 1 << 20, DEEPEST = 16 };
+enum { LARGEST_FILE = 1 << 20, DEEPEST = 16, LONGEST_KEY = 128 };
 
 void scree_yaml_free(scree_yaml *root) {
   if (!root) return;
@@ -16,6 +16,29 @@ void scree_yaml_free(scree_yaml *root) {
   scree_free(root->key);
   scree_free(root->text);
   *root = (scree_yaml){0};
+}
+
+static char *copy_text(const char *text, bool *good) {
+  char *copy = text ? scree_strdup(text) : NULL;
+  *good = *good && (copy || !text);
+  return copy;
+}
+
+scree_status scree_yaml_copy(const scree_yaml *node, scree_yaml *copy, scree_error *error) {
+  bool good = true;
+  *copy = *node;
+  copy->key = copy_text(node->key, &good);
+  copy->text = copy_text(node->text, &good);
+  copy->item_count = 0;
+  copy->items = node->item_count ? scree_alloc(node->item_count, sizeof *node) : NULL;
+  good = good && (copy->items || !node->item_count);
+  scree_status status = good ? SCREE_OK : scree_fail_memory(error, sizeof *node, "a copy");
+  for (size_t i = 0; status == SCREE_OK && i < node->item_count; i++) {
+    status = scree_yaml_copy(&node->items[i], &copy->items[i], error);
+    if (status == SCREE_OK) copy->item_count++;
+  }
+  if (status != SCREE_OK) scree_yaml_free(copy);
+  return status;
 }
 
 void scree_yaml_escape(char byte, char escaped[SCREE_YAML_ESCAPED]) {
@@ -215,11 +238,34 @@ static void forget_places(scree_yaml *node) {
   for (size_t i = 0; i < node->item_count; i++) forget_places(&node->items[i]);
 }
 
+/* The item of that number in a list; SIZE_MAX: there is none. */
+static size_t item_of(const scree_yaml *list, const char *number) {
+  size_t index = *number ? 0 : SIZE_MAX;
+  for (const char *c = number; *c && index < list->item_count; c++)
+    index = *c >= '0' && *c <= '9' ? 10 * index + (size_t)(*c - '0') : SIZE_MAX;
+  return index < list->item_count ? index : SIZE_MAX;
+}
+
+const scree_yaml *scree_yaml_at(const scree_yaml *root, const char *keys) {
+  while (root && *keys) {
+    char name[LONGEST_KEY];
+    size_t length = strcspn(keys, "."), index;
+    snprintf(name, sizeof name, "%.*s", (int)length, keys);
+    if (length >= sizeof name || root->kind == SCREE_YAML_SCALAR) return NULL;
+    if (root->kind == SCREE_YAML_MAPPING)
+      root = scree_yaml_find(root, name);
+    else
+      root = (index = item_of(root, name)) != SIZE_MAX ? &root->items[index] : NULL;
+    keys += length + (keys[length] == '.');
+  }
+  return root;
+}
+
 /* The item that a key or a number names in a node; one that a mapping lacks is made. */
 static scree_status step_into(scree_yaml **node, const char *key, size_t length, const char *keys,
                               scree_error *error) {
   scree_yaml *at = *node;
-  char name[128];
+  char name[LONGEST_KEY];
   if (length == 0 || length >= sizeof name)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: names no field", keys);
   snprintf(name, sizeof name, "%.*s", (int)length, key);
@@ -227,10 +273,8 @@ static scree_status step_into(scree_yaml **node, const char *key, size_t length,
     return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: there is nothing named '%s' in one value",
                       keys, name);
   if (at->kind == SCREE_YAML_SEQUENCE) {
-    size_t index = 0;
-    for (const char *c = name; *c && index < at->item_count; c++)
-      index = *c >= '0' && *c <= '9' ? 10 * index + (size_t)(*c - '0') : SIZE_MAX / 16;
-    if (index >= at->item_count)
+    size_t index = item_of(at, name);
+    if (index == SIZE_MAX)
       return scree_fail(error, SCREE_BAD_ARGUMENT,
                         "%s: '%s': a list of %zu is counted from 0 to %zu", keys, name,
                         at->item_count, at->item_count ? at->item_count - 1 : 0);

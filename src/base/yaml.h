@@ -32,8 +32,13 @@ void scree_yaml_free(scree_yaml *root);
 enum { SCREE_YAML_ESCAPED = 5 };
 void scree_yaml_escape(char byte, char escaped[SCREE_YAML_ESCAPED]);
 
+/* A copy that knows the same places; free it. */
+scree_status scree_yaml_copy(const scree_yaml *node, scree_yaml *copy, scree_error *error);
+
 /* The item with the key, or NULL. */
 const scree_yaml *scree_yaml_find(const scree_yaml *mapping, const char *key);
+/* What stands where the keys say, as of scree_yaml_set; NULL: nothing does. */
+const scree_yaml *scree_yaml_at(const scree_yaml *root, const char *keys);
 
 /* Puts the value, itself YAML, where the keys say, joined by points, as in inlets.feed.rate; of a
  * sequence the item's number from 0. Mappings that are missing on the way are made. */

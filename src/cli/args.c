@@ -393,9 +393,10 @@ static int take_value(parser *p, found_option found, const char *text) {
   return store(p->verb, found.option, text, found.base);
 }
 
+/* One that begins so; of ":" alone, any. */
 static bool has_input(const parser *p, const char *beginning, size_t length) {
   for (size_t i = 0; i < p->input_count; i++)
-    if (!strncmp(p->inputs[i], beginning, length)) return true;
+    if (length == 1 || !strncmp(p->inputs[i], beginning, length)) return true;
   return false;
 }
 
@@ -411,6 +412,9 @@ static int check_partners(const parser *p) {
       missing = missing && !(is_input ? has_input(p, one, length) : is_given(p, one, length));
     }
     size_t length = strcspn(first, "| ");
+    if (missing && length == 1)
+      return cli_misuse(p->verb, "--%.*s does nothing without a %.*s", (int)name, at,
+                        (int)strcspn(p->verb->inputs, "[."), p->verb->inputs);
     if (missing && first[length - 1] == ':')
       return cli_misuse(p->verb, "--%.*s does nothing without an input %.*sNAME", (int)name, at,
                         (int)length, first);

@@ -52,7 +52,7 @@ typedef struct cli_verb {
   size_t input_minimum, input_maximum;
   const char *partners; /* "samples:distance to:from|until": options that do nothing without (one
                            of) the others, so that they are refused; "noise:sample:": without an
-                           input that begins so; or NULL */
+                           input that begins so, "rp::": without any; or NULL */
   int (*run)(const struct cli_call *call); /* the exit code */
 } cli_verb;
 

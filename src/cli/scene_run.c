@@ -559,8 +559,8 @@ static bool is_scan(const scree_poured *shape) {
   return !strcmp(shape->kind, "file") || !strcmp(shape->kind, "sample");
 }
 
-scree_status cli_pour(scree_scene_file *file, const cli_poured *p, const cli_source *source,
-                      bool no_repair, scree_error *error) {
+scree_status cli_pour_shapes(scree_scene_file *file, const cli_poured *p, const cli_source *source,
+                             bool no_repair, scree_error *error) {
   const cli_source usual = CLI_SOURCE_DEFAULTS;
   cli_input_options input = cli_source_options(source);
   scree_status status = scree_scene_file_pour(file, p->shapes, p->count, error);

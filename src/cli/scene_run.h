@@ -53,8 +53,8 @@ scree_status cli_make_poured(const char *const *words, const double *shares, siz
                              cli_poured *poured, scree_error *error);
 void cli_poured_free(cli_poured *poured);
 /* Puts them into the file, with what the options say of how files and samples are read. */
-scree_status cli_pour(scree_scene_file *file, const cli_poured *poured, const cli_source *source,
-                      bool no_repair, scree_error *error);
+scree_status cli_pour_shapes(scree_scene_file *file, const cli_poured *poured,
+                             const cli_source *source, bool no_repair, scree_error *error);
 /* Sets a field of all shapes that are made from scans. */
 scree_status cli_set_scans(scree_scene_file *file, const cli_poured *poured, const char *field,
                            const char *value, scree_error *error);

@@ -274,8 +274,8 @@ static scree_status compare_intervals(const scree_scene *scene, const scree_plan
                     series ? now->series : now->frames);
 }
 
-scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *file,
-                                   const char *path, scree_error *error) {
+static scree_status take_over(scree_scene *scene, const scree_scene_file *file, const char *path,
+                              scree_error *error) {
   scree_plan plan;
   char *text;
   scree_status status = scree_scene_file_text(file, &text, error);
@@ -295,6 +295,17 @@ scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *f
   scree_free(scene->text);
   scene->text = text;
   return SCREE_OK;
+}
+
+scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *file,
+                                   const char *path, scree_error *error) {
+  scree_scene_file *shrunk;
+  if (!scree_scene_file_shrinks(file)) return take_over(scene, file, path, error);
+  scree_status status = scree_scene_file_shrink(file, scree_scene_largest(scene), &shrunk, error);
+  if (status != SCREE_OK) return status;
+  status = take_over(scene, shrunk, path, error);
+  scree_scene_file_free(shrunk);
+  return status;
 }
 
 static scree_status check_found(work *w, const char *path, scree_error *error) {

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static scree_status keep(scree_yaml *root, const char *name, scree_scene_file **file,
-                         scree_error *error) {
+scree_status scree_scene_file_keep(scree_yaml *root, const char *name, scree_scene_file **file,
+                                   scree_error *error) {
   const char *slash = strrchr(name, '/');
   scree_scene_file *made = scree_alloc_zero(1, sizeof *made);
   if (made) {
@@ -30,14 +30,14 @@ static scree_status keep(scree_yaml *root, const char *name, scree_scene_file **
 scree_status scree_scene_file_read(const char *path, scree_scene_file **file, scree_error *error) {
   scree_yaml root;
   scree_status status = scree_yaml_read(path, &root, error);
-  return status == SCREE_OK ? keep(&root, path, file, error) : status;
+  return status == SCREE_OK ? scree_scene_file_keep(&root, path, file, error) : status;
 }
 
 scree_status scree_scene_file_parse(const char *text, size_t byte_count, const char *name,
                                     scree_scene_file **file, scree_error *error) {
   scree_yaml root;
   scree_status status = scree_yaml_parse(text, byte_count, name, &root, error);
-  return status == SCREE_OK ? keep(&root, name, file, error) : status;
+  return status == SCREE_OK ? scree_scene_file_keep(&root, name, file, error) : status;
 }
 
 void scree_scene_file_free(scree_scene_file *file) {

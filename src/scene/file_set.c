@@ -3,6 +3,7 @@
 #include "scene/scene.h"
 
 #include "base/alloc.h"
+#include "base/math.h"
 #include "base/number.h"
 
 #include <stdlib.h>
@@ -11,6 +12,22 @@
 enum { MOST_NAMES = 64, PATH_BYTES = 300 };
 
 /* ---- single fields ---- */
+
+static const char *text_of(const scree_yaml *item, const char *key) {
+  const scree_yaml *node = item->kind == SCREE_YAML_MAPPING ? scree_yaml_find(item, key) : NULL;
+  return node && node->kind == SCREE_YAML_SCALAR ? node->text : NULL;
+}
+
+static double number_of(const scree_yaml *item, const char *key) {
+  double value;
+  const char *text = text_of(item, key);
+  return text && scree_number_read(text, &value) ? value : (double)NAN;
+}
+
+/* Of a parameter. */
+static bool shrinks(const scree_yaml *parameter) {
+  return number_of(parameter, "power") > 0;
+}
 
 /* The group of things with names of the user's that a field lies in; NULL: in none. */
 static const scree_field *named_group(const char *field) {
@@ -45,10 +62,38 @@ static scree_status need_named(const scree_scene_file *file, const char *field,
   return scree_fail_name(&reader, &place, blank ? blank + 1 : f->record->what, word, names, count);
 }
 
+/* Field `index` of those that a parameter sets; NULL: there are no more. */
+static const scree_yaml *field_of(const scree_yaml *parameter, size_t index) {
+  const scree_yaml *sets =
+      parameter->kind == SCREE_YAML_MAPPING ? scree_yaml_find(parameter, "sets") : NULL;
+  if (!sets || sets->kind == SCREE_YAML_SCALAR) return index ? NULL : sets;
+  return index < sets->item_count ? &sets->items[index] : NULL;
+}
+
+/* Whether it sets the field, or one in it. */
+static bool sets(const scree_yaml *parameter, const char *field) {
+  size_t length = strlen(field);
+  const scree_yaml *set;
+  for (size_t i = 0; (set = field_of(parameter, i)); i++)
+    if (set->kind == SCREE_YAML_SCALAR && !strncmp(set->text, field, length) &&
+        (!set->text[length] || set->text[length] == '.'))
+      return true;
+  return false;
+}
+
+/* What is set is as it is meant: it shrinks no more. */
 static scree_status set_field(scree_scene_file *file, const char *field, const char *value,
                               scree_error *error) {
   scree_status status = need_named(file, field, error);
-  return status == SCREE_OK ? scree_yaml_set(&file->root, field, value, error) : status;
+  if (status == SCREE_OK) status = scree_yaml_set(&file->root, field, value, error);
+  const scree_yaml *parameters = scree_yaml_find(&file->root, "parameters");
+  for (size_t i = 0; status == SCREE_OK && parameters && i < parameters->item_count; i++) {
+    char path[64];
+    if (!shrinks(&parameters->items[i]) || !sets(&parameters->items[i], field)) continue;
+    snprintf(path, sizeof path, "parameters.%zu.power", i);
+    status = scree_yaml_set(&file->root, path, "0", error);
+  }
+  return status;
 }
 
 /* "shapes.*.rp": of everything in the group. */
@@ -68,17 +113,6 @@ static scree_status set_all(scree_scene_file *file, const char *field, const cha
 }
 
 /* ---- parameters and presets ---- */
-
-static const char *text_of(const scree_yaml *item, const char *key) {
-  const scree_yaml *node = item->kind == SCREE_YAML_MAPPING ? scree_yaml_find(item, key) : NULL;
-  return node && node->kind == SCREE_YAML_SCALAR ? node->text : NULL;
-}
-
-static double number_of(const scree_yaml *item, const char *key) {
-  double value;
-  const char *text = text_of(item, key);
-  return text && scree_number_read(text, &value) ? value : (double)NAN;
-}
 
 /* Of a list of groups the one of that name; NULL: there is none. */
 static const scree_yaml *find_item(const scree_scene_file *file, const char *list,
@@ -123,13 +157,11 @@ static scree_status scale_value(const scree_yaml *parameter, const char *name, c
 
 static scree_status set_parameter(scree_scene_file *file, const scree_yaml *parameter,
                                   const char *name, const char *value, scree_error *error) {
-  const scree_yaml *sets = scree_yaml_find(parameter, "sets");
   char scaled[PATH_BYTES];
-  if (!sets) return scree_scene_file_check(file, error);
-  scree_status status = scale_value(parameter, name, value, scaled, sizeof scaled, error);
-  bool one = sets->kind == SCREE_YAML_SCALAR;
-  for (size_t i = 0; status == SCREE_OK && i < (one ? 1 : sets->item_count); i++) {
-    const scree_yaml *field = one ? sets : &sets->items[i];
+  const scree_yaml *field = field_of(parameter, 0);
+  scree_status status = field ? scale_value(parameter, name, value, scaled, sizeof scaled, error)
+                              : scree_scene_file_check(file, error);
+  for (size_t i = 0; status == SCREE_OK && (field = field_of(parameter, i)); i++) {
     if (field->kind != SCREE_YAML_SCALAR) return scree_scene_file_check(file, error);
     status = set_all(file, field->text, scaled, error);
   }
@@ -159,6 +191,50 @@ scree_status scree_scene_file_set(scree_scene_file *file, const char *field, con
   const scree_yaml *parameter = find_item(file, "parameters", field);
   return parameter ? set_parameter(file, parameter, field, value, error)
                    : set_field(file, field, value, error);
+}
+
+/* ---- what shrinks with the particles ---- */
+
+bool scree_scene_file_shrinks(const scree_scene_file *file) {
+  const scree_yaml *parameters = scree_yaml_find(&file->root, "parameters");
+  for (size_t i = 0; parameters && i < parameters->item_count; i++)
+    if (shrinks(&parameters->items[i])) return true;
+  return false;
+}
+
+static scree_status shrink(scree_scene_file *file, const scree_yaml *parameter, double largest,
+                           scree_error *error) {
+  double share = fmin(1, largest / number_of(parameter, "below")),
+         power = number_of(parameter, "power"), factor = power > floor(power) ? sqrt(share) : 1,
+         value;
+  for (double whole = 1; whole <= power; whole++) factor *= share;
+  scree_status status = SCREE_OK;
+  const scree_yaml *field;
+  for (size_t i = 0; status == SCREE_OK && (field = field_of(parameter, i)); i++) {
+    const scree_yaml *node = field->text ? scree_yaml_at(&file->root, field->text) : NULL;
+    char text[SCREE_NUMBER_SIZE];
+    if (!node || !node->text || !scree_number_read(node->text, &value)) continue;
+    scree_number_format_digits(factor * value, 17, text);
+    status = set_field(file, field->text, text, error);
+  }
+  return status;
+}
+
+scree_status scree_scene_file_shrink(const scree_scene_file *file, double largest,
+                                     scree_scene_file **shrunk, scree_error *error) {
+  scree_yaml root;
+  scree_scene_file *made = NULL;
+  scree_status status = scree_yaml_copy(&file->root, &root, error);
+  if (status == SCREE_OK) status = scree_scene_file_keep(&root, file->name, &made, error);
+  const scree_yaml *parameters = made ? scree_yaml_find(&made->root, "parameters") : NULL;
+  for (size_t i = 0; status == SCREE_OK && parameters && i < parameters->item_count; i++)
+    if (shrinks(&parameters->items[i]))
+      status = shrink(made, &parameters->items[i], largest, error);
+  if (status == SCREE_OK)
+    *shrunk = made;
+  else
+    scree_scene_file_free(made);
+  return status;
 }
 
 /* ---- several, of which the first that cannot be is told ---- */

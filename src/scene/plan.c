@@ -686,14 +686,24 @@ static const scree_field parameter_fields[] = {
     {"factor", SCREE_FIELD_REAL, AT(factor), -1e9, 1e9, "", "times the value", NULL},
     {"least", SCREE_FIELD_REAL, AT(least), -1e300, 1e300, "", "of the value", NULL},
     {"most", SCREE_FIELD_REAL, AT(most), -1e300, 1e300, "", "", NULL},
+    {"below", SCREE_FIELD_REAL, AT(below), 1e-9, 1e3, "m",
+     "where the largest shape is smaller, the fields shrink", NULL},
+    {"power", SCREE_FIELD_REAL, AT(power), 0, 10, "",
+     "of the share of that size that they shrink by; 0, once they are set: they do not", NULL},
 };
 #undef AT
 static scree_status check_parameter(const scree_reader *r, const void *record) {
   const scree_scene_parameter *p = record;
-  if (p->name && p->sets.count) return SCREE_OK;
-  return scree_fail_place(r, &p->place, "needs a name and sets: [FIELD, ...]");
+  if (!p->name || !p->sets.count)
+    return scree_fail_place(r, &p->place, "needs a name and sets: [FIELD, ...]");
+  if (given(&p->below) != given(&p->power))
+    return scree_fail_place(r, &p->place, "below and power go together");
+  if (isnan(p->power) || 2 * p->power == floor(2 * p->power)) return SCREE_OK;
+  return scree_fail_place(r, &p->place, "power %g: must be a whole number, or half of one",
+                          p->power);
 }
-static const scree_scene_parameter parameter_defaults = {.factor = NAN, .least = NAN, .most = NAN};
+static const scree_scene_parameter parameter_defaults = {
+    .factor = NAN, .least = NAN, .most = NAN, .below = NAN, .power = NAN};
 static const scree_record parameter_record = {"a parameter", FIELDS(parameter_fields),
                                               sizeof(scree_scene_parameter), &parameter_defaults,
                                               check_parameter};

@@ -295,6 +295,7 @@ typedef struct scree_scene_parameter {
   const char *name;
   scree_texts sets;
   double factor, least, most;
+  double below, power; /* of the size of the largest shape over `below`, where it is less */
 } scree_scene_parameter;
 
 typedef struct scree_plan_preset {

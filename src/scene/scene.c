@@ -311,9 +311,9 @@ scree_status scree_scene_take_file(scree_scene *scene, const scree_scene_file *f
   return status == SCREE_OK ? scree_scene_prepare(scene, error) : status;
 }
 
-scree_status scree_scene_create_from(const scree_scene_file *file, scree_shape_store *store,
-                                     const scree_progress *progress, scree_scene **scene,
-                                     scree_error *error) {
+static scree_status create(const scree_scene_file *file, scree_shape_store *store,
+                           const scree_progress *progress, scree_scene **scene,
+                           scree_error *error) {
   scree_scene *made = scree_alloc_zero(1, sizeof *made);
   if (!made) return scree_fail_memory(error, sizeof *made, "a scene");
   scree_status status = scree_scene_take_file(made, file, error);
@@ -332,9 +332,14 @@ scree_status scree_scene_create_from(const scree_scene_file *file, scree_shape_s
   return status;
 }
 
-scree_status scree_scene_create(const scree_scene_file *file, const scree_progress *progress,
-                                scree_scene **scene, scree_error *error) {
-  return scree_scene_create_from(file, NULL, progress, scene, error);
+double scree_scene_largest(const scree_scene *scene) {
+  double largest = 0;
+  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
+    scree_particle_measures m;
+    scree_particle_measure(scene->shapes[i].particle, &m);
+    largest = fmax(largest, 2 * m.bounding_radius);
+  }
+  return largest;
 }
 
 scree_status scree_scene_file_largest(const scree_scene_file *file, scree_shape_store *store,
@@ -344,15 +349,32 @@ scree_status scree_scene_file_largest(const scree_scene_file *file, scree_shape_
   if (!made) return scree_fail_memory(error, sizeof *made, "a scene");
   scree_status status = scree_scene_take_file(made, file, error);
   if (status == SCREE_OK) status = make_particles(made, file->folder, store, progress, error);
-  double largest = 0;
-  for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(made); i++) {
-    scree_particle_measures m;
-    scree_particle_measure(made->shapes[i].particle, &m);
-    largest = fmax(largest, 2 * m.bounding_radius);
-  }
+  if (status == SCREE_OK) *diameter = scree_scene_largest(made);
   scree_scene_free(made);
-  if (status == SCREE_OK) *diameter = largest;
   return status;
+}
+
+/* How large its shapes are is only known once they are made: they wait in a store. */
+scree_status scree_scene_create_from(const scree_scene_file *file, scree_shape_store *store,
+                                     const scree_progress *progress, scree_scene **scene,
+                                     scree_error *error) {
+  if (!scree_scene_file_shrinks(file)) return create(file, store, progress, scene, error);
+  scree_shape_store *own = NULL;
+  scree_scene_file *shrunk = NULL;
+  double largest;
+  scree_status status = store ? SCREE_OK : scree_shape_store_create(&own, error);
+  if (own) store = own;
+  if (status == SCREE_OK) status = scree_scene_file_largest(file, store, progress, &largest, error);
+  if (status == SCREE_OK) status = scree_scene_file_shrink(file, largest, &shrunk, error);
+  if (status == SCREE_OK) status = create(shrunk, store, progress, scene, error);
+  scree_scene_file_free(shrunk);
+  scree_shape_store_free(own);
+  return status;
+}
+
+scree_status scree_scene_create(const scree_scene_file *file, const scree_progress *progress,
+                                scree_scene **scene, scree_error *error) {
+  return scree_scene_create_from(file, NULL, progress, scene, error);
 }
 
 scree_status scree_scene_file_column(const scree_scene_file *file, size_t index, char name[96],

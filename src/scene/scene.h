@@ -203,6 +203,19 @@ scree_status scree_scene_file_apply(scree_scene_file *file, const scree_yaml *se
 /* plan.c of a file: into the arena of whoever asks. */
 scree_status scree_scene_file_plan(const scree_scene_file *file, scree_arena *arena,
                                    scree_plan *plan, scree_error *error);
+/* A file of a tree, which it takes, of that name. */
+scree_status scree_scene_file_keep(scree_yaml *root, const char *name, scree_scene_file **file,
+                                   scree_error *error);
+/* Whether it has parameters whose fields shrink with the largest shape (m); a copy in which they
+ * have, to be freed. */
+bool scree_scene_file_shrinks(const scree_scene_file *file);
+scree_status scree_scene_file_shrink(const scree_scene_file *file, double largest,
+                                     scree_scene_file **shrunk, scree_error *error);
+/* m: the diameter of its largest shape, which is made for it; and of those of a scene. */
+scree_status scree_scene_file_largest(const scree_scene_file *file, scree_shape_store *store,
+                                      const scree_progress *progress, double *diameter,
+                                      scree_error *error);
+double scree_scene_largest(const scree_scene *scene);
 /* As printed, to be freed. */
 scree_status scree_scene_file_text(const scree_scene_file *file, char **text, scree_error *error);
 

@@ -42,14 +42,24 @@ static scree_status change_template(void *context, scree_error *error) {
   return status;
 }
 
+/* One whose values shrink with its particles. */
+static scree_status make_drop(void *context, scree_error *error) {
+  scree_scene_file *file = NULL;
+  scree_scene *scene = NULL;
+  (void)context;
+  scree_status status = scree_scene_file_template("drop", &file, error);
+  if (status == SCREE_OK) status = scree_scene_create(file, NULL, &scene, error);
+  scree_scene_free(scene);
+  scree_scene_file_free(file);
+  return status;
+}
+
 static scree_status run_template(void *context, scree_error *error) {
   scree_scene_file *file = context;
   scree_shape_store *store = NULL;
   scree_scene *scene = NULL;
   scree_pile pile;
-  double diameter;
   scree_status status = scree_shape_store_create(&store, error);
-  if (status == SCREE_OK) status = scree_scene_file_largest(file, store, NULL, &diameter, error);
   if (status == SCREE_OK) status = scree_scene_create_from(file, store, NULL, &scene, error);
   if (status == SCREE_OK) status = scree_scene_measure_pile(scene, 0, NULL, &pile, error);
   if (status == SCREE_OK)
@@ -86,6 +96,7 @@ static void templates(void **state) {
   scree_error error;
   write_text(in_folder("pot.yaml"), pot);
   check_allocation_failures(change_template, NULL);
+  check_allocation_failures(make_drop, NULL);
   const scree_poured ball = {"ball", "sphere", "0.02", 1};
   CHECK_OK(scree_scene_file_read_over(in_folder("pot.yaml"), "repose", NULL, &file, &error), error);
   CHECK_OK(scree_scene_file_pour(file, &ball, 1, &error), error);

@@ -2,6 +2,8 @@
  * in any cut and from any checkpoint, whole ones in folders, and those that fail. */
 #include "base/alloc.h"
 #include "base/file.h"
+#include "base/rng.h"
+#include "base/yaml.h"
 #include "support/check.h"
 #include "support/folder.h"
 #include "support/pot.h"
@@ -117,6 +119,66 @@ static void what_cannot_be_filled_is_refused_before_the_run(void **state) {
   set_field(file, "width", "0.06");
   check_refused(file, "too narrow");
   scree_scene_file_free(file);
+}
+
+static const scree_yaml *value_at(const scree_yaml *root, const char *field) {
+  const scree_yaml *node = scree_yaml_at(root, field);
+  assert_non_null(node);
+  return node;
+}
+
+/* Of a drop as made: what is not set is as much less as the largest particle is below 10 mm. */
+static void small_particles_fall_less_far(void **state) {
+  (void)state;
+  static const struct {
+    const char *parameter, *field;
+    double value, power;
+  } usual[] = {{"drop_height", "inlets.fill.layers.bottom", 0.05, 1},
+               {"speed", "inlets.fill.velocity.2", -1, 0.5},
+               {"time", "stop.filled", 2, 0.5},
+               {"still", "stop.still", 1e-8, 4},
+               {"rest", "stop.rest", 0.05, 0.5},
+               {"frames", "output.frames", 0.02, 0.5},
+               {"series", "output.series", 0.01, 0.5}};
+  enum { COUNT = sizeof usual / sizeof *usual };
+  scree_rng rng = {.seed = 7};
+  for (int i = 0; i < 24; i++) {
+    double size = 0.001 * exp(3 * scree_rng_uniform(&rng)), share = fmin(1, size / 0.01);
+    size_t set = (size_t)(COUNT * scree_rng_uniform(&rng)), direct = (set + 1) % COUNT;
+    scree_scene_file *file = template_of(i % 2 ? "drop" : "drop-box");
+    char text[128];
+    scree_yaml root;
+    scree_error error;
+    snprintf(text, sizeof text,
+             "{small: {sphere: 5e-4, material: particles}, "
+             "large: {sphere: %.17g, material: particles}}",
+             size);
+    set_field(file, "shapes", text);
+    set_field(file, "inlets.fill.shapes", "{small: 1, large: 1}");
+    set_field(file, usual[set].parameter, "0.03");
+    set_field(file, usual[direct].field, usual[direct].value < 0 ? "-0.04" : "0.04");
+    scree_scene *scene = pot_scene(file);
+    const char *made = scree_scene_text(scene);
+    CHECK_OK(scree_yaml_parse(made, strlen(made), "made", &root, &error), error);
+    for (size_t k = 0; k < COUNT; k++) {
+      double expected = k == set      ? copysign(0.03, usual[k].value)
+                        : k == direct ? copysign(0.04, usual[k].value)
+                                      : usual[k].value * pow(share, usual[k].power);
+      double value = atof(value_at(&root, usual[k].field)->text);
+      if (fabs(value - expected) > 1e-12 * fabs(expected))
+        fail_msg("%s of %g m: %g, expected %g", usual[k].field, size, value, expected);
+    }
+    /* made again of its own text it is the same: nothing shrinks twice */
+    scree_scene_file *again;
+    CHECK_OK(scree_scene_file_parse(made, strlen(made), "again", &again, &error), error);
+    scree_scene *other = pot_scene(again);
+    assert_string_equal(scree_scene_text(other), made);
+    scree_yaml_free(&root);
+    scree_scene_free(other);
+    scree_scene_free(scene);
+    scree_scene_file_free(again);
+    scree_scene_file_free(file);
+  }
 }
 
 /* By `mass_from: scan` every level weighs as the scan does. */
@@ -554,6 +616,7 @@ int main(void) {
       cmocka_unit_test(settings_errors_say_line_column_value_and_limit),
       cmocka_unit_test(settings_are_judged_together),
       cmocka_unit_test(what_cannot_be_filled_is_refused_before_the_run),
+      cmocka_unit_test(small_particles_fall_less_far),
       cmocka_unit_test(a_scan_gives_its_levels_their_mass),
       cmocka_unit_test(it_does_not_depend_on_how_it_is_cut),
       cmocka_unit_test(the_series_has_a_row_at_every_interval),

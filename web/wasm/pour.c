@@ -3,6 +3,7 @@
 #include "scree.h"
 
 #include "report/shapes.h"
+#include "scene/scene.h"
 
 #include <emscripten.h>
 #include <math.h>
