@@ -7,7 +7,6 @@ run drop no=body.off -o no
 box 1 1 1 >a && cp a a=b && run drop a=c -o no 2>&1 | sed -n 2p
 run drop a=b -o named --time 0.01 --frames 0 --no-picture -N 1 -q >/dev/null && ls named | grep -c report && rm -r a a=b named
 run drop sample:box-12 -r 0.1 -n 10 2>&1 | sed -n 2p
-run drop sphere:4mm=3 sphere:5mm --samples -o no 2>&1 | sed -n 2p
 run drop none.stl -o no
 run drop sphere:40mm=3 -w 30mm -o no
 run drop sphere:40mm=3 sample:box-12 -o out --resolution 0.02mm 2>&1 | sed -n 2p

@@ -3,6 +3,8 @@ run repose --resume box.off
 run repose --rp 2 box.off
 run repose --lift-speed 99 box.off
 run repose -p tiny box.off
+run repose --resume -o none
+run repose sphere:40mm=3 sphere:30mm 2>&1 | sed -n 2p
 "$SCREE" repose --print -p demo --friction 0.4 --seed 7 >printed.yaml
 grep "friction: 0.4\|^seed: 7\|^preset: demo" printed.yaml | cut -d"#" -f1
 "$SCREE" repose -c printed.yaml --print >again.yaml
