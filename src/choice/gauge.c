@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/sum.h"
 #include "mesh/index/ray.h"
+#include "simplify/flat_fan.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -115,6 +116,18 @@ done:
   return status;
 }
 
+/* With flat fans of thousands of triangles, whose boxes all meet, cut otherwise. */
+static scree_status make_surface(const scree_mesh *scan, scree_surface **surface,
+                                 scree_error *error) {
+  scree_mesh same = *scan;
+  uint32_t *triangles;
+  scree_status status = scree_flat_fans_cut(scan, &triangles, error);
+  if (triangles) same.triangles = triangles;
+  if (status == SCREE_OK) status = scree_surface_create(&same, surface, error);
+  scree_free(triangles);
+  return status;
+}
+
 scree_status scree_gauge_make(const scree_mesh *scan, size_t point_count, scree_gauge *gauge,
                               scree_error *error) {
   scree_gauge made = {.scan = scan};
@@ -125,7 +138,7 @@ scree_status scree_gauge_make(const scree_mesh *scan, size_t point_count, scree_
   if (status != SCREE_OK) return status;
   made.length = sqrt(made.measures.area / acos(-1));
   scree_extent_of_mesh(&made.extent, made.measures.oriented_axes, scan);
-  status = scree_surface_create(scan, &made.surface, error);
+  status = make_surface(scan, &made.surface, error);
   if (status == SCREE_OK) status = scree_spread_make(scan, point_count, &made.spread, error);
   if (status == SCREE_OK) status = set_probes(&made, error);
   if (status == SCREE_OK)

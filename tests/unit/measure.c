@@ -511,6 +511,43 @@ static void test_oriented_box(void **state) {
 }
 
 /* Every point lies behind every face, and every face turns outward. */
+/* Two rings of very many corners, each in a plane to rounding, and one alone, which is flat; then
+ * scattered points by both ways of many and of few. */
+static void test_large_hulls(void **state) {
+  enum { RING = 30000, BALL = 6000 };
+  static vec3 points[2 * RING + 2];
+  const mat3 turn = quat_to_mat3(quat_from_rotation_vector((vec3){0.3, -0.8, 0.5}));
+  scree_rng rng = {.seed = 12};
+  scree_error error = {0};
+  scree_hull hull;
+  (void)state;
+  for (int i = 0; i < 2 * RING; i++) {
+    double angle = 2 * PI * (i / 2) / RING;
+    points[i] = mat3_mul_vec(&turn, (vec3){cos(angle), sin(angle), i % 2});
+  }
+  points[2 * RING] = (vec3){0, 0, 0};
+  points[2 * RING + 1] = mat3_mul_vec(&turn, (vec3){0, 0, 1});
+  CHECK_OK(scree_hull_build(points, 2 * RING + 2, &hull, &error), error);
+  CHECK_NEAR(hull.volume, PI, 1e-7);
+  CHECK_NEAR(hull.area, 4 * PI, 1e-6);
+  scree_hull_free(&hull);
+  for (int i = 0; i < RING; i++) points[i] = points[2 * i];
+  CHECK_OK(scree_hull_build(points, RING, &hull, &error), error);
+  assert_int_equal(hull.triangle_count, 0);
+  assert_int_equal(hull.point_count, RING);
+  scree_hull_free(&hull);
+  for (int i = 0; i < BALL; i++) points[i] = scree_rng_direction(&rng);
+  vec3 centre = {0, 0, 0};
+  CHECK_OK(scree_hull_build(points, BALL / 2, &hull, &error), error);
+  double volume = hull.volume, area = hull.area;
+  scree_hull_free(&hull);
+  for (int i = BALL / 2; i < BALL; i++) points[i] = vec3_lerp(centre, points[i - BALL / 2], 0.5);
+  CHECK_OK(scree_hull_build(points, BALL, &hull, &error), error);
+  CHECK_NEAR(hull.volume, volume, TIGHT);
+  CHECK_NEAR(hull.area, area, TIGHT);
+  scree_hull_free(&hull);
+}
+
 static void test_hull(void **state) {
   (void)state;
   scree_rng rng = {.seed = 11};
@@ -577,6 +614,7 @@ int main(void) {
       cmocka_unit_test(test_tetrahedron_box),
       cmocka_unit_test(test_oriented_box),
       cmocka_unit_test(test_hull),
+      cmocka_unit_test(test_large_hulls),
       cmocka_unit_test(test_eigen),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -9,8 +9,15 @@
 
 #include <libqhull_r/qhull_ra.h>
 
-/* qhull fails on flat input by design, and very rarely on wide merges, which Q12 allows. */
-static const char *const commands[] = {"qhull Qt Pp", "qhull Qt Q12 Pp"};
+/* qhull fails on flat input by design, and very rarely on wide merges, which Q12 allows. To merge
+ * facets is quadratic in the corners that lie in one plane, so of many points the hull is found
+ * first with each moved by some roundings (QJ), and anew of its corners, as they were, if these are
+ * not many. */
+static const char *const merged[] = {"qhull Qt Pp", "qhull Qt Q12 Pp", NULL};
+static const char *const joggled[] = {"qhull QJ Pp", NULL};
+enum { MANY = 4000 /* points; takes a second where they lie in one plane */ };
+/* Volume over area^1.5 that is rounding alone. */
+static const double FLAT = 1e-14;
 
 static bool run_qhull(qhT *qh, const vec3 *points, size_t point_count, const char *command,
                       FILE *sink) {
@@ -29,7 +36,8 @@ static void free_qhull(qhT *qh) {
 }
 
 /* qhull.h's loops, spelled out: its macros do not pass our warnings. */
-static scree_status copy_corners(qhT *qh, scree_hull *hull, scree_error *error) {
+static scree_status copy_corners(qhT *qh, const vec3 *points, scree_hull *hull,
+                                 scree_error *error) {
   size_t corner = 0, triangle = 0;
   for (vertexT *v = qh->vertex_list; v && v->next; v = v->next) hull->point_count++;
   for (facetT *f = qh->facet_list; f && f->next; f = f->next) hull->triangle_count++;
@@ -37,7 +45,7 @@ static scree_status copy_corners(qhT *qh, scree_hull *hull, scree_error *error) 
   SCREE_ALLOC_OR(hull->triangles, 3 * hull->triangle_count, error, out_of_memory);
   for (vertexT *v = qh->vertex_list; v && v->next; v = v->next) {
     v->visitid = (unsigned int)corner;
-    hull->points[corner++] = vec3_load(v->point);
+    hull->points[corner++] = points[qh_pointid(qh, v->point)];
   }
   for (facetT *f = qh->facet_list; f && f->next; f = f->next) {
     uint32_t *out = hull->triangles + 3 * triangle++;
@@ -71,8 +79,25 @@ static void measure_hull(scree_hull *hull) {
   hull->volume = scree_sum_value(volume);
 }
 
+/* Tries one command after the other; *hull stays without triangles where none will do. */
+static scree_status find_hull(const vec3 *points, size_t point_count, const char *const *commands,
+                              scree_hull *hull, scree_error *error) {
+  FILE *sink = scree_null_open();
+  if (!sink) return scree_fail(error, SCREE_IO, "cannot open the null device");
+  scree_status status = SCREE_OK;
+  for (bool done = point_count < 4; *commands && !done; commands++) {
+    qhT qh;
+    done = run_qhull(&qh, points, point_count, *commands, sink);
+    if (done) status = copy_corners(&qh, points, hull, error);
+    free_qhull(&qh);
+  }
+  fclose(sink);
+  return status;
+}
+
 static scree_status keep_all(const vec3 *points, size_t point_count, scree_hull *hull,
                              scree_error *error) {
+  scree_hull_free(hull);
   SCREE_ALLOC_OR(hull->points, point_count, error, out_of_memory);
   for (size_t i = 0; i < point_count; i++) hull->points[i] = points[i];
   hull->point_count = point_count;
@@ -84,29 +109,25 @@ out_of_memory:
 scree_status scree_hull_build(const vec3 *points, size_t point_count, scree_hull *hull,
                               scree_error *error) {
   scree_hull made = {0};
+  bool many = point_count > MANY;
   if (point_count > INT32_MAX)
     return scree_fail(error, SCREE_LIMIT, "%zu points, above the limit of %d for a convex hull",
                       point_count, INT32_MAX);
-  FILE *sink = scree_null_open();
-  if (!sink) return scree_fail(error, SCREE_IO, "cannot open the null device");
-  bool done = point_count < 4;
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < sizeof commands / sizeof *commands && !done; i++) {
-    qhT qh;
-    done = run_qhull(&qh, points, point_count, commands[i], sink);
-    if (done) status = copy_corners(&qh, &made, error);
-    free_qhull(&qh);
+  scree_status status = find_hull(points, point_count, many ? joggled : merged, &made, error);
+  if (status == SCREE_OK && many && made.point_count <= MANY) {
+    scree_hull rough = made;
+    made = (scree_hull){0};
+    status = find_hull(rough.points, rough.point_count, merged, &made, error);
+    scree_hull_free(&rough);
   }
-  fclose(sink);
-  if (status == SCREE_OK && made.triangle_count == 0)
+  if (status == SCREE_OK) measure_hull(&made);
+  if (status == SCREE_OK && !(made.volume > FLAT * made.area * sqrt(made.area)))
     status = keep_all(points, point_count, &made, error);
-  if (status != SCREE_OK) {
+  if (status == SCREE_OK)
+    *hull = made;
+  else
     scree_hull_free(&made);
-    return status;
-  }
-  measure_hull(&made);
-  *hull = made;
-  return SCREE_OK;
+  return status;
 }
 
 void scree_hull_free(scree_hull *hull) {

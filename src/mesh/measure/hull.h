@@ -15,9 +15,9 @@ typedef struct scree_hull {
   double area, volume;
 } scree_hull;
 
-/* By qhull (O(n log n) for n points, some 0.3 kB and 10 us per corner of the hull; quadratic in the
- * corners that lie in one plane, 1 s for 4,000 of them in each of two); its memory does not pass
- * through scree_alloc, and it cannot be asked to stop. Best called with points about the origin. */
+/* By qhull (O(n log n) for n points, some 0.3 kB and 10 us per corner of the hull); its memory does
+ * not pass through scree_alloc, and it cannot be asked to stop. Best called with points about the
+ * origin. */
 scree_status scree_hull_build(const vec3 *points, size_t point_count, scree_hull *hull,
                               scree_error *error);
 void scree_hull_free(scree_hull *hull);
