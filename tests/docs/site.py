@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
 """The site is built without a warning; nothing on it is missing or asked from a network: pages, anchors, styles, scripts,
-pictures; the keyboard reaches code; its search finds from disk, and no page scrolls sideways on a telephone. usage: site.py ROOT BUILD"""
+pictures; the keyboard reaches code; its search finds from disk; ten pages do not scroll sideways on a telephone and can be read and
+reached. usage: site.py ROOT BUILD"""
 import html.parser
 import os
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
 import urllib.parse
 
 root, build = sys.argv[1:]
+sys.path.insert(0, os.path.join(root, "tests", "report"))
+import browser  # noqa: E402
 
 
 class Page(html.parser.HTMLParser):
@@ -59,9 +61,25 @@ def missing(folder):
                         yield f"{at}/{name}: {url[1]} is not there"
 
 
-def look(browser, address, *options):
-    return subprocess.run([browser, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=5000", *options, "--dump-dom", address],
-                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
+def look(window, site):
+    for words, page in (("tolerance", "reference/verbs/choose.html"), ("hausdorff", "background/method.html"), ("install", "install.html"),
+                        ("windows", "install.html"), ("macos python", "install.html"), ("restit", "glossary.html")):
+        window.ask("POST", "/url", {"url": f"file://{site}/search.html?q={urllib.parse.quote(words)}"})
+        found = window.run("return [...document.querySelectorAll('#found > li > a')].map(a => a.getAttribute('href'))")
+        if page not in (link.split("#")[0] for link in found) or len(found) != len(set(found)):
+            sys.exit(f"the search for {words} finds {found[:10]}, not {page}, or one place twice")
+    window.open(f"{site}/index.html")
+    if window.run("return document.documentElement.classList.contains('no-js')"):
+        sys.exit("the theme's script does not run from disk")
+    for page in ("index", "install", "search", "background/method", "background/physics", "tutorials/own-machine", "reference/scenes",
+                 "reference/verbs/choose", "reference/formats", "reference/python"):
+        window.open(f"{site}/{page}.html")
+        for width, dark in ((400, False), (1200, True)):
+            window.look(width=width, dark=dark)
+            wide = window.run("return document.documentElement.scrollWidth")
+            barriers = window.barriers()
+            if wide > width or barriers:
+                sys.exit(f"{page} at {width}: {wide} wide; {barriers}")
 
 
 with tempfile.TemporaryDirectory() as folder:
@@ -76,24 +94,10 @@ with tempfile.TemporaryDirectory() as folder:
     count = sum(name.endswith(".html") for _, _, files in os.walk(site) for name in files)
     if len(os.listdir(f"{site}/reference/verbs")) < 15:
         sys.exit("pages of verbs are missing")
-    browser = shutil.which("chromium")
-    if not browser:
-        print(f"{count} pages; no chromium: the search is not tried")
+    lacking = browser.missing()
+    if lacking:
+        print(f"{count} pages; no {lacking}: they are not looked at")
         sys.exit(0)
-    for words, page in (("tolerance", "reference/verbs/choose.html"), ("hausdorff", "background/method.html"), ("install", "install.html"),
-                        ("windows", "install.html"), ("macos python", "install.html"), ("restit", "glossary.html")):
-        seen = look(browser, f"file://{site}/search.html?q={urllib.parse.quote(words)}")
-        found = re.findall(r'<li><a href="([^"#]*)[^"]*">', seen)
-        if page not in found or len(re.findall(r"<li><a ", seen)) != len(set(re.findall(r'<li><a href="([^"]*)"', seen))):
-            sys.exit(f"the search for {words} finds {found[:10]}, not {page}, or one place twice")
-    if 'class="no-js"' in look(browser, f"file://{site}/index.html"):
-        sys.exit("the theme's script does not run from disk")
-    # a page in a frame of 400 points tells how wide it would be
-    for page in ("index", "install", "background/physics", "reference/scenes", "reference/verbs/choose", "reference/formats"):
-        with open(f"{folder}/frame.html", "w", encoding="utf-8") as file:
-            file.write(f'<iframe id="f" src="site/{page}.html" width="400" height="800" style="border:0" onload="'
-                       "document.title = f.contentDocument.documentElement.scrollWidth\"></iframe>")
-        width = re.search(r"<title>(\d+)", look(browser, f"file://{folder}/frame.html", "--allow-file-access-from-files"))
-        if not width or int(width[1]) > 400:
-            sys.exit(f"{page} is {width[1] if width else 'not'} wide on a screen of 400")
+    with browser.Browser() as window:
+        look(window, site)
     print(f"{count} pages")

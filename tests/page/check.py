@@ -348,6 +348,8 @@ def pictures(browser):
         time.sleep(0.6)
         wide = browser.run("return document.documentElement.scrollWidth - innerWidth")
         check(wide <= 0, f"{name}: the page is {wide} pixels wider than the window")
+        barriers = browser.barriers()
+        check(not barriers, f"{name}: {barriers}")
         if KEEP:
             browser.screenshot(os.path.join(KEEP, f"{name}.png"))
     browser.look()

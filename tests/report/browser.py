@@ -1,10 +1,13 @@
 """A headless Chromium through chromedriver's W3C WebDriver protocol: only Python's own library is needed."""
 import base64
+import functools
 import json
 import os
 import shutil
 import socket
 import subprocess
+import tarfile
+import tempfile
 import time
 import urllib.error
 import urllib.request
@@ -18,6 +21,18 @@ def missing():
         if not shutil.which(program):
             return program
     return None
+
+
+@functools.cache
+def axe():
+    """The rules of accessibility by axe-core, from npm; None where that cannot be had."""
+    with tempfile.TemporaryDirectory() as folder:
+        if not shutil.which("npm") or subprocess.run(["npm", "pack", "--silent", "axe-core@4.14.1"], cwd=folder, stdout=subprocess.DEVNULL,
+                                                     stderr=subprocess.DEVNULL).returncode:
+            print("skipped: axe-core cannot be had from npm: contrast and the keyboard's reach are not tried")
+            return None
+        with tarfile.open(os.path.join(folder, "axe-core-4.14.1.tgz")) as packed:
+            return packed.extractfile("package/axe.min.js").read().decode()
 
 
 class Browser:
@@ -99,6 +114,17 @@ class Browser:
         self.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
         self.devtools("Emulation.setEmulatedMedia", features=[
             {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+
+    def barriers(self):
+        """What keeps people from reading or reaching the page, by axe-core: its serious findings and worse, as text."""
+        if not axe():
+            return []
+        self.run(axe())
+        return self.ask("POST", "/execute/async", {"args": [], "script": """
+            const done = arguments[arguments.length - 1];
+            axe.run({resultTypes: ['violations']}).then(({violations}) => done(violations
+                .filter(({impact}) => impact === 'serious' || impact === 'critical')
+                .flatMap(({id, nodes}) => nodes.map(({target, any}) => `${id}: ${target.join(' ')}: ${any[0]?.message ?? ''}`))))"""})
 
     def resting_box(self, selector):
         """Where the element is once it has been scrolled to and nothing moves it any more."""

@@ -172,7 +172,7 @@ def fingers_do(browser, slider, view, shown_as):
 
 
 def pictures(browser, name, **how):
-    """The page from another window: nothing sticks out; screenshot and print where asked for."""
+    """The page from another window: nothing sticks out, all can be read and reached; screenshot and print where asked for."""
     browser.look(**how)
     browser.wait(f"innerWidth == {how.get('width', 1200)}")
     time.sleep(0.4)  # the curve is drawn anew a little after the size has changed
@@ -181,6 +181,8 @@ def pictures(browser, name, **how):
     except AssertionError:
         wide = browser.run("return document.documentElement.scrollWidth - innerWidth")
         raise AssertionError(f"{name}: the page is {wide} pixels wider than the window") from None
+    barriers = browser.barriers()
+    check(not barriers, f"{name}: {barriers}")
     if KEEP:
         browser.screenshot(os.path.join(KEEP, f"{name}.png"))
         browser.print_pdf(os.path.join(KEEP, f"{name}.pdf"))

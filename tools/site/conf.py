@@ -107,10 +107,10 @@ def style_formulas(app, name, template, context, doctree):
         app.add_css_file("katex.min.css")
 
 
-def reach_code(app, name, template, context, doctree):
-    """Code that scrolls sideways must be reached by the keyboard."""
+def reach_what_scrolls(app, name, template, context, doctree):
+    """Code, tables and formulas that scroll sideways must be reached by the keyboard."""
     if "body" in context:
-        context["body"] = context["body"].replace("<pre>", '<pre tabindex="0">')
+        context["body"] = re.sub('<(pre(?=>)|div(?= class="table-wrapper)|span(?= class="katex-display))', r'<\1 tabindex="0"', context["body"])
 
 
 def set_before(translator, node):
@@ -122,5 +122,5 @@ def setup(app):
     app.connect("doctree-resolved", gather_sections, priority=400)
     app.connect("doctree-resolved", set_formulas, priority=500)
     app.connect("html-page-context", style_formulas)
-    app.connect("html-page-context", reach_code)
+    app.connect("html-page-context", reach_what_scrolls)
     app.connect("build-finished", finish)
