@@ -72,7 +72,7 @@ static void print_header(const table *t) {
            distance ? ",forward_mean,forward_max,backward_mean,backward_max,hausdorff" : "");
     return;
   }
-  printf("%9s %9s %10s %10s %9s %9s %9s %9s%s\n", "triangles", "Rp", "S (cm2)", "V (cm3)", "eps_s",
+  printf("%9s %9s %9s %9s %9s %9s %9s %8s%s\n", "triangles", "Rp", "S (cm2)", "V (cm3)", "eps_s",
          "eps_v", "Ip", "Q (mm)",
          distance ? "  mean (mm)  max (mm) mean back  max back Hausdorff" : "");
 }
@@ -83,7 +83,7 @@ static void print_row(const table *t, const scree_curve_row *row) {
   bool csv = t->arguments->csv;
   cli_terminal_end();
   printf(csv ? "%zu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g"
-             : "%9zu %9.3g %10.4g %10.4g %9.3g %9.2g %9.4g %9.3g",
+             : "%9zu %9.3g %9.4g %9.4g %9.3g %9.2g %9.4g %8.3g",
          level->triangle_count, level->rp, level->area * (csv ? 1 : 1e4),
          level->volume * (csv ? 1 : 1e6), row->eps_s, row->eps_v, row->ip,
          level->quadric_error * (csv ? 1 : 1e3));

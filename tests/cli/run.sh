@@ -4,7 +4,7 @@
 # exit codes must be, as the script's own output (2>&1). UPDATE=1 writes it anew.
 # usage: run.sh PROGRAM SCRIPT
 set -u
-SCREE=$1
+SCREE=$(realpath "$1")
 script=$2
 here=$(cd "$(dirname "$script")" && pwd)
 script=$here/$(basename "$script")

@@ -62,3 +62,8 @@ run drop sphere:40mm --width 3bananas 2>&1 | sed -n 2p
 # what cannot be meant is named
 "$SCREE" repose --print --young 1e13 --friction 50 --density 2.65 2>&1 >/dev/null
 "$SCREE" repose --print --young 1e13 -q 2>&1 >/dev/null
+
+# a decimal comma is told as one
+for words in 'choose sample:box --tolerance mean=0,1%' 'simplify ball.stl --rp 0,1% -o no.off' 'drop sphere:40mm --friction 0,3' 'repose sample:box --friction 0,3'; do
+  run $words 2>&1 | sed -n 2p
+done
