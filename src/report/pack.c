@@ -80,7 +80,10 @@ scree_status scree_pack_mesh(scree_packing *p, const scree_mesh *mesh, uint32_t 
   SCREE_ALLOC_OR(order, vertex_count, p->error, done);
   SCREE_ALLOC_OR(corners, corner_count, p->error, done);
   SCREE_ALLOC_OR(points, vertex_count, p->error, done);
-  meshopt_optimizeVertexCache(corners, mesh->triangles, corner_count, vertex_count);
+  if (p->keeps_order)
+    memcpy(corners, mesh->triangles, corner_count * sizeof *corners);
+  else
+    meshopt_optimizeVertexCache(corners, mesh->triangles, corner_count, vertex_count);
   size_t used = meshopt_optimizeVertexFetchRemap(order, corners, corner_count, vertex_count);
   meshopt_remapIndexBuffer(corners, corners, corner_count, order);
   for (size_t v = 0; v < vertex_count; v++)

@@ -10,6 +10,7 @@
 typedef struct scree_packing {
   scree_codec out;     /* grown; the caller frees its bytes */
   double low[3], step; /* m: position = low + step * (integers up to 65535) */
+  bool keeps_order;    /* of triangles, at the price of some bytes */
   scree_error *error;
 } scree_packing;
 
@@ -27,8 +28,8 @@ void scree_pack_u32(scree_packing *p, size_t value);
 /* `count` records of `size` bytes, a multiple of 4 up to 256, of which neighbours are alike; their
  * bytes before them. */
 scree_status scree_pack_vertices(scree_packing *p, const void *vertices, size_t count, size_t size);
-/* A mesh in an order that packs well; place (vertex_count, may be NULL) gets each vertex's index in
- * it. The counts, then vertices, then triangles. */
+/* A mesh in an order that packs well, or its own (keeps_order); place (vertex_count, may be NULL)
+ * gets each vertex's index in it. The counts, then vertices, then triangles. */
 scree_status scree_pack_mesh(scree_packing *p, const scree_mesh *mesh, uint32_t *place);
 
 #endif

@@ -151,6 +151,47 @@ static scree_status put_surface(pile *p, const char *name, size_t triangle_count
   return scree_pack_mesh(&p->pack, mesh, NULL);
 }
 
+/* One map of a wall, the numbers of its drawn triangles on a grid from the least to the most;
+ * nothing where there is none yet. */
+static scree_status put_map(pile *p, size_t wall, scree_wall_map map, double *values,
+                            size_t triangles, size_t *count) {
+  const size_t cells = scree_scene_wall_cells(p->scene, wall);
+  double low = 0, high = 0;
+  if (!scree_scene_wall_map(p->scene, wall, map, values)) return SCREE_OK;
+  for (size_t t = 0; t < cells; t++) {
+    if (isnan(values[t])) return SCREE_OK;
+    low = fmin(low, values[t]), high = fmax(high, values[t]);
+  }
+  uint16_t(*steps)[2] = scree_alloc_zero(triangles, sizeof *steps); /* the codec wants 4 bytes */
+  if (!steps) return scree_fail_memory(p->pack.error, triangles * sizeof *steps, "a wall's map");
+  for (size_t t = 0; high > low && t < triangles; t++)
+    steps[t][0] =
+        (uint16_t)lrint(65535 * (values[cells == triangles ? t : 0] - low) / (high - low));
+  put_name(&p->pack, scree_wall_map_name(map));
+  put_name(&p->pack, scree_wall_map_unit(map));
+  scree_code_real(&p->pack.out, &low);
+  scree_code_real(&p->pack.out, &high);
+  scree_status status = scree_pack_vertices(&p->pack, steps, triangles, sizeof *steps);
+  scree_free(steps);
+  (*count)++;
+  return status;
+}
+
+/* Their number stands before them. */
+static scree_status put_maps(pile *p, size_t wall, size_t triangles) {
+  const size_t at = p->pack.out.count, cells = scree_scene_wall_cells(p->scene, wall);
+  size_t count = 0;
+  scree_status status = SCREE_OK;
+  double *values = scree_alloc(cells, sizeof *values);
+  if (!values) return scree_fail_memory(p->pack.error, cells * sizeof *values, "a wall's map");
+  scree_pack_u32(&p->pack, 0);
+  for (int m = 0; status == SCREE_OK && m < SCREE_MAP_COUNT; m++)
+    status = put_map(p, wall, (scree_wall_map)m, values, triangles, &count);
+  if (scree_codec_good(&p->pack.out)) p->pack.out.bytes[at] = (unsigned char)count;
+  scree_free(values);
+  return status;
+}
+
 /* What of a cylinder stands above all bodies ever is not drawn: it may be very long. */
 static void cut_off(const pile *p, const scree_wall *wall, scree_mesh *mesh) {
   const scree_motion *m = &p->motion;
@@ -178,7 +219,10 @@ static scree_status put_walls(pile *p) {
     scree_pack_u32(&p->pack, endless);
     status = scree_wall_mesh(p->world, w, &mesh, p->pack.error);
     if (wall.kind == SCREE_WALL_CYLINDER && status == SCREE_OK) cut_off(p, &wall, &mesh);
+    p->pack.keeps_order = true;
     if (status == SCREE_OK) status = put_surface(p, name, mesh.triangle_count, &mesh);
+    if (status == SCREE_OK) status = put_maps(p, w, mesh.triangle_count);
+    p->pack.keeps_order = false;
     scree_mesh_free(&mesh);
   }
   return status;

@@ -110,6 +110,7 @@ static void json_parts(scree_json *json, const scree_scene *scene) {
   for (size_t i = 0; scree_scene_shape_name(scene, i); i++) {
     scree_json_object(json, NULL);
     scree_json_text(json, "name", scree_scene_shape_name(scene, i));
+    scree_json_text(json, "family", scree_scene_shape_family(scene, i));
     scree_json_text(json, "source", scree_scene_shape_source(scene, i));
     scree_shape_json(json, scree_scene_shape_particle(scene, i));
     scree_json_end(json);

@@ -319,6 +319,12 @@ def seek(browser, moment):
     return float(browser.run("return document.body.dataset.shownTime")), int(browser.run("return document.body.dataset.shownBodies"))
 
 
+def begins_and_plays(browser):
+    """A scene's page begins at the start and plays by itself; answers the end's time and bodies."""
+    browser.wait("Number(document.body.dataset.shownTime) > 0")
+    return seek(browser, int(browser.run("return document.querySelector('.time').max")))
+
+
 def a_heap(browser, folder):
     scree("repose", "sample:fp-1", "sample:sp-1", "--resolution", "3mm", "-r", "1e-2", "--particles", "24", "--pack-time", "1", "--cylinder", "0.2", "--angles", "0.1",
           "--settle-time", "0.2", "--lift-time", "1.5", "--hold-time", "0.3", "--drop-height", "0.05", "-o", "heap", folder=folder)
@@ -332,8 +338,8 @@ def a_heap(browser, folder):
         check(part in text, f"the heap does not say: {part}")
     angles = next(column["values"] for column in result["columns"] if column["name"] == "heap.sector_deg")
     check(("heap: sector deg" in text) == any(angles), "angles are drawn where there are some, and only there")  # so few give none
-    end, count = float(browser.run("return document.body.dataset.shownTime")), int(browser.run("return document.body.dataset.shownBodies"))
-    check(abs(end - result["time"]) < 1e-9 and count == result["book"]["inside_count"], "the page does not begin at the end")
+    end, count = begins_and_plays(browser)
+    check(abs(end - result["time"]) < 1e-9 and count == result["book"]["inside_count"], "the slider does not go to the end")
     last = painted(browser, 0)
     check(last["covered"] > 40 and last["colors"] > 5, f"no heap to be seen: {last}")
     check(browser.run("return document.querySelectorAll('body > img').length") == 0, "the picture is shown beside the 3D view")
@@ -403,8 +409,8 @@ def a_pour(browser, folder):
     for part in ("drop into a box", "9 particles came in", "sphere:30mm",
                  "Energy of motion", "How this was made", "--container box"):
         check(part in text, f"the pour does not say: {part}")
-    end = float(browser.run("return document.body.dataset.shownTime"))
-    check(abs(end - pour["time"]) < 1e-9, "the page does not begin at the end")
+    end, _ = begins_and_plays(browser)
+    check(abs(end - pour["time"]) < 1e-9, "the slider does not go to the end")
     check(int(browser.run("return document.body.dataset.shownBodies")) == 9, "a particle is missing")
     last = painted(browser, 0)
     check(last["covered"] > 100 and last["colors"] > 5, f"no pour to be seen: {last}")
@@ -417,6 +423,75 @@ def a_pour(browser, folder):
     pictures(browser, "pour-phone", width=390, height=844)
     browser.look()
     return page
+
+
+MACHINE = """
+title: A bin
+time: 0.6
+materials: {m: {young: 1e6, density: 1500, restitution: 0.2, friction: 0.4}}
+shapes: {grain: {material: m, size: {distribution: [[8 mm, 0.5], [14 mm, 0.5]]}}, brick: {box: [0.01, 0.012, 0.016], material: m}}
+geometry: {bin: {file: bin.obj, unit: m, material: m}}
+inlets: {i: {box: {min: [-0.04, -0.04, 0.02], max: [0.04, 0.04, 0.2]}, shapes: {grain: 1, brick: 1}, count: 60}}
+domain: {min: [-1, -1, -1], max: [1, 1, 1]}
+sensors: {load: {wall: bin, from: 0.3}}
+output: {series: 0.02, motion: 0.02}
+"""
+
+
+def choose(browser, label, text):
+    """Picks an option by its text; answers what there are."""
+    return browser.run("""
+      const choice = [...document.querySelectorAll('.controls label')].find((l) => l.textContent.startsWith(arguments[0])).querySelector('select');
+      const options = [...choice.options].map((o) => o.textContent);
+      choice.value = options.indexOf(arguments[1]);
+      choice.dispatchEvent(new Event('change'));
+      return options;""", label, text)
+
+
+def a_machine(browser, folder):
+    """A bin without a lid, split into squares: colours of particles and walls with their legends, the cut, the table of sensors."""
+    side, n = 0.1, 5
+    faces = [((0, 0, 0), (1, 0, 0), (0, 1, 0))] + [((0, 0, 0), (1, 0, 0), (0, 0, 1)), ((0, 1, 0), (1, 0, 0), (0, 0, 1)),
+                                                   ((0, 0, 0), (0, 1, 0), (0, 0, 1)), ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+    with open(os.path.join(folder, "bin.obj"), "w", encoding="utf-8") as file:
+        count = 0
+        for origin, u, v in faces:
+            for i in range(n):
+                for j in range(n):
+                    for a, b in ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)):
+                        x, y, z = (side * (o + (a * p + b * q) / n) for o, p, q in zip(origin, u, v))
+                        file.write(f"v {x - side / 2} {y - side / 2} {z}\n")
+                    file.write(f"f {count + 1} {count + 2} {count + 3}\nf {count + 1} {count + 3} {count + 4}\n")
+                    count += 4
+    with open(os.path.join(folder, "bin.yaml"), "w", encoding="utf-8") as file:
+        file.write(MACHINE)
+    scree("run", "bin.yaml", "-o", "bin", "--no-picture", folder=folder)
+    ready(browser, os.path.join(folder, "bin", "report.html"))
+    begins_and_plays(browser)
+    check(choose(browser, "Particles by", "shape") == ["shape", "class", "speed", "time since it came in", "size"], "a colouring is missing")
+    check(choose(browser, "Walls by", "nothing, seen through")[1:] == ["pressure", "shear", "wear"], "a map is missing, or one that is empty is offered")
+    check(browser.text(".ruler").endswith(" mm"), "there is no scale bar")
+    for label, text, legend in (("Particles by", "class", "grain"), ("Particles by", "speed", "speed / m/s: 0"), ("Particles by", "size", "size / mm: 8"),
+                                ("Particles by", "time since it came in", "time since it came in / s"), ("Walls by", "pressure", "pressure / Pa: 0"), ("Walls by", "wear", "wear / J/m2")):
+        before = painted(browser, 0)
+        choose(browser, label, text)
+        redrawn(browser, 0, before, f"{label} {text} changes nothing")
+        check(legend in browser.text(".legend"), f"the legend of {text} says {browser.text('.legend')}")
+    for i in range(2):  # the walls alone, then the particles too
+        before = painted(browser, 0)
+        browser.run("const [range, box] = document.querySelectorAll('.controls input'); if (arguments[0]) box.click(); else { range.value = 0.6; range.dispatchEvent(new Event('input')); }", i)
+        redrawn(browser, 0, before, "the cut shows nothing new")
+    text = browser.text("main")
+    for part in ("load: highest pressure", "from 0.3 s on", "Zero throughout", "sd"):
+        check(part in text, f"the table does not say: {part}")
+    check(browser.run("return document.querySelectorAll('td svg polyline').length") > 5, "the table has no curves")
+    then = browser.run("return document.querySelector('tbody td:nth-child(3)').textContent")
+    seek(browser, 5)
+    check(browser.run("return document.querySelector('tbody td:nth-child(3)').textContent") != then, "the table does not follow the time")
+    no_complaints(browser, "a machine")
+    pictures(browser, "machine")
+    pictures(browser, "machine-phone", width=400, height=844)
+    browser.look()
 
 
 def a_real_study(browser, folder):
@@ -546,6 +621,7 @@ def main():
             a_study(browser, folder)
             heap = a_heap(browser, folder)
             pour = a_pour(browser, folder)
+            a_machine(browser, folder)
             a_real_study(browser, folder)
             a_study_of_a_scene(browser, folder)
             a_large_page(browser, folder)

@@ -3,6 +3,7 @@ import { Box3, Quaternion, Vector3 } from '../src/pile.js';
 import { Cancelled, Engine } from './engine.js';
 import { equipment } from './equipment.js';
 import { PileView, setShapeColors, shapeColor } from '../src/pile.js';
+import { swatch } from '../src/view.js';
 import { counted, element, number, whole } from '../src/text.js';
 
 const samples = ['fp-1', 'dc-1', 'sp-1'];
@@ -31,14 +32,17 @@ class LivePile {
     this.wallCount = walls.length;
     this.walls = container ? [{ endless: false, mesh: tube(container.width / 2, container.sides) }] : walls;
     this.fixed = Boolean(container);
-    Object.assign(this, { capacity: count, entered: 0, poses: null, bodies: surfaces.map(() => []) });
+    Object.assign(this, { capacity: count, entered: 0, poses: null, shapeOf: [], bodies: surfaces.map(() => []) });
   }
   // Of a shape those that have entered: the view keeps this list.
   bodiesOf(shape) {
     return this.bodies[shape];
   }
   enter({ poses, entered, shapeOf }) {
-    for (let body = this.entered; body < entered; body++) this.bodies[shapeOf[body]].push(body);
+    for (let body = this.entered; body < entered; body++) {
+      this.bodies[shapeOf[body]].push(body);
+      this.shapeOf[body] = shapeOf[body];
+    }
     Object.assign(this, { poses, entered });
   }
   momentAt() {
@@ -183,14 +187,7 @@ export class PourTab {
 
   tellLegend(shapes, { surfaces, step }) {
     this.legend.replaceChildren();
-    shapes.forEach(({ name }, k) => {
-      const item = element('span', null, this.legend);
-      const swatch = element('canvas', null, item, { width: 12, height: 12, 'aria-hidden': 'true' });
-      const context = swatch.getContext('2d');
-      context.fillStyle = shapeColor(k);
-      context.fillRect(0, 0, 12, 12);
-      item.append(` ${name}, ${whole(surfaces[k].triangles.length / 3)} triangles`);
-    });
+    shapes.forEach(({ name }, k) => swatch(this.legend, shapeColor(k), `${name}, ${whole(surfaces[k].triangles.length / 3)} triangles`));
     element('span', `time step ${number(step * 1e6, 3)} µs`, this.legend);
   }
 

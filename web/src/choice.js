@@ -4,7 +4,7 @@ import { Chart, palette } from './chart.js';
 import { Levels } from './levels.js';
 import { holds } from './packed.js';
 import { element, folded, number, percent, rpText, saveButton, table, whole } from './text.js';
-import { View, link, mostEdgeTriangles, rampColor } from './view.js';
+import { View, link, mostEdgeTriangles, rampBar } from './view.js';
 
 const mm = 1000;
 const shownSamples = 24000; // small triangles that carry the distance colours
@@ -196,12 +196,7 @@ export class ChoiceSection {
     home.addEventListener('click', () => this.levelView.home());
     this.scale = element('span', null, controls, { class: 'scale', hidden: '' });
     element('span', '0', this.scale);
-    const bar = element('canvas', null, this.scale, { width: 128, height: 12, class: 'scale-bar', role: 'img', 'aria-label': 'colour scale' });
-    const context = bar.getContext('2d');
-    for (let i = 0; i < 128; i++) {
-      context.fillStyle = `rgb(${rampColor(i / 127)})`;
-      context.fillRect(i, 0, 1, 12);
-    }
+    rampBar(this.scale);
     this.scaleHigh = element('span', null, this.scale);
     element('p', 'Turn with mouse or finger, or with the arrow keys once a view has the focus; plus and minus move nearer and away.', this.viewsHost, { class: 'soft hint' });
   }

@@ -1,9 +1,10 @@
 // A pile (docs/reference/formats.md): its shapes, where its bodies were at moments of the run, and of a scene where its walls
 // were; and the 3D view that plays it. Between two moments bodies go straight and turn evenly.
 import {
-  Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, InstancedMesh, Matrix4, Mesh, MeshStandardMaterial,
-  Quaternion, Vector3,
+  Box3, BufferAttribute, BufferGeometry, DoubleSide, Group, InstancedMesh, MathUtils, Matrix4, Mesh, MeshStandardMaterial,
+  Plane, Quaternion, Vector3,
 } from 'three';
+import { bodyPaints, byShape, tellPaint, wallPaints } from './paint.js';
 import { Reader, decodeMesh, decodeVertices } from './packed.js';
 import { counted, element, number, whole } from './text.js';
 import { View, corners } from './view.js';
@@ -27,7 +28,15 @@ export class Pile {
       for (let i = 0; i < mesh.points.length; i++) mesh.points[i] = grid.low[i % 3] + grid.step * mesh.points[i];
       return { name, triangleCount, mesh };
     };
-    this.walls = Array.from({ length: reader.u32() }, () => ({ endless: reader.u32() > 0, ...surface() }));
+    const map = (count) => {
+      const name = reader.text(), unit = reader.text(), low = reader.real(), high = reader.real();
+      const steps = new Uint16Array(decodeVertices(reader.buffer(), count, 4));
+      return { name, unit, values: Float32Array.from({ length: count }, (_, t) => low + ((high - low) * steps[2 * t]) / 65535) };
+    };
+    this.walls = Array.from({ length: reader.u32() }, () => {
+      const wall = { endless: reader.u32() > 0, ...surface() };
+      return { ...wall, maps: Array.from({ length: reader.u32() }, () => map(wall.mesh.triangles.length / 3)) };
+    });
     this.shapes = Array.from({ length: reader.u32() }, surface);
     this.bodyCount = reader.u32();
     this.shapeOf = new Uint32Array(decodeVertices(reader.buffer(), this.bodyCount, 4));
@@ -75,6 +84,21 @@ export class Pile {
     return true;
   }
 
+  // m/s, the mean between the moments about a time; 0 where it is not there at both.
+  speed(body, { moment, next }) {
+    const { places, times } = this;
+    const a = 8 * (body * times.length + moment), b = 8 * (body * times.length + next);
+    if (next === moment || !places[a + 3] || !places[b + 3]) return 0;
+    return (this.step * Math.hypot(...[0, 1, 2].map((k) => places[b + k] - places[a + k]))) / (times[next] - times[moment]);
+  }
+
+  // s, since the first moment at which it is there.
+  age(body, time) {
+    const { places, times } = this;
+    this.first ??= new Float64Array(this.bodyCount).map((_, i) => times[times.findIndex((_, k) => places[8 * (i * times.length + k) + 3])] ?? Infinity);
+    return Math.max(0, time - this.first[body]);
+  }
+
   // Position and quaternion of a wall of a scene.
   wallPose(wall, { moment, next, part }, position, quaternion) {
     const a = wall.poses[moment], b = wall.poses[next];
@@ -115,16 +139,22 @@ function geometryOf(mesh) {
 export class PileView extends View {
   constructor(host, label) {
     super(host, label, [2.2, -3.4, 1.5]);
+    this.renderer.localClippingEnabled = true;
+    this.ruler = element('div', null, host, { class: 'ruler' });
+    this.cut = { share: 0, bodies: false };
+    this.plane = new Plane();
   }
 
   set(pile) {
     this.clear();
     this.pile = pile;
     const group = new Group();
+    this.group = group;
+    this.paint = byShape(pile);
     const fit = this.setScene(group);
     this.instances = pile.shapes.map((shape, k) => {
       const bodies = pile.bodiesOf(k);
-      const drawn = new InstancedMesh(geometryOf(shape.mesh), new MeshStandardMaterial({ color: new Color(shapeColor(k)), flatShading: true, roughness: 0.8 }), pile.capacity ?? bodies.length);
+      const drawn = new InstancedMesh(geometryOf(shape.mesh), new MeshStandardMaterial({ flatShading: true, roughness: 0.8, side: DoubleSide }), pile.capacity ?? bodies.length);
       drawn.frustumCulled = false;
       group.add(drawn);
       return { drawn, bodies };
@@ -142,16 +172,61 @@ export class PileView extends View {
     group.scale.setScalar(scale);
     group.position.copy(middle).multiplyScalar(-scale);
     this.walls = pile.walls.map((wall) => {
-      const drawn = new Mesh(geometryOf(wall.mesh), new MeshStandardMaterial({ color: 0x8899bb, transparent: true, opacity: wall.endless ? 0.08 : 0.2, side: DoubleSide, depthWrite: false, flatShading: true }));
+      const drawn = new Mesh(geometryOf(wall.mesh), new MeshStandardMaterial({ transparent: true, side: DoubleSide, flatShading: true }));
       drawn.renderOrder = 1;
       group.add(drawn);
       return { wall, drawn };
     });
+    this.paintWalls(null);
     return corners(box.min.toArray(), box.max.toArray()).map((corner) => corner.sub(middle).multiplyScalar(scale));
   }
 
+  // By one of wallPaints: walls that have the map are opaque; null: all are seen through.
+  paintWalls(paint) {
+    for (const { wall, drawn } of this.walls) {
+      const map = paint && wall.maps.find(({ name }) => name === paint.name), { material } = drawn;
+      if (map) {
+        const geometry = geometryOf(wall.mesh).toNonIndexed(), colors = new Float32Array(9 * map.values.length);
+        map.values.forEach((value, t) => [0, 3, 6].forEach((k) => paint.color(value).toArray(colors, 9 * t + k)));
+        geometry.setAttribute('color', new BufferAttribute(colors, 3));
+        drawn.geometry.dispose();
+        drawn.geometry = geometry;
+      }
+      material.color.set(map ? 0xffffff : 0x8899bb);
+      material.opacity = map ? 1 : wall.endless ? 0.08 : 0.2;
+      material.depthWrite = material.vertexColors = Boolean(map);
+      material.needsUpdate = true;
+    }
+  }
+
+  // What is nearer than the plane across the view is left out: of walls, and with `bodies` of these too.
+  draw() {
+    if (this.group && this.outline.length) {
+      const { share, bodies } = this.cut, { camera, plane } = this;
+      const along = camera.getWorldDirection(plane.normal).setZ(0);
+      if (along.lengthSq() < 1e-6) along.set(0, 1, 0);
+      const reach = this.outline.map((p) => p.dot(along.normalize()));
+      plane.constant = -MathUtils.lerp(Math.min(...reach), Math.max(...reach), share);
+      const planes = share > 0 ? [plane] : [];
+      for (const { drawn } of this.walls) drawn.material.clippingPlanes = planes;
+      for (const { drawn } of this.instances ?? []) drawn.material.clippingPlanes = bodies ? planes : [];
+      this.measure();
+    }
+    super.draw();
+  }
+
+  // A length of 1, 2 or 5 as it is seen in the middle, at most a quarter of the picture.
+  measure() {
+    const { camera, controls, host, ruler } = this;
+    const across = 2 * Math.tan(MathUtils.degToRad(camera.fov / 2)) * camera.position.distanceTo(controls.target);
+    const metre = (host.clientHeight / across) * this.group.scale.x, room = host.clientWidth / 4 / metre;
+    const power = 10 ** Math.floor(Math.log10(room)), length = power * [5, 2, 1].find((n) => n * power <= room);
+    ruler.style.width = `${length * metre}px`;
+    ruler.textContent = length < 1e-3 ? `${number(1e6 * length)} µm` : length < 1 ? `${number(1e3 * length)} mm` : `${number(length)} m`;
+  }
+
   showTime(time) {
-    const { pile } = this;
+    const { pile, paint } = this;
     const at = pile.momentAt(time);
     const position = new Vector3(), turn = new Quaternion(), one = new Vector3(1, 1, 1), matrix = new Matrix4();
     let count = 0;
@@ -159,10 +234,12 @@ export class PileView extends View {
       let there = 0;
       for (const body of bodies) {
         if (!pile.pose(body, at, position, turn)) continue;
+        drawn.setColorAt(there, paint.color(body, at, time));
         drawn.setMatrixAt(there++, matrix.compose(position, turn, one));
       }
       drawn.count = there;
       drawn.instanceMatrix.needsUpdate = true;
+      if (drawn.instanceColor) drawn.instanceColor.needsUpdate = true;
       count += there;
     }
     for (const { wall, drawn } of this.walls) pile.wallPose(wall, at, drawn.position, drawn.quaternion);
@@ -176,10 +253,10 @@ const calm = matchMedia('(prefers-reduced-motion: reduce)');
 const calmPause = 500; // ms between moments where less motion is wanted
 
 // View, slider of time and buttons. onTime(time) follows; told(time) says what goes on then; picture: an <img> shown
-// where there is no WebGL.
+// where there is no WebGL; plays: from the start once it is seen, else it begins at the end.
 export class PilePlayer {
-  constructor(host, { onTime = () => {}, told = () => '', picture = null, label = 'The pile in 3D' } = {}) {
-    Object.assign(this, { host, onTime, told, time: 0, speed: 1, playing: false });
+  constructor(host, { onTime = () => {}, told = () => '', picture = null, label = 'The pile in 3D', plays = false } = {}) {
+    Object.assign(this, { host, onTime, told, plays, time: 0, speed: 1, playing: false });
     this.box = element('div', null, host, { class: 'pile' });
     const figure = element('figure', null, this.box, { class: 'view' });
     const viewHost = element('div', null, figure);
@@ -214,6 +291,7 @@ export class PilePlayer {
     choice.addEventListener('change', () => {
       this.speed = Number(choice.value);
     });
+    this.speedChoice = choice;
     element('button', 'Turn back', controls, { type: 'button' }).addEventListener('click', () => this.view.home());
     const sliderLabel = element('label', 'Time', this.box, { class: 'soft' });
     this.slider = element('input', null, sliderLabel, { type: 'range', min: 0, step: 1, class: 'slider time' });
@@ -221,11 +299,46 @@ export class PilePlayer {
       this.stop();
       this.goTo(this.pile.times[Number(this.slider.value)]);
     });
+    this.looks = element('div', null, this.box, { class: 'controls' });
+    this.legend = element('p', null, this.box, { class: 'legend' });
     this.text = element('p', null, this.box, { class: 'level-text', 'aria-live': 'off' });
     element('p', 'Space plays and stops; on the time slider the arrow keys go from moment to moment. Turn with mouse or finger, or with the arrow keys once the view has the focus; plus and minus move nearer and away.', this.box, { class: 'soft hint' });
   }
 
-  show(pile) {
+  // What bodies and walls are coloured by, and the cut; shapes: as bodyPaints.
+  offerLooks(shapes) {
+    const { view, pile, looks } = this;
+    const seen = [byShape(pile), null];
+    const repaint = () => {
+      this.legend.replaceChildren();
+      seen.filter(Boolean).forEach((paint) => tellPaint(this.legend, paint));
+      this.goTo(this.time);
+    };
+    const select = (label, names, pick) => {
+      const choice = element('select', null, element('label', `${label} `, looks));
+      names.forEach((name, i) => element('option', name, choice, { value: i }));
+      choice.addEventListener('change', () => {
+        pick(Number(choice.value));
+        repaint();
+      });
+    };
+    looks.replaceChildren();
+    const bodies = shapes ? bodyPaints(pile, shapes) : [seen[0]], walls = wallPaints(pile);
+    if (bodies.length > 1) select('Particles by', bodies.map(({ name }) => name), (i) => { view.paint = seen[0] = bodies[i]; });
+    if (walls.length) select('Walls by', ['nothing, seen through', ...walls.map(({ name }) => name)], (i) => view.paintWalls(seen[1] = walls[i - 1] ?? null));
+    if (pile.walls.length) {
+      const slider = element('input', null, element('label', 'Cut away ', looks), { type: 'range', min: 0, max: 1, step: 0.01, value: 0 });
+      const through = element('label', null, looks), box = element('input', null, through, { type: 'checkbox' });
+      through.append(' particles too');
+      for (const input of [slider, box]) input.addEventListener('input', () => {
+        view.cut = { share: Number(slider.value), bodies: box.checked };
+        view.draw();
+      });
+    }
+    repaint();
+  }
+
+  show(pile, shapes) {
     if (!this.view) return;
     this.stop();
     this.pile = pile;
@@ -236,7 +349,23 @@ export class PilePlayer {
     const drawn = pile.shapes.filter(({ mesh, triangleCount }) => triangleCount > mesh.triangles.length / 3);
     this.note = drawn.length ? `; drawn with up to ${whole(Math.max(...drawn.map(({ mesh }) => mesh.triangles.length / 3)))} triangles a particle, simulated with up to ${whole(Math.max(...pile.shapes.map((s) => s.triangleCount)))}` : '';
     if (single) this.note += '; only its end was recorded';
-    this.goTo(pile.end);
+    this.time = this.plays ? pile.times[0] : pile.end;
+    this.offerLooks(shapes);
+    if (this.plays && !single) this.playOnceSeen();
+  }
+
+  // At the speed that comes next to ten seconds in all.
+  playOnceSeen() {
+    const off = (speed) => Math.abs(Math.log(this.pile.end / speed / 10));
+    this.speed = [...speeds].sort((a, b) => off(a) - off(b))[0];
+    this.speedChoice.value = this.speed;
+    if (calm.matches) return;
+    const watcher = new IntersectionObserver(([{ isIntersecting }]) => {
+      if (!isIntersecting) return;
+      watcher.disconnect();
+      this.play();
+    });
+    watcher.observe(this.box);
   }
 
   // In place of a pile that is not in the page.

@@ -2,7 +2,7 @@
 // values.
 import { Chart, palette } from './chart.js';
 import { holds } from './packed.js';
-import { Pile, PilePlayer, shapeColor } from './pile.js';
+import { Pile, PilePlayer } from './pile.js';
 import { element, number, saveButton, table } from './text.js';
 
 export const known = (x) => x !== null && x !== undefined && Number.isFinite(x);
@@ -18,6 +18,7 @@ export class PlayedSection {
     this.player = new PilePlayer(element('div', null, this.host), {
       picture: document.getElementById(picture),
       label,
+      plays: true,
       told: (time) => this.toldAt(time),
       onTime: () => this.markTime(),
     });
@@ -26,20 +27,8 @@ export class PlayedSection {
   // The pile, where the page holds it.
   play(id) {
     if (!this.player.view) return;
-    if (holds(id)) this.player.show(new Pile(id));
+    if (holds(id)) this.player.show(new Pile(id), this.scene.shapes);
     else this.player.lack();
-  }
-
-  tellShapes(names) {
-    const list = element('p', null, this.player.box, { class: 'legend' });
-    names.forEach((name, k) => {
-      const item = element('span', null, list);
-      const swatch = element('canvas', null, item, { width: 12, height: 12, 'aria-hidden': 'true' });
-      const context = swatch.getContext('2d');
-      context.fillStyle = shapeColor(k);
-      context.fillRect(0, 0, 12, 12);
-      item.append(` ${name}`);
-    });
   }
 
   // The last point of the series at a time or before it; -1 where there is none.
@@ -98,7 +87,7 @@ export class PlayedSection {
       { head: 'shape', value: (s) => s.name }, ...extra, { head: 'kind', value: (s) => s.kind }, { head: 'triangles', value: (s) => s.triangle_count, text: (s) => s.triangle_count.toLocaleString('en') },
       { head: 'volume / mm³', value: (s) => s.volume * 1e9, text: (s) => number(s.volume * 1e9, 5) }, { head: 'size / mm', value: (s) => s.size * 1000, text: (s) => number(s.size * 1000, 4) },
       { head: 'source', value: (s) => s.source },
-    ], shapes, `${this.name}-shapes.csv`, 'Shapes').classList.add('sources');
+    ], shapes, `${this.name}-shapes.csv`, 'Shapes').classList.toggle('sources', shapes.some(({ source }) => source));
   }
 
   // Every field of the objects, nested ones with a dot.

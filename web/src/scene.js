@@ -1,7 +1,25 @@
 // The section of one scene (result.json with scene.yaml, docs/reference/formats.md): its bodies and walls to play, what its
 // sensors read beside them.
 import { PlayedSection, known } from './played.js';
-import { counted, element, number, whole } from './text.js';
+import { counted, element, folded, number, table, whole } from './text.js';
+
+const sparkWidth = 96, sparkHeight = 20;
+
+// A small curve without axes; answers its mark, which is moved along x.
+function spark(host, times, values) {
+  const made = (tag, parent, attributes) => {
+    const part = document.createElementNS('http://www.w3.org/2000/svg', tag);
+    Object.entries(attributes).forEach(([key, value]) => part.setAttribute(key, value));
+    parent.append(part);
+    return part;
+  };
+  const there = values.filter(known), low = Math.min(...there), high = Math.max(...there), end = times.at(-1) || 1;
+  const points = values.map((v, i) => (known(v) ? `${(sparkWidth * times[i]) / end},${sparkHeight - 1 - ((sparkHeight - 2) * (v - low)) / (high - low || 1)}` : '')).filter(Boolean);
+  host.replaceChildren();
+  const svg = made('svg', host, { width: sparkWidth, height: sparkHeight, role: 'img', 'aria-label': `from ${number(there[0], 3)} to ${number(there.at(-1), 3)}` });
+  made('polyline', svg, { points: points.join(' '), fill: 'none', stroke: 'currentColor' });
+  return made('rect', svg, { y: 0, width: 1, height: sparkHeight, fill: 'var(--accent)' });
+}
 
 // The angle of repose three ways, or why there is none.
 function angleText(pile) {
@@ -18,9 +36,8 @@ export class SceneSection extends PlayedSection {
     this.scene = scene;
     this.tell();
     this.addPlayer('The scene in 3D', folder.scene_picture);
-    this.tellShapes(scene.shapes.map(({ name }) => name));
-    this.reading = element('p', null, this.player.box, { class: 'soft' });
-    this.drawSensors();
+    this.tellSensors();
+    this.drawCurves();
     this.tellTables();
     this.play(new Map(folder.piles).get('scene'));
   }
@@ -54,27 +71,49 @@ export class SceneSection extends PlayedSection {
     const { series } = this;
     const i = this.pointAt(time);
     if (i < 0) return '';
-    this.reading?.replaceChildren([...this.sensors()].flatMap(([sensor, kinds]) => [...kinds].map(([kind, { unit, columns }]) => {
-      const values = columns.slice(0, 3).map(([, name]) => (known(series[name][i]) ? number(series[name][i], 3) : '–')).join(', ');
-      return `${sensor} ${kind.replaceAll('_', ' ')} ${values}${unit ? ` ${unit}` : ''}`;
-    })).join('; '));
+    this.now?.forEach(({ name, cell, mark }) => {
+      cell.textContent = known(series[name][i]) ? number(series[name][i], 4) : '–';
+      mark.setAttribute('x', sparkWidth * (series.time[i] / (series.time.at(-1) || 1)));
+    });
     const phase = this.scene.phases[series.phase?.[i]];
     return `${phase ? `Phase ${phase}: ` : ''}${whole(series.inside[i])} inside, ${whole(series.left[i])} out, highest speed ${number(series.highest_speed[i], 3)} m/s`;
   }
 
-  drawSensors() {
+  // What the sensors read at the moment shown, over their windows, and its course.
+  tellSensors() {
+    const read = this.scene.columns.filter(({ name, values }) => name.includes('.') && values.some((v) => v));
+    const none = this.scene.columns.filter((column) => column.name.includes('.') && !read.includes(column));
+    this.now = [];
+    if (read.length) {
+      element('h2', 'What the sensors read', this.host);
+      const summary = (head, key) => ({ head, value: (c) => c[key], text: (c) => number(c[key], 4) });
+      const window = ({ from, until }) => (known(until) ? `${number(from)} to ${number(until)} s` : from > 0 ? `from ${number(from)} s on` : 'all of it');
+      const cells = new Map();
+      table(this.host, [
+        { head: 'sensor', value: ({ name }) => name, text: ({ name }) => { const [sensor, ...what] = name.split('.'); return `${sensor}: ${what.join(', ').replaceAll('_', ' ')}`; } },
+        { head: 'unit', value: ({ unit }) => unit || '1' },
+        { head: 'then', value: (c) => c.last, text: (c) => number(c.last, 4), draw: ({ name }, cell) => cells.set(name, cell) },
+        { head: 'course', value: () => ' ', draw: (c, cell) => this.now.push({ name: c.name, cell: cells.get(c.name), mark: spark(cell, this.series.time, c.values) }) },
+        summary('mean', 'mean'), summary('sd', 'sd'), summary('least', 'least'), summary('greatest', 'greatest'), { head: 'over', value: window },
+      ], read, `${this.name}-sensors.csv`, 'What the sensors read');
+    }
+    if (none.length) element('p', `Zero throughout: ${none.map(({ name }) => name).join(', ')}.`, this.host, { class: 'soft' });
+  }
+
+  drawCurves() {
+    const all = this.host;
+    this.host = folded(all, 'Curves');
     for (const [sensor, kinds] of this.sensors())
       for (const [kind, { unit, columns }] of kinds)
         if (columns.some(([, name]) => this.series[name].some((value) => known(value) && value !== 0))) this.chart(`${sensor}: ${kind.replaceAll('_', ' ')}`, `${kind.replaceAll('_', ' ')}${unit ? ` / ${unit}` : ''}`, columns.slice(0, 4));
     this.chart('Bodies', 'bodies', [['came in', 'entered'], ['inside', 'inside'], ['went out', 'left'], ['waiting', 'waiting']]);
     this.fallingChart('Energy of motion', 'energy / J', [['translation', 'kinetic'], ['rotation', 'rotational']]);
     this.chart('Rotational velocity', 'mean |ω| / (rad/s)', [['mean |ω|', 'mean_rotation']], { from: 2 });
+    this.host = all;
   }
 
   tellTables() {
     const { scene } = this;
-    const read = scene.columns.filter(({ name }) => name.includes('.'));
-    if (read.length) this.values('The sensors at the end', read.map(({ name, unit, last }) => [`${name}${unit ? ` / ${unit}` : ''}`, last]), 'sensors');
     for (const p of scene.piles) {
       this.values(`The heap ${p.name}`, [
         ['angle by sectors / °', p.sectors.angle_deg], ['its standard deviation / °', p.sectors.sd_deg], ['sectors with a flank', p.sectors.count],

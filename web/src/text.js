@@ -65,7 +65,7 @@ export function saveButton(host, label, file, rows) {
     .addEventListener('click', () => saveAs(file, 'text/csv', csvText(rows())));
 }
 
-// columns: [{head, value(row) for the file, text(row) for the eye}]; the first is the row's name. Columns that say nothing
+// columns: [{head, value(row) for the file, text(row) for the eye, draw(row, cell) instead of it}]; the first is the row's name. Columns that say nothing
 // of any row are left out.
 export function table(host, all, rows, file, caption) {
   const says = (x) => x !== null && x !== undefined && x !== '';
@@ -79,7 +79,8 @@ export function table(host, all, rows, file, caption) {
     const line = element('tr', null, body);
     columns.forEach((column, i) => {
       const text = (column.text ?? column.value)(row);
-      element(i ? 'td' : 'th', text ?? '–', line, i ? {} : { scope: 'row' });
+      const cell = element(i ? 'td' : 'th', text ?? '–', line, i ? {} : { scope: 'row' });
+      column.draw?.(row, cell);
     });
   }
   saveButton(host, 'Save as CSV', file, () => [columns.map((c) => c.head), ...rows.map((row) => columns.map((c) => c.value(row)))]);

@@ -4,6 +4,7 @@ import {
   Matrix4, Mesh, MeshStandardMaterial, PerspectiveCamera, Scene, Spherical, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { element } from './text.js';
 
 export const mostEdgeTriangles = 60000; // edges of finer meshes would hide them
 const filled = 0.92; // of the panel by the scan; its levels stick out a little
@@ -18,6 +19,27 @@ export function rampColor(t) {
   return ramp[i].map((c, k) => Math.round(c + (ramp[i + 1][k] - c) * (x - i)));
 }
 
+// Its 256 colours, as three.js has them.
+export const rampTable = () => Array.from({ length: 256 }, (_, i) => new Color().setRGB(...rampColor(i / 255).map((c) => c / 255), 'srgb'));
+
+// It as a bar, from left to right.
+export function rampBar(host) {
+  const bar = element('canvas', null, host, { width: 128, height: 12, class: 'scale-bar', role: 'img', 'aria-label': 'colour scale' });
+  const context = bar.getContext('2d');
+  for (let i = 0; i < 128; i++) {
+    context.fillStyle = `rgb(${rampColor(i / 127)})`;
+    context.fillRect(i, 0, 1, 12);
+  }
+}
+
+export function swatch(host, color, text) {
+  const item = element('span', null, host);
+  const context = element('canvas', null, item, { width: 12, height: 12, 'aria-hidden': 'true' }).getContext('2d');
+  context.fillStyle = color;
+  context.fillRect(0, 0, 12, 12);
+  item.append(` ${text}`);
+}
+
 function surface(mesh, field, range) {
   const geometry = new BufferGeometry();
   if (!field) {
@@ -26,10 +48,7 @@ function surface(mesh, field, range) {
     return geometry;
   }
   geometry.setAttribute('position', new BufferAttribute(field.points, 3));
-  const table = Array.from({ length: 256 }, (_, i) => {
-    const [r, g, b] = rampColor(i / 255);
-    return new Color().setRGB(r / 255, g / 255, b / 255, 'srgb').toArray();
-  });
+  const table = rampTable().map((color) => color.toArray());
   const colors = new Float32Array(field.points.length);
   for (let v = 0; v < field.distances.length; v++) {
     const t = range > 0 ? Math.min(255, Math.round((255 * field.distances[v]) / range)) : 0;
