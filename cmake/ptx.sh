@@ -13,7 +13,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$root"
 sources=(src/world/device/{kernels,broad_kernels,observe_kernels}.c src/base/math.c)
-for name in contact narrow spheres edges law candidates substep watch seam depth wall motion grids lists time_step pair pool step integrate sums; do
+for name in contact narrow spheres edges law candidates substep watch seam depth wall motion loop grids lists time_step pair pool step integrate sums; do
   [ ! -e src/world/$name.c ] || sources+=(src/world/$name.c)
 done
 for name in closest tree; do sources+=(src/particle/$name.c); done

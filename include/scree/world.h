@@ -121,6 +121,10 @@ typedef struct scree_wall {
    * rad/s about position, in space as the wall stands now; they turn with it. What points out of
    * the surface does not count. */
   double surface_velocity[3], surface_angular_velocity[3];
+  /* Of a mesh that is a belt round pulleys: its surface runs about this direction, right-handed,
+   * with its length as speed, m/s. A facet of normal n moves along surface_loop x n, from either
+   * side; one that is square to the direction, as a solid belt's flank, stands. */
+  double surface_loop[3];
 } scree_wall;
 
 SCREE_API scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall,
@@ -139,7 +143,7 @@ SCREE_API scree_status scree_world_set_wall_velocity(scree_world *world, size_t 
 SCREE_API scree_status scree_world_set_wall_surface(scree_world *world, size_t index,
                                                     const double velocity[3],
                                                     const double angular_velocity[3],
-                                                    scree_error *error);
+                                                    const double loop[3], scree_error *error);
 
 /* How a wall moves: a way along a direction or an angle about an axis, as a function of time. */
 typedef enum scree_motion_law {
@@ -147,6 +151,8 @@ typedef enum scree_motion_law {
   SCREE_MOTION_SINE,      /* amplitude sin(2 pi frequency (t - from) + phase) */
   SCREE_MOTION_POSITIONS, /* straight between the rows of `table`; held before and after */
   SCREE_MOTION_SPEEDS,    /* the speed is; held before and after */
+  SCREE_MOTION_CRANK, /* a sliding crank's: amplitude cos(q) + sqrt(rod^2 - amplitude^2 sin(q)^2),
+                         q = 2 pi frequency (t - from) + phase */
 } scree_motion_law;
 
 typedef struct scree_wall_motion {
@@ -156,8 +162,14 @@ typedef struct scree_wall_motion {
   double through[3];                  /* m, a point of the axis about which it turns */
   double speed;                       /* m/s or rad/s */
   double amplitude, frequency, phase; /* m or rad; Hz; rad */
-  const double *table;                /* row_count rows of a time (s, growing) and a value (m, m/s,
-                                         rad or rad/s) */
+  double rod;                         /* m, of a crank: longer than the amplitude, its radius */
+  double radius; /* m; above 0: it is carried round two wheels of this radius, of which one is at
+                    `through` and the other further by `span`, square to the axis or 0; right-handed
+                    about the axis, by m and m/s. It stands as a way of `start` from the beginning
+                    of the strand that leads to the other wheel has turned it */
+  double span[3], start; /* m */
+  const double *table;   /* row_count rows of a time (s, growing) and a value (m, m/s,
+                            rad or rad/s) */
   size_t row_count;
   double from, until; /* s of the world's time; before and after it holds still */
 } scree_wall_motion;

@@ -104,7 +104,7 @@ class World(Saved):
 
     def add_wall(self, kind: str, material: int, mesh: Mesh | None = None, **values: Any) -> int:
         """Its index. kind plane, disc, cylinder or mesh; position, axis, radius, length, velocity,
-        angular_velocity; surface_velocity and surface_angular_velocity of a belt; two_sided: a closed mesh too is a
+        angular_velocity; surface_velocity, surface_angular_velocity and surface_loop of a belt; two_sided: a closed mesh too is a
         sheet. One that is wound inwards holds what is in it."""
         given: dict[str, Any] = {"kind": kind, "material": material, "axis": (0, 0, 1), **values}
         return lib.world_add_wall(self, given if mesh is None else {**given, "mesh": mesh})
@@ -114,9 +114,9 @@ class World(Saved):
         lib.world_set_wall_velocity(self, self._wall(index), velocity, angular_velocity)
 
     def set_wall_surface(self, index: int, velocity: Sequence[float] = (0, 0, 0),
-                         angular_velocity: Sequence[float] = (0, 0, 0)) -> None:
-        """Of its surface, while the wall itself stays: a belt, a roller."""
-        lib.world_set_wall_surface(self, self._wall(index), velocity, angular_velocity)
+                         angular_velocity: Sequence[float] = (0, 0, 0), loop: Sequence[float] = (0, 0, 0)) -> None:
+        """Of its surface, while the wall itself stays: a belt, a roller, a mesh that runs round."""
+        lib.world_set_wall_surface(self, self._wall(index), velocity, angular_velocity, loop)
 
     def set_wall_motion(self, index: int, *motions: dict[str, Any]) -> None:
         """From now on, each a dictionary: law constant, sine, positions or speeds; turns (about the axis through

@@ -33,6 +33,7 @@ static const char *const changeable[] = {"title",
                                          "pairs",
                                          "geometry.*.motion",
                                          "geometry.*.surface_velocity",
+                                         "geometry.*.belt.speed",
                                          "geometry.*.slide",
                                          "geometry.*.hinge",
                                          "inlets",
@@ -387,9 +388,11 @@ static scree_status set_geometry(const comparison *c, scree_scene *scene, scree_
     const scree_scene_geometry *made = &scene->geometry[i];
     if (!has_changed(c, "geometry", g->place.name)) continue;
     const double *surface = isnan(g->surface_velocity[0]) ? still : g->surface_velocity;
+    double loop[3];
+    scree_scene_belt_loop(g, loop);
     for (size_t w = made->first_wall; w < made->first_wall + made->wall_count; w++)
       if (status == SCREE_OK)
-        status = scree_world_set_wall_surface(scene->world, w, surface, still, error);
+        status = scree_world_set_wall_surface(scene->world, w, surface, still, loop, error);
     if (status == SCREE_OK) status = scree_scene_set_motions(scene, i, scene->world, error);
   }
   return status == SCREE_OK ? scree_scene_lead_by_phase(scene, error) : status;

@@ -11,6 +11,7 @@
 #include "scene/scene.h"
 
 #include "base/math.h"
+#include "base/table.h"
 
 #include <string.h>
 
@@ -45,16 +46,12 @@ static bool is_within(const scree_plan_force *f, vec3 p) {
   return vec3_norm(vec3_mad(d, axis, -along)) <= f->cylinder->radius;
 }
 
-/* Straight between the rows, held before and after. */
 static double factor_of(const scree_plan_force *f, vec3 p, double time) {
   const double at[] = {p.x, p.y, p.z, time};
-  size_t i = 0;
   if (f->table.count == 0) return 1;
-  const double *rows = f->table.items[0], x = at[f->by];
-  while (i + 1 < f->table.count && rows[2 * i + 2] <= x) i++;
-  if (i + 1 == f->table.count || x <= rows[2 * i]) return rows[2 * i + 1];
-  double share = (x - rows[2 * i]) / (rows[2 * i + 2] - rows[2 * i]);
-  return rows[2 * i + 1] + share * (rows[2 * i + 3] - rows[2 * i + 1]);
+  const scree_lines lines = {f->table.items[0], 2, f->table.count};
+  double slope;
+  return scree_lines_at(&lines, at[f->by], &slope);
 }
 
 /* ---- how much ---- */

@@ -4,6 +4,7 @@
 
 #include "particle/closest.h"
 #include "particle/shape.h"
+#include "scene/solids.h"
 
 #include <string.h>
 
@@ -36,12 +37,19 @@ static size_t material_of(const scree_scene *scene, const char *name) {
   return name ? scree_plan_find(&scene->plan.materials, sizeof(scree_plan_material), name) : 0;
 }
 
+void scree_scene_belt_loop(const scree_plan_geometry *g, double loop[3]) {
+  vec3 none = {0, 0, 0};
+  vec3_store(loop,
+             g->belt ? vec3_scale(vec3_unit(vec3_load(g->belt->axis)), g->belt->speed) : none);
+}
+
 static scree_status add_wall(const scree_scene *scene, const scree_plan_geometry *g,
                              scree_world *world, scree_wall *wall, scree_error *error) {
   wall->material = material_of(scene, g->material);
   memcpy(wall->position, g->at, sizeof wall->position);
   if (!isnan(g->surface_velocity[0]))
     memcpy(wall->surface_velocity, g->surface_velocity, sizeof wall->surface_velocity);
+  scree_scene_belt_loop(g, wall->surface_loop);
   return scree_world_add_wall(world, wall, NULL, error);
 }
 
@@ -112,9 +120,10 @@ static scree_status add_solid(scree_scene *scene, size_t index, scree_world *wor
   const scree_plan_geometry *g = plan_of(scene, index);
   scree_wall wall = {.kind = SCREE_WALL_PLANE};
   if (g->shaft) return add_shaft(scene, g, world, error);
-  if (!isnan(g->box[0])) {
+  if (!isnan(g->box[0]) || g->loop) {
     scree_mesh mesh;
-    scree_status status = scree_box_mesh(g->box, &mesh, error);
+    scree_status status =
+        g->loop ? scree_loop_mesh(g->loop, &mesh, error) : scree_box_mesh(g->box, &mesh, error);
     return status == SCREE_OK ? add_mesh(scene, index, NULL, world, &mesh, error) : status;
   }
   if (g->disc) {

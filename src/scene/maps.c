@@ -7,6 +7,7 @@
  * them: over many looks the sum is the integral. */
 #include "particle/closest.h"
 #include "scene/scene.h"
+#include "world/walls.h"
 
 #include "base/alloc.h"
 
@@ -49,6 +50,15 @@ static vec3 velocity_at(vec3 velocity, vec3 spin, vec3 middle, vec3 p) {
   return vec3_add(velocity, vec3_cross(spin, vec3_sub(p, middle)));
 }
 
+static vec3 belt_velocity(const scree_world_wall *wall, vec3 p, vec3 n) {
+  const mat3 *turned = &wall->frame.rotation;
+  if (!scree_wall_is_belt(wall)) return (vec3){0, 0, 0};
+  return mat3_mul_vec(
+      turned,
+      scree_belt_velocity(wall, mat3_tmul_vec(turned, vec3_sub(p, wall->frame.position)),
+                          mat3_tmul_vec(turned, n)));
+}
+
 /* s */
 static double between_looks(const scree_scene *scene) {
   return (double)scene->map_steps * scene->time_step;
@@ -68,8 +78,7 @@ static void measure_contact(const scree_scene *scene, const scree_wall *wall, do
   vec3 v =
       velocity_at(vec3_load(b.velocity), vec3_load(b.angular_velocity), vec3_load(b.position), p);
   v = vec3_sub(v, velocity_at(vec3_load(wall->velocity), vec3_load(wall->angular_velocity), at, p));
-  v = vec3_sub(v, velocity_at(vec3_load(wall->surface_velocity),
-                              vec3_load(wall->surface_angular_velocity), at, p));
+  v = vec3_sub(v, belt_velocity(scree_world_wall_at(scene->world, c->other), p, n));
   const double press = vec3_dot(force, n), load = fmax(0, press);
   vec3 across = vec3_mad(force, n, -press), along = vec3_mad(v, n, -vec3_dot(v, n));
   const bool slips = vec3_norm(across) >= at_limit * friction * load;

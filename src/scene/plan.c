@@ -403,6 +403,8 @@ static const scree_field geometry_fields[] = {
     {"cylinder", SCREE_FIELD_RECORD, AT(cylinder), 0, 0, "", "a sheet from `at` along its axis",
      &scree_plan_cylinder_record},
     {"shaft", SCREE_FIELD_RECORD, AT(shaft), 0, 0, "", "four endless walls about z", &shaft_record},
+    {"loop", SCREE_FIELD_RECORD, AT(loop), 0, 0, "",
+     "a sheet round two wheels, one of them at `at`", &scree_plan_loop_record},
     {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, SCREE_PLAN_UNITS, "of the file's lengths", NULL},
     {"at", SCREE_FIELD_VECTOR, AT(at), -1e6, 1e6, "m", "where its origin goes", NULL},
     {"turn", SCREE_FIELD_RECORD, AT(turn), 0, 0, "", "about its origin, before it goes there",
@@ -417,14 +419,17 @@ static const scree_field geometry_fields[] = {
      &scree_plan_hinge_record},
     {"surface_velocity", SCREE_FIELD_VECTOR, AT(surface_velocity), -1e3, 1e3, "m/s",
      "of a belt that stays where it is", NULL},
+    {"belt", SCREE_FIELD_RECORD, AT(belt), 0, 0, "",
+     "of a file or loop that is closed about an axis: its surface runs round",
+     &scree_plan_belt_record},
 };
 #undef AT
 static scree_status check_geometry(const scree_reader *r, const void *record) {
   const scree_plan_geometry *g = record;
-  const bool there[] = {g->file.count > 0, given(g->box),       given(g->plane),
-                        g->disc != NULL,   g->cylinder != NULL, g->shaft != NULL};
+  const bool there[] = {g->file.count > 0,   given(g->box),    given(g->plane), g->disc != NULL,
+                        g->cylinder != NULL, g->shaft != NULL, g->loop != NULL};
   scree_status status =
-      scree_plan_one_of(r, &g->place, there, 6, "file, box, plane, disc, cylinder, shaft");
+      scree_plan_one_of(r, &g->place, there, 7, "file, box, plane, disc, cylinder, shaft, loop");
   if (status == SCREE_OK) status = scree_plan_check_direction(r, &g->place, "plane", g->plane);
   if (status == SCREE_OK && g->cylinder && given(g->cylinder->at))
     status = scree_fail_place(r, &g->cylinder->place,
@@ -435,6 +440,11 @@ static scree_status check_geometry(const scree_reader *r, const void *record) {
   if (status == SCREE_OK && given(g->surface_velocity) && (g->disc || given(g->plane)) &&
       !is_across(g->surface_velocity, normal))
     status = scree_fail_place(r, &g->place, "surface_velocity must lie in the surface");
+  if (status == SCREE_OK && g->belt && !g->file.count && !g->loop)
+    status = scree_fail_place(r, &g->belt->place,
+                              "is of a file or a loop; give a surface_velocity instead");
+  if (status == SCREE_OK && g->belt && given(g->surface_velocity))
+    status = scree_fail_place(r, &g->place, "only one of surface_velocity, belt may be given");
   if (status == SCREE_OK && (g->slide != NULL) + (g->hinge != NULL) + (g->motion.count > 0) > 1)
     status = scree_fail_place(r, &g->place, "only one of motion, slide, hinge may be given");
   const scree_plan_motion *motions = g->motion.items;

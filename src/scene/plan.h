@@ -127,7 +127,19 @@ typedef struct scree_plan_part {
   scree_plan_servo *servo;
 } scree_plan_part;
 
-/* One of file, box, plane, disc, cylinder, shaft. */
+/* A sheet round two wheels, of which one is at the geometry's origin. */
+typedef struct scree_plan_loop {
+  scree_place place;
+  double axis[3], span[3], radius, width;
+} scree_plan_loop;
+
+/* The surface of closed loops about an axis runs along itself. */
+typedef struct scree_plan_belt {
+  scree_place place;
+  double axis[3], speed;
+} scree_plan_belt;
+
+/* One of file, box, plane, disc, cylinder, shaft, loop. */
 typedef struct scree_plan_geometry {
   scree_place place;
   scree_texts file;
@@ -137,6 +149,8 @@ typedef struct scree_plan_geometry {
   scree_plan_disc *disc;
   scree_plan_cylinder *cylinder;
   scree_plan_shaft *shaft;
+  scree_plan_loop *loop;
+  scree_plan_belt *belt;
   scree_plan_turn *turn;
   scree_records motion; /* of scree_plan_motion */
   scree_plan_part *slide, *hinge;
@@ -334,6 +348,8 @@ scree_size_class *scree_plan_size_classes(const scree_plan_size *size, scree_are
 /* A shape of many sizes becomes one for each class, in inlets by its share. */
 scree_status scree_plan_expand(scree_plan *plan, scree_arena *arena, scree_error *error);
 extern const scree_record scree_plan_size_record;
+/* plan_solids.c */
+extern const scree_record scree_plan_loop_record, scree_plan_belt_record;
 /* plan_parts.c */
 extern const scree_record scree_plan_slide_record, scree_plan_hinge_record;
 /* plan_forces.c */

@@ -25,6 +25,9 @@ scree_status scree_plan_one_of(const scree_reader *r, const scree_place *place, 
                                size_t count, const char *names);
 scree_status scree_plan_check_direction(const scree_reader *r, const scree_place *place,
                                         const char *what, const double *v);
+/* plan_solids.c: of wheels `span` apart. */
+scree_status scree_plan_check_span(const scree_reader *r, const scree_place *place,
+                                   const double axis[3], const double span[3]);
 extern const scree_record scree_plan_box_record, scree_plan_cylinder_record;
 /* plan_sensors.c */
 extern const scree_record scree_plan_sensor_record;

@@ -178,7 +178,7 @@ static bool add_sensor(scree_scene *scene, const scree_scene_sensor *sensor) {
     return add_by_class(scene, name, "count", "", SCREE_BY_SIZE) &&
            add_by_class(scene, name, "mass", "kg", SCREE_BY_SIZE) &&
            add_column(scene, "", "%s.packing", name) &&
-           add_column(scene, "m/s", "%s.mean_speed", name);
+           add_column(scene, "m/s", "%s.mean_speed", name) && add_all(scene, name, position);
   if (plan->wall) return add_all(scene, name, wall);
   if (plan->position) return add_all(scene, name, position);
   if (plan->part) return add_all(scene, name, is_hinge(scene, sensor) ? hinge : slide);
@@ -348,6 +348,7 @@ static void read_region(const scree_scene *scene, const scree_plan_box *box, dou
                         double *mass, double *at) {
   size_t shapes = SCREE_SCENE_SHAPES(scene);
   double speed = 0, solid = 0, volume = 1;
+  vec3 middle = {0, 0, 0};
   memset(count, 0, (shapes + 1) * sizeof *count);
   memset(mass, 0, (shapes + 1) * sizeof *mass);
   for (int k = 0; k < 3; k++) volume *= box->max[k] - box->min[k];
@@ -362,11 +363,13 @@ static void read_region(const scree_scene *scene, const scree_plan_box *box, dou
     mass[shape] += m, mass[shapes] += m;
     solid += scene->shapes[shape].volume;
     speed += vec3_norm(vec3_load(body.velocity));
+    middle = vec3_mad(middle, vec3_load(body.position), m);
   }
   put_by_shape(scene, count, 1, &at);
   put_by_shape(scene, mass, 1, &at);
   *at++ = solid / volume;
   *at++ = count[shapes] > 0 ? speed / count[shapes] : NAN;
+  vec3_store(at, vec3_scale(middle, 1 / mass[shapes])); /* of none NAN */
 }
 
 static scree_status read_wall(const scree_scene *scene, const scree_scene_sensor *sensor,

@@ -223,13 +223,14 @@ done:
   return status;
 }
 
-static scree_status make_walls(division *d, scree_scene_walls *walls, scree_error *error) {
+static scree_status make_walls(division *d, const scree_plan_belt *belt, scree_scene_walls *walls,
+                               scree_error *error) {
   size_t count = d->pieces.count, solids = 0, open = 0;
   bool *chosen = scree_alloc_zero(count, sizeof *chosen);
   if (!chosen) return scree_fail_memory(error, count, "a wall's pieces");
   for (size_t i = 0; i < count; i++) solids += chosen[i] = is_solid(d, i);
-  scree_status status = SCREE_OK;
-  if (solids) status = gather(d, chosen, &walls->solid, error);
+  scree_status status = belt ? scree_scene_wind_belts(belt, &d->pieces, chosen, error) : SCREE_OK;
+  if (status == SCREE_OK && solids) status = gather(d, chosen, &walls->solid, error);
   for (size_t i = 0; i < count; i++) {
     bool hidden = !d->pieces.items[i].closed && solids && is_hidden(d, i);
     chosen[i] = !is_solid(d, i) && !hidden;
@@ -337,7 +338,7 @@ scree_status scree_scene_make_walls(const scree_scene *scene, const scree_plan_g
     mark_bodies(scene, g, &d);
     decide_sides(&d);
   }
-  if (status == SCREE_OK) status = make_walls(&d, &made, error);
+  if (status == SCREE_OK) status = make_walls(&d, g->belt, &made, error);
   if (status == SCREE_OK) describe(&d, &made);
   free_division(&d);
   if (status == SCREE_OK)

@@ -19,4 +19,9 @@ scree_status scree_scene_make_walls(const scree_scene *scene, const scree_plan_g
                                     scree_error *error);
 void scree_scene_walls_free(scree_scene_walls *walls);
 
+/* belts.c: winds the loops of a belt outwards; solid: by piece. SCREE_BAD_MESH, with coordinates,
+ * where one is not closed about the axis, or solid with an inner face. */
+scree_status scree_scene_wind_belts(const scree_plan_belt *belt, scree_pieces *pieces,
+                                    const bool *solid, scree_error *error);
+
 #endif

@@ -39,18 +39,13 @@ static void add_later_work(const scree_world *world, const scree_pair *pair, scr
   scratch->spring_work =
       half * (vec3_dot(pair->spring.force, u) + vec3_dot(pair->spring.moment, spin));
   work->later_dashpot += half * power_of(&pair->dashpot, u, spin);
-  if (pair->wall && scree_wall_is_belt(&world->walls.items[pair->b])) {
-    const scree_world_wall *belt = &world->walls.items[pair->b];
-    u = vec3_sub(u, mat3_mul_vec(&b->rotation, belt->surface_velocity));
-    spin = vec3_sub(spin, mat3_mul_vec(&b->rotation, belt->surface_spin));
-  }
-  work->later_tangential += half * power_of(&pair->tangential, u, spin);
+  work->later_tangential += half * (power_of(&pair->tangential, u, spin) - pair->belt_power);
 }
 
 double scree_half_work_of_wall(const scree_world *world, const scree_pair *pair) {
-  const scree_wrench all = {pair->wrench.force, vec3_neg(pair->wrench.torque_b)},
-                     friction = scree_kept_as_wrench(&pair->tangential);
-  return 0.5 * world->time_step * scree_wall_power(&world->walls.items[pair->b], &all, &friction);
+  const scree_wrench all = {pair->wrench.force, vec3_neg(pair->wrench.torque_b)};
+  return 0.5 * world->time_step *
+         scree_wall_power(&world->walls.items[pair->b], &all, pair->belt_power);
 }
 
 static double bodies_path(const scree_world *world, const scree_pair *pair) {

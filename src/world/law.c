@@ -136,8 +136,7 @@ typedef struct slider {
   scree_slider along;
   double time_step, normal_damping; /* dt, C */
   vec3 velocity, spin;
-  bool belt; /* b's surface moves along itself so: */
-  vec3 belt_velocity, belt_spin;
+  const scree_world_wall *belt; /* b, whose surface moves along itself; NULL: it does not */
 } slider;
 
 static slider make_slider(const scree_world *world, const scree_pair *pair,
@@ -149,11 +148,8 @@ static slider make_slider(const scree_world *world, const scree_pair *pair,
                 .time_step = drift,
                 .velocity = vec3_mad(relative->velocity, velocity, lead),
                 .spin = vec3_mad(relative->spin, spin, lead)};
-  const scree_world_wall *wall = pair->wall ? &world->walls.items[pair->b] : NULL;
-  if (!wall || !scree_wall_is_belt(wall)) return law;
-  law.belt = true;
-  law.belt_velocity = wall->surface_velocity;
-  law.belt_spin = wall->surface_spin;
+  if (pair->wall && scree_wall_is_belt(&world->walls.items[pair->b]))
+    law.belt = &world->walls.items[pair->b];
   return law;
 }
 
@@ -162,7 +158,8 @@ static slider make_slider(const scree_world *world, const scree_pair *pair,
 typedef struct load_sums {
   scree_wrench normal, dashpot, tangential;
   double dashpot_power, tangential_power;
-  double pressed; /* the normal forces, without what holds the bodies together */
+  double belt_power; /* of the tangential ones by a belt's motion along itself */
+  double pressed;    /* the normal forces, without what holds the bodies together */
 } load_sums;
 
 static void add_wrench(scree_wrench *load, vec3 direction, vec3 arm, double size) {
@@ -276,9 +273,9 @@ static void contact_force(const scree_pair *pair, const slider *law, double spri
   vec3 seen = vec3_add(law->velocity, vec3_cross(law->spin, contact->at));
   double rate = -vec3_dot(seen, n);
   seen = vec3_mad(seen, n, rate);
+  vec3 belt = {0, 0, 0};
   if (law->belt) {
-    vec3 belt = vec3_add(law->belt_velocity, vec3_cross(law->belt_spin, contact->at));
-    belt = vec3_mad(belt, n, -vec3_dot(belt, n));
+    belt = scree_belt_velocity(law->belt, contact->at, n);
     v = vec3_sub(v, belt);
     seen = vec3_sub(seen, belt);
   }
@@ -304,6 +301,7 @@ static void contact_force(const scree_pair *pair, const slider *law, double spri
   sums->tangential.force = vec3_add(sums->tangential.force, along);
   sums->tangential.moment = vec3_add(sums->tangential.moment, vec3_cross(contact->at, along));
   sums->tangential_power += vec3_dot(along, v);
+  if (law->belt) sums->belt_power += vec3_dot(along, belt);
 }
 
 /* What a fading taper presses with. */
@@ -362,6 +360,7 @@ static void store_wrenches(const scree_world *world, const scree_scratch *scratc
   scree_wrench tangential = turned(&sums->tangential, &b->rotation);
   pair->dashpot = scree_kept(&dashpot);
   pair->tangential = scree_kept(&tangential);
+  pair->belt_power = (float)sums->belt_power;
   vec3 arm = scree_pair_between(world, pair, a, b);
   vec3 force = vec3_add(normal.force, tangential.force),
        moment = vec3_add(normal.moment, tangential.moment);
@@ -521,7 +520,7 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   law.normal_damping = damping_at(world, pair, relative, &slope);
   load_sums sums;
   sums.normal = sums.dashpot = sums.tangential = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
-  sums.dashpot_power = sums.tangential_power = sums.pressed = 0;
+  sums.dashpot_power = sums.tangential_power = sums.belt_power = sums.pressed = 0;
   uint32_t count = 0;
   for (size_t i = 0; i < contacts->count; i++) {
     scree_contact_point *contact = &contacts->items[i];

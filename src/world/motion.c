@@ -4,15 +4,18 @@
  * wall as it stood when the motions were set, each later one what those before it have done:
  *   translation: x' = x + a f,          v' = v + a df/dt
  *   rotation:    x' = p + R (x - p),    v' = R v + w' x (x' - p),   w' = R w + a df/dt
- * with R the rotation about a by f. So a wall's place is a closed function of time, its velocity
- * the derivative, and nothing drifts however long it runs. The frame's velocity and spin are the
- * means over the last drift, as those of bodies are: springs stretch and the ledger counts by them.
+ * with R the rotation about a by f; or f is a way round two wheels (loop.h). So a wall's place is a
+ * closed function of time, its velocity the derivative, and nothing drifts however long it runs.
+ * The frame's velocity and spin are the means over the last drift, as those of bodies are: springs
+ * stretch and the ledger counts by them.
  */
 #include "world/backend.h"
 #include "world/walls.h"
 
 #include "base/array.h"
 #include "base/math.h"
+#include "base/table.h"
+#include "world/loop.h"
 
 #include <string.h>
 
@@ -24,33 +27,21 @@ scree_wall_motion scree_default_wall_motion(void) {
 
 /* ---- the laws ---- */
 
-static const scree_motion_row *last_row_before(const scree_motion_row *rows, size_t count,
-                                               double t) {
-  size_t low = 0, high = count - 1;
-  while (low < high) {
-    size_t middle = (low + high + 1) / 2;
-    if (rows[middle].time <= t)
-      low = middle;
-    else
-      high = middle - 1;
-  }
-  return &rows[low];
-}
-
-/* Value and slope of the straight lines between the rows; held before and after. */
-static double between_rows(const scree_motion_row *rows, size_t count, double t, double *slope) {
-  const scree_motion_row *row = last_row_before(rows, count, t);
-  *slope = 0;
-  if (t <= row->time || row == rows + count - 1) return row->value;
-  *slope = (row[1].value - row->value) / (row[1].time - row->time);
-  return row->value + *slope * (t - row->time);
-}
+/* Of rows as numbers. */
+enum { TIME, VALUE, SUM, WIDTH };
 
 /* The way that the speeds of the rows have led since the first. */
-static double way_of_speeds(const scree_motion_row *rows, size_t count, double t) {
-  const scree_motion_row *row = last_row_before(rows, count, t);
-  double slope, speed = between_rows(rows, count, t, &slope);
-  return row->sum + 0.5 * (row->value + speed) * (t - row->time);
+static double way_of_speeds(const scree_lines *rows, double t, double speed) {
+  const double *row = scree_lines_row(rows, t);
+  return row[SUM] + 0.5 * (row[VALUE] + speed) * (t - row[TIME]);
+}
+
+/* Of a sliding crank; its slope by the angle. */
+static double crank(double radius, double rod, double angle, double *slope) {
+  const double sine = scree_sin(angle), cosine = scree_cos(angle),
+               leg = sqrt(rod * rod - radius * radius * sine * sine);
+  *slope = -radius * sine * (1 + radius * cosine / leg);
+  return radius * cosine + leg;
 }
 
 /* f and df/dt at time t, but for a constant. */
@@ -59,6 +50,7 @@ static double law_at(const scree_motion_state *m, const scree_motion_row *rows, 
   bool moving = t >= m->from && t < m->until;
   t = t < m->from ? m->from : t > m->until ? m->until : t;
   double value = 0, slope = 0, turn = two_pi * m->frequency;
+  const scree_lines lines = {&rows->time, WIDTH, m->row_count};
   switch ((scree_motion_law)m->law) {
   case SCREE_MOTION_CONSTANT:
     value = m->speed * (t - m->from);
@@ -69,14 +61,18 @@ static double law_at(const scree_motion_state *m, const scree_motion_row *rows, 
     slope = m->amplitude * turn * scree_cos(turn * (t - m->from) + m->phase);
     break;
   case SCREE_MOTION_POSITIONS:
-    value = between_rows(rows, m->row_count, t, &slope);
+    value = scree_lines_at(&lines, t, &slope);
     break;
   case SCREE_MOTION_SPEEDS: {
     double unused;
-    value = way_of_speeds(rows, m->row_count, t);
-    slope = between_rows(rows, m->row_count, t, &unused);
+    slope = scree_lines_at(&lines, t, &unused);
+    value = way_of_speeds(&lines, t, slope);
     break;
   }
+  case SCREE_MOTION_CRANK:
+    value = crank(m->amplitude, m->rod, turn * (t - m->from) + m->phase, &slope);
+    slope *= turn;
+    break;
   }
   *rate = moving ? slope : 0;
   return value;
@@ -87,7 +83,25 @@ typedef struct wall_pose {
   quat orientation;
 } wall_pose;
 
+static void carry_round(const scree_motion_state *m, double way, double rate, wall_pose *pose) {
+  const scree_loop loop = {m->axis, m->through, m->span, m->radius};
+  const scree_loop_place was = scree_loop_at(&loop, m->start),
+                         is = scree_loop_at(&loop, m->start + way);
+  const quat turn = quat_mul(is.turn, quat_conjugate(was.turn));
+  const mat3 r = quat_to_mat3(turn);
+  const vec3 spin = vec3_scale(is.spin, rate);
+  pose->position = scree_loop_carry(&loop, &is, scree_loop_bring_back(&loop, &was, pose->position));
+  pose->velocity = vec3_add(vec3_mad(mat3_mul_vec(&r, pose->velocity), is.along, rate),
+                            vec3_cross(spin, vec3_sub(pose->position, is.middle)));
+  pose->spin = vec3_add(mat3_mul_vec(&r, pose->spin), spin);
+  pose->orientation = quat_unit(quat_mul(turn, pose->orientation));
+}
+
 static void compose(const scree_motion_state *m, double way, double rate, wall_pose *pose) {
+  if (m->radius > 0) {
+    carry_round(m, way, rate, pose);
+    return;
+  }
   if (!m->turns) {
     pose->position = vec3_mad(pose->position, m->axis, way);
     pose->velocity = vec3_mad(pose->velocity, m->axis, rate);
@@ -204,6 +218,19 @@ static scree_status check_table(const scree_wall_motion *m, size_t wall, size_t 
   return SCREE_OK;
 }
 
+static scree_status check_round(const scree_wall_motion *m, size_t wall, size_t number,
+                                scree_error *error) {
+  const vec3 span = vec3_load(m->span), axis = vec3_unit(vec3_load(m->axis));
+  if (m->radius == 0 ||
+      (m->radius > 0 && isfinite(m->radius + m->start) &&
+       fabs(vec3_dot(span, axis)) <= 1e-9 * vec3_norm(span) && isfinite(vec3_norm(span))))
+    return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_ARGUMENT,
+                    "world: motion %zu of wall %zu is round wheels of radius %g m, (%g, %g, %g) m "
+                    "apart; finite, square to the axis",
+                    number, wall, m->radius, span.x, span.y, span.z);
+}
+
 static scree_status check_motion(const scree_wall_motion *m, size_t wall, size_t number,
                                  scree_error *error) {
   double axis2 = 0, through = 0;
@@ -218,6 +245,8 @@ static scree_status check_motion(const scree_wall_motion *m, size_t wall, size_t
                       "world: motion %zu of wall %zu is from %g s until %g s; from a finite time "
                       "to a later one",
                       number, wall, m->from, m->until);
+  scree_status status = check_round(m, wall, number, error);
+  if (status != SCREE_OK) return status;
   switch (m->law) {
   case SCREE_MOTION_CONSTANT:
     if (isfinite(m->speed)) return SCREE_OK;
@@ -233,6 +262,15 @@ static scree_status check_motion(const scree_wall_motion *m, size_t wall, size_t
   case SCREE_MOTION_POSITIONS:
   case SCREE_MOTION_SPEEDS:
     return check_table(m, wall, number, error);
+  case SCREE_MOTION_CRANK:
+    if (m->amplitude >= 0 && m->rod > m->amplitude && m->frequency > 0 &&
+        isfinite(m->rod + m->frequency + m->phase))
+      return SCREE_OK;
+    return scree_fail(error, SCREE_BAD_ARGUMENT,
+                      "world: motion %zu of wall %zu has a crank of %g m, a rod of %g m, frequency "
+                      "%g Hz and phase %g; finite, the rod longer than the crank, the frequency "
+                      "above 0",
+                      number, wall, m->amplitude, m->rod, m->frequency, m->phase);
   }
   return scree_fail(error, SCREE_BAD_ARGUMENT,
                     "world: motion %zu of wall %zu is of law %d, which is none", number, wall,
@@ -259,10 +297,14 @@ static scree_motion_state make_motion(const scree_wall_motion *m, const scree_mo
                              .turns = m->turns,
                              .axis = vec3_unit(vec3_load(m->axis)),
                              .through = vec3_load(m->through),
+                             .span = vec3_load(m->span),
                              .speed = m->speed,
                              .amplitude = m->amplitude,
                              .frequency = m->frequency,
                              .phase = m->phase,
+                             .rod = m->rod,
+                             .radius = m->radius,
+                             .start = m->start,
                              .from = m->from,
                              .until = m->until,
                              .row_count = has_table(m) ? m->row_count : 0};

@@ -20,7 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 17};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 18};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
@@ -123,16 +123,18 @@ static void code_given_wall(scree_codec *c, scree_wall *w) {
   scree_code_reals(c, w->angular_velocity, 3);
   scree_code_reals(c, w->surface_velocity, 3);
   scree_code_reals(c, w->surface_angular_velocity, 3);
+  scree_code_reals(c, w->surface_loop, 3);
 }
 
 static void code_wall_motion(scree_codec *c, scree_motion_state *m) {
   scree_code_u32(c, &m->law);
-  if (m->law > SCREE_MOTION_SPEEDS) c->failed = true;
+  if (m->law > SCREE_MOTION_CRANK) c->failed = true;
   scree_code_bool(c, &m->turns);
   scree_code_vec3(c, &m->axis);
   scree_code_vec3(c, &m->through);
-  double *reals[] = {&m->speed, &m->amplitude, &m->frequency, &m->phase,
-                     &m->from,  &m->until,     &m->origin};
+  scree_code_vec3(c, &m->span);
+  double *reals[] = {&m->speed,  &m->amplitude, &m->frequency, &m->phase, &m->rod,
+                     &m->radius, &m->start,     &m->from,      &m->until, &m->origin};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   scree_code_count(c, &m->row_count, 3 * sizeof(double));
   bool table = m->law == SCREE_MOTION_POSITIONS || m->law == SCREE_MOTION_SPEEDS;
@@ -153,9 +155,8 @@ static void code_wall_state(scree_codec *c, scree_world_wall *w) {
   scree_code_real(c, &w->path_at_build);
   scree_code_real(c, &w->reach);
   scree_code_real(c, &w->slack);
-  vec3 *vectors[] = {&w->force,           &w->torque,           &w->friction.force,
-                     &w->friction.moment, &w->surface_velocity, &w->surface_spin,
-                     &w->start_position};
+  vec3 *vectors[] = {&w->force,        &w->torque,       &w->surface_velocity,
+                     &w->surface_spin, &w->surface_loop, &w->start_position};
   for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) scree_code_vec3(c, vectors[i]);
   code_quat(c, &w->start_orientation);
   scree_code_real(c, &w->power);
@@ -220,7 +221,7 @@ static void code_watch(scree_codec *c, scree_watch *w) {
   for (int i = 0; i < 4; i++) code_float(c, &w->turned[i]);
   for (int i = 0; i < 3; i++) code_float(c, &w->came[i]);
   code_float(c, &w->speed);
-  scree_code_real(c, &w->since);
+  code_float(c, &w->since);
   for (int i = 0; i < SCREE_INNER_PLACES; i++) {
     uint32_t through = w->through[i];
     scree_code_u32(c, &through);
@@ -269,7 +270,7 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
   scree_code_bool(c, &p->depenetrating);
   scree_code_bool(c, &p->was_depenetrating);
   scree_code_bool(c, &p->followed);
-  double since = p->elastic_since;
+  double since = p->elastic_since, belt_power = p->belt_power;
   double *reals[] = {&n->law.stiffness,
                      &n->law.damping,
                      &n->law.friction,
@@ -299,9 +300,11 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
                      &p->kick,
                      &p->later_dashpot,
                      &p->later_tangential,
+                     &belt_power,
                      &since};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   p->elastic_since = (float)since;
+  p->belt_power = (float)belt_power;
   scree_code_vec3(c, &p->rolled);
   scree_code_vec3(c, &p->separation);
   scree_code_vec3(c, &p->pushed);

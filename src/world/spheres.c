@@ -141,11 +141,13 @@ static void find_motions(const scree_world *world, const scree_pair *pair, touch
   t->turned = vec3_scale(vec3_add(a->spin, b->spin), 0.5 * world->time_step);
 }
 
-/* How a belt moves along where they meet. */
-static vec3 belt_velocity(const scree_world_wall *wall, const meeting *m) {
+/* How a belt moves along itself where they meet. */
+static vec3 belt_velocity(const scree_world *world, const scree_pair *pair, const meeting *m) {
+  if (!pair->wall || !scree_wall_is_belt(&world->walls.items[pair->b])) return (vec3){0, 0, 0};
+  const scree_world_wall *wall = &world->walls.items[pair->b];
   const mat3 *turned = &wall->frame.rotation;
-  return vec3_add(mat3_mul_vec(turned, wall->surface_velocity),
-                  vec3_cross(mat3_mul_vec(turned, wall->surface_spin), m->at));
+  return mat3_mul_vec(turned, scree_belt_velocity(wall, mat3_tmul_vec(turned, m->at),
+                                                  mat3_tmul_vec(turned, m->normal)));
 }
 
 static double press(const scree_world *world, scree_pair *pair, const touch *t,
@@ -183,16 +185,13 @@ static vec3 slide(const scree_world *world, scree_pair *pair, const touch *t, do
                   double pressed, double *energy, double *power) {
   const scree_slider law = scree_slider_of(pair, world->options.tangential_ratio, t->lasts);
   const vec3 n = t->at.normal;
-  vec3 v = across(t->drift, n), seen = across(t->seen, n);
-  if (pair->wall && scree_wall_is_belt(&world->walls.items[pair->b])) {
-    vec3 belt = across(belt_velocity(&world->walls.items[pair->b], &t->at), n);
-    v = vec3_sub(v, belt);
-    seen = vec3_sub(seen, belt);
-  }
+  const vec3 belt = belt_velocity(world, pair, &t->at), v = vec3_sub(across(t->drift, n), belt),
+             seen = vec3_sub(across(t->seen, n), belt);
   scree_anchor spring = {.weight = pair->law.hertz > 0 ? sqrt(before) : before > 0};
   vec3 xi = vec3_mad(turned_by(pair->slid, t->turned), v, world->time_step),
        force = scree_slide(&law, &spring, law.grown, n, xi, seen, pressed, energy);
   pair->slid = spring.stretch;
+  pair->belt_power = (float)vec3_dot(force, belt);
   *power += vec3_dot(force, v);
   return force;
 }

@@ -8,12 +8,23 @@
 #include "world/walls.h"
 
 #include "base/array.h"
+#include "particle/closest.h"
+
+static const double square_flank = 1e-6; /* sine squared: a belt's flank, which stands */
 
 /* The rotation that takes the z axis to `axis`, the shortest way. */
 static quat turn_to(vec3 axis) {
   vec3 u = vec3_unit(axis);
   if (u.z > -0.9999999) return quat_unit((quat){1 + u.z, -u.y, u.x, 0});
   return (quat){0, 1, 0, 0};
+}
+
+/* Only a mesh runs round. */
+static scree_status check_loop(const scree_wall *wall, size_t number, const double *loop,
+                               scree_error *error) {
+  if (wall->kind == SCREE_WALL_MESH || !(vec3_norm2(vec3_load(loop)) > 0)) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_ARGUMENT,
+                    "world: wall %zu is to have a surface loop, but is no mesh", number);
 }
 
 static scree_status check_wall(const scree_world *world, const scree_wall *wall,
@@ -25,7 +36,7 @@ static scree_status check_wall(const scree_world *world, const scree_wall *wall,
   double sum = 0, axis2 = 0;
   for (int i = 0; i < 3; i++) {
     sum += wall->position[i] + wall->axis[i] + wall->velocity[i] + wall->angular_velocity[i] +
-           wall->surface_velocity[i] + wall->surface_angular_velocity[i];
+           wall->surface_velocity[i] + wall->surface_angular_velocity[i] + wall->surface_loop[i];
     axis2 += wall->axis[i] * wall->axis[i];
   }
   if (!isfinite(sum) || !(axis2 > 0))
@@ -43,7 +54,7 @@ static scree_status check_wall(const scree_world *world, const scree_wall *wall,
   if (wall->kind > SCREE_WALL_MESH)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: wall %zu is of kind %d, which is none",
                       number, (int)wall->kind);
-  return SCREE_OK;
+  return check_loop(wall, number, wall->surface_loop, error);
 }
 
 /* Whether a period along axis k leaves the wall as it is. */
@@ -73,10 +84,12 @@ static void set_velocity(scree_world_wall *wall, vec3 velocity, vec3 spin) {
 }
 
 /* In space, as the wall stands now. */
-static void set_surface(scree_world_wall *wall, const double *velocity, const double *spin) {
+static void set_surface(scree_world_wall *wall, const double *velocity, const double *spin,
+                        const double *loop) {
   const mat3 *rotation = &wall->frame.rotation;
   wall->surface_velocity = mat3_tmul_vec(rotation, vec3_load(velocity));
   wall->surface_spin = mat3_tmul_vec(rotation, vec3_load(spin));
+  wall->surface_loop = mat3_tmul_vec(rotation, vec3_load(loop));
 }
 
 /* Where the sheet of a disc or cylinder ends. */
@@ -104,7 +117,7 @@ scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall, si
   made.frame.position = vec3_load(wall->position);
   made.frame.rotation = quat_to_mat3(made.orientation);
   set_velocity(&made, vec3_load(wall->velocity), vec3_load(wall->angular_velocity));
-  set_surface(&made, wall->surface_velocity, wall->surface_angular_velocity);
+  set_surface(&made, wall->surface_velocity, wall->surface_angular_velocity, wall->surface_loop);
   if (wall->kind == SCREE_WALL_MESH) {
     status = scree_particle_surface(wall->mesh, 0, wall->two_sided, &made.surface, error);
     if (!status) made.given.mesh = &made.surface->mesh;
@@ -158,6 +171,7 @@ void scree_world_get_wall(const scree_world *world, size_t index, scree_wall *wa
   vec3_store(wall->angular_velocity, w->frame.spin_now);
   vec3_store(wall->surface_velocity, mat3_mul_vec(r, w->surface_velocity));
   vec3_store(wall->surface_angular_velocity, mat3_mul_vec(r, w->surface_spin));
+  vec3_store(wall->surface_loop, mat3_mul_vec(r, w->surface_loop));
 }
 
 void scree_world_wall_orientation(const scree_world *world, size_t index, double orientation[4]) {
@@ -202,11 +216,31 @@ scree_status scree_world_set_wall_velocity(scree_world *world, size_t index,
 
 scree_status scree_world_set_wall_surface(scree_world *world, size_t index,
                                           const double velocity[3],
-                                          const double angular_velocity[3], scree_error *error) {
+                                          const double angular_velocity[3], const double loop[3],
+                                          scree_error *error) {
   scree_status status = check_velocities(world, index, velocity, angular_velocity, error);
+  if (!status) status = check_velocities(world, index, velocity, loop, error);
+  if (!status) status = check_loop(&world->walls.items[index].given, index, loop, error);
   if (!status) status = scree_world_change(world, SCREE_PART_WALLS, error);
-  if (!status) set_surface(&world->walls.items[index], velocity, angular_velocity);
+  if (!status) set_surface(&world->walls.items[index], velocity, angular_velocity, loop);
   return status;
+}
+
+vec3 scree_belt_velocity(const scree_world_wall *wall, vec3 at, vec3 n) {
+  vec3 v = vec3_add(wall->surface_velocity, vec3_cross(wall->surface_spin, at));
+  const double speed2 = vec3_norm2(wall->surface_loop);
+  v = vec3_mad(v, n, -vec3_dot(v, n));
+  if (!(speed2 > 0)) return v;
+  vec3 way = vec3_cross(wall->surface_loop, n);
+  const double sine2 = vec3_norm2(way) / speed2;
+  if (sine2 < square_flank) return v;
+  if (wall->surface->sheet) { /* from behind its facets' normals point the other way */
+    const uint32_t root = 0;
+    uint32_t face = 0;
+    scree_nearest_face(wall->surface, &root, 1, at, INFINITY, &face);
+    if (vec3_dot(wall->surface->faces[face].normal, n) < 0) way = vec3_neg(way);
+  }
+  return vec3_mad(v, way, 1 / sqrt(sine2));
 }
 
 /* ---- forces on walls, and the work that they do ---- */
@@ -225,21 +259,19 @@ double scree_wall_work(const scree_world *world, size_t w) {
 
 void scree_wall_sum(const scree_world *world, size_t w) {
   scree_world_wall *wall = &world->walls.items[w];
-  scree_wrench all = {{0, 0, 0}, {0, 0, 0}}, friction = all;
+  scree_wrench all = {{0, 0, 0}, {0, 0, 0}};
+  double belt_power = 0;
   for (size_t i = 0; i < world->wall_pairs.count; i++) {
     if (!is_with(world, i, w)) continue;
     const scree_pair *pair = scree_pair_of(world, world->wall_pairs.items[i]);
     if (!pair || !pair->touching) continue;
-    const scree_wrench rubs = scree_kept_as_wrench(&pair->tangential);
     all.force = vec3_add(all.force, pair->wrench.force);
     all.moment = vec3_sub(all.moment, pair->wrench.torque_b);
-    friction.force = vec3_add(friction.force, rubs.force);
-    friction.moment = vec3_add(friction.moment, rubs.moment);
+    belt_power += pair->belt_power;
   }
   wall->force = vec3_sub((vec3){0, 0, 0}, all.force); /* and never -0 */
   wall->torque = vec3_sub((vec3){0, 0, 0}, all.moment);
-  wall->friction = friction;
-  wall->power = scree_wall_power(wall, &all, &friction);
+  wall->power = scree_wall_power(wall, &all, belt_power);
   wall->work = scree_wall_work(world, w);
   wall->summed = world->step_count;
 }

@@ -25,21 +25,21 @@ double scree_wall_distance_from(const scree_world_wall *wall, vec3 p, double *si
                                 vec3 *normal);
 
 static inline bool scree_wall_is_belt(const scree_world_wall *wall) {
-  return vec3_norm2(wall->surface_velocity) + vec3_norm2(wall->surface_spin) > 0;
+  return vec3_norm2(wall->surface_velocity) + vec3_norm2(wall->surface_spin) +
+             vec3_norm2(wall->surface_loop) >
+         0;
 }
+/* How a belt's surface moves along itself at a point of it that is met with normal n; all in the
+ * wall's frame. */
+vec3 scree_belt_velocity(const scree_world_wall *wall, vec3 at, vec3 n);
 /* From now on. */
 void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, vec3 spin);
-/* Power on bodies of forces and torques on them, about the wall's position, and of the tangential
- * part of these, with the velocities of the last drift. A belt's surface moves along itself, so
- * that friction alone works on it. */
+/* Power on bodies of forces and torques on them, about the wall's position, with the velocities of
+ * the last drift; and of a belt's friction, by its motion along itself. */
 static inline double scree_wall_power(const scree_world_wall *wall, const scree_wrench *all,
-                                      const scree_wrench *friction) {
+                                      double belt_power) {
   const scree_frame *frame = &wall->frame;
-  double power = vec3_dot(all->force, frame->velocity) + vec3_dot(all->moment, frame->spin);
-  if (!scree_wall_is_belt(wall)) return power;
-  const mat3 *rotation = &frame->rotation;
-  return power + vec3_dot(friction->force, mat3_mul_vec(rotation, wall->surface_velocity)) +
-         vec3_dot(friction->moment, mat3_mul_vec(rotation, wall->surface_spin));
+  return vec3_dot(all->force, frame->velocity) + vec3_dot(all->moment, frame->spin) + belt_power;
 }
 /* Force and torque on wall w from the pairs of the last step, its power and its work so far: when
  * they are asked for, or what they follow from is about to change. */

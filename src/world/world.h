@@ -40,10 +40,9 @@ typedef struct scree_world_wall {
   double reach;            /* from its position: farther out there is none of it, or no body */
   double slack;            /* by which it may move before the pairs must be made again */
   vec3 force, torque;      /* on the wall in the last step, about its position */
-  scree_wrench friction;   /* the tangential part of them, on the bodies */
-  vec3 surface_velocity, surface_spin; /* of a belt, in the wall's own frame */
-  uint64_t summed;                     /* the step whose forces these are (scree_wall_sum) */
-  double power, work;                  /* done on bodies: W in that step; J until then */
+  vec3 surface_velocity, surface_spin, surface_loop; /* of a belt, in the wall's own frame */
+  uint64_t summed;     /* the step whose forces these are (scree_wall_sum) */
+  double power, work;  /* done on bodies: W in that step; J until then */
   double energy;       /* the part of that work that was done on those that are no more near */
   vec3 start_position; /* when its motions were set */
   quat start_orientation;
@@ -54,8 +53,8 @@ typedef struct scree_world_wall {
 typedef struct scree_motion_state {
   uint32_t law;
   bool turns;
-  vec3 axis, through;
-  double speed, amplitude, frequency, phase, from, until;
+  vec3 axis, through, span;
+  double speed, amplitude, frequency, phase, rod, radius, start, from, until;
   double origin;    /* what its law was at when it was set */
   size_t row_count; /* its own in world->motion_rows, after those of the motions before it */
 } scree_motion_state;
@@ -211,7 +210,7 @@ typedef struct scree_watch {
   float turned[4]; /* and its orientation */
   float came[3];   /* unit, in the frame of the surface: from where what is through came */
   float speed;     /* m/s, before the two met */
-  double since;    /* s, since when something is through */
+  float since;     /* s, since when something is through */
   uint8_t through[SCREE_INNER_PLACES]; /* how many faces each inner place is through */
   bool taken;                          /* the pair was looked at */
 } scree_watch;
@@ -258,6 +257,7 @@ typedef struct scree_pair {
   scree_list_state list;
   scree_range active;  /* in the pool of feature pairs */
   float elastic_since; /* J, by which `elastic` has grown since, where there were sub-steps */
+  float belt_power;    /* W, of a belt's friction on a, by the belt's motion along itself */
   double depth;        /* no edge lies deeper inside the other body; -INFINITY: not known */
   double later_dashpot,
       later_tangential;   /* J of the last step's sub-steps, not yet entered in the balance */

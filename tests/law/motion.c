@@ -91,6 +91,25 @@ static vec3 there_and_held(double t) {
   return (vec3){x, 0, 0};
 }
 
+/* Of a sliding crank of 0.1 m with a rod of 0.25 m, from its outer dead centre. */
+static vec3 cranked(double t) {
+  double q = 2 * pi * 1.25 * t;
+  return (vec3){0, 0.1 * cos(q) + sqrt(0.0625 - 0.01 * sin(q) * sin(q)) - 0.35, 0};
+}
+
+/* A bucket 0.05 m outside of a chain round wheels of 0.1 m about -y, 0.5 m apart along x: it goes
+ * along x below them, and half a turn in pi 0.1 m. */
+static vec3 on_a_chain(double t) {
+  double s = fmod(0.3 * t + 0.2, 1 + 0.2 * pi);
+  if (s < 0.5) return (vec3){s, 0, -0.15};
+  s -= 0.5;
+  if (s < 0.1 * pi) return (vec3){0.5 + 0.15 * sin(s / 0.1), 0, -0.15 * cos(s / 0.1)};
+  s -= 0.1 * pi;
+  if (s < 0.5) return (vec3){0.5 - s, 0, 0.15};
+  s -= 0.5;
+  return (vec3){-0.15 * sin(s / 0.1), 0, 0.15 * cos(s / 0.1)};
+}
+
 static void places_are_functions_of_time(void **state) {
   (void)state;
   scree_wall_motion turn = scree_default_wall_motion(), up = turn, across = turn, speeds = turn;
@@ -112,6 +131,15 @@ static void places_are_functions_of_time(void **state) {
   speeds.table = table, speeds.row_count = 4;
   speeds.axis[0] = 1, speeds.axis[2] = 0;
   follows("table of speeds", &speeds, 1, there_and_held);
+  scree_wall_motion crank = scree_default_wall_motion(), chain = crank;
+  crank.law = SCREE_MOTION_CRANK;
+  crank.axis[1] = 1, crank.axis[2] = 0;
+  crank.amplitude = 0.1, crank.rod = 0.25, crank.frequency = 1.25;
+  follows("crank", &crank, 1, cranked);
+  chain.axis[1] = -1, chain.axis[2] = 0;
+  chain.span[0] = 0.5;
+  chain.radius = 0.1, chain.speed = 0.3, chain.start = 0.2;
+  follows("chain", &chain, 1, on_a_chain);
 }
 
 /* The angle about z of a wall that turns by `motion` from the time at which it is set, 1 s. */
@@ -239,7 +267,8 @@ static void a_turntable_spins(void **state) {
   law_body(world, box, body);
   law_step(world, 2000);
   scree_error error;
-  CHECK_OK(scree_world_set_wall_surface(world, table, (double[3]){0}, (double[3]){0, 0, 3}, &error),
+  CHECK_OK(scree_world_set_wall_surface(world, table, (double[3]){0}, (double[3]){0, 0, 3},
+                                        (double[3]){0}, &error),
            error);
   scree_observation o;
   double first = law_ledger(world, &o);
@@ -265,7 +294,8 @@ static void moving_walls_keep_the_ledger(void **state) {
   swing.amplitude = 0.1, swing.frequency = 3;
   set_motion(world, 1, &swing, 1);
   scree_error error;
-  CHECK_OK(scree_world_set_wall_surface(world, 2, (double[3]){0.2, 0, 0}, (double[3]){0}, &error),
+  CHECK_OK(scree_world_set_wall_surface(world, 2, (double[3]){0.2, 0, 0}, (double[3]){0},
+                                        (double[3]){0}, &error),
            error);
   scree_observation o;
   double first = law_ledger(world, &o), worst = 0;
@@ -316,8 +346,8 @@ static void bad_motions_are_refused(void **state) {
   scree_world *world = empty_world(1e-3);
   size_t wall = add_plane(world, (vec3){0, 0, 0});
   const double backwards[4] = {1, 0, 1, 2}, infinite[2] = {0, INFINITY};
-  scree_wall_motion bad[8];
-  for (int i = 0; i < 8; i++) bad[i] = scree_default_wall_motion();
+  scree_wall_motion bad[11];
+  for (int i = 0; i < 11; i++) bad[i] = scree_default_wall_motion();
   bad[0].axis[2] = 0;
   bad[1].speed = NAN;
   bad[2].from = 2, bad[2].until = 1;
@@ -326,8 +356,11 @@ static void bad_motions_are_refused(void **state) {
   bad[5].law = SCREE_MOTION_SPEEDS, bad[5].table = backwards, bad[5].row_count = 2;
   bad[6].law = SCREE_MOTION_POSITIONS, bad[6].table = infinite, bad[6].row_count = 1;
   bad[7].law = (scree_motion_law)9;
+  bad[8].law = SCREE_MOTION_CRANK, bad[8].amplitude = bad[8].rod = 0.1;
+  bad[9].radius = 0.1, bad[9].span[2] = 1; /* along the axis */
+  bad[10].radius = -0.1;
   scree_error error;
-  for (int i = 0; i < 8; i++) {
+  for (int i = 0; i < 11; i++) {
     assert_int_equal(scree_world_set_wall_motion(world, wall, &bad[i], 1, &error),
                      SCREE_BAD_ARGUMENT);
     print_message("%s\n", error.message);

@@ -86,9 +86,15 @@ static void add(scree_world *world, double height) {
       error);
 }
 
+static bool is_mesh(const scree_world *world, size_t wall) {
+  scree_wall w;
+  scree_world_get_wall(world, wall, &w);
+  return w.kind == SCREE_WALL_MESH;
+}
+
 static void change_one(scree_world *world, uint64_t what, size_t which, double height) {
   scree_error error;
-  const double slow[3] = {0.01, 0, 0.01}, force[3] = {0.001, 0, 0};
+  const double slow[3] = {0.01, 0, 0.01}, force[3] = {0.001, 0, 0}, still[3] = {0};
   size_t body = which % scree_world_body_count(world), wall = which % scree_world_wall_count(world);
   scree_wall_motion motion = scree_default_wall_motion();
   motion.speed = 0.01;
@@ -109,7 +115,9 @@ static void change_one(scree_world *world, uint64_t what, size_t which, double h
     CHECK_OK(scree_world_set_wall_motion(world, wall, &motion, 1, &error), error);
     break;
   case 5:
-    CHECK_OK(scree_world_set_wall_surface(world, wall, slow, force, &error), error);
+    CHECK_OK(scree_world_set_wall_surface(world, wall, slow, force,
+                                          is_mesh(world, wall) ? slow : still, &error),
+             error);
     break;
   case 6:
     CHECK_OK(scree_world_set_body_density(world, body, 1500, &error), error);

@@ -56,7 +56,8 @@ static scree_status add_motions(scree_world *world, scree_error *error) {
   scree_wall_motion motion = scree_default_wall_motion();
   motion.law = SCREE_MOTION_POSITIONS, motion.table = rows, motion.row_count = 2;
   scree_status status = scree_world_set_wall_motion(world, 0, &motion, 1, error);
-  if (status == SCREE_OK) status = scree_world_set_wall_surface(world, 2, side, still, error);
+  if (status == SCREE_OK)
+    status = scree_world_set_wall_surface(world, 2, side, still, (double[3]){0}, error);
   if (status == SCREE_OK) status = scree_world_set_body_force(world, 1, side, still, error);
   return status;
 }
@@ -118,7 +119,8 @@ static scree_status build_world(void *context, scree_error *error) {
   const scree_wall_motion motion = scree_default_wall_motion();
   if (status == SCREE_OK) status = scree_world_set_wall_motion(world, 0, &motion, 1, error);
   if (status == SCREE_OK)
-    status = scree_world_set_wall_surface(world, 0, (double[3]){1}, (double[3]){0}, error);
+    status = scree_world_set_wall_surface(world, 0, (double[3]){1}, (double[3]){0}, (double[3]){0},
+                                          error);
   if (status == SCREE_OK) status = scree_world_set_body_density(world, 0, 1500, error);
   if (status == SCREE_OK)
     status = scree_world_set_body_force(world, 0, (double[3]){0}, (double[3]){0}, error);

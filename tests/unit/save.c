@@ -119,17 +119,21 @@ static void motions_go_on(void **state) {
   (void)state;
   static const double table[6] = {0, 0, 0.1, 0.2, 0.5, -0.1};
   scree_error error;
-  scree_wall_motion motions[3];
-  for (int i = 0; i < 3; i++) motions[i] = scree_default_wall_motion();
+  scree_wall_motion motions[4];
+  for (int i = 0; i < 4; i++) motions[i] = scree_default_wall_motion();
   motions[0].law = SCREE_MOTION_SPEEDS, motions[0].table = table, motions[0].row_count = 3;
   motions[1].law = SCREE_MOTION_SINE, motions[1].amplitude = 0.003, motions[1].frequency = 20;
   motions[2].turns = true, motions[2].speed = 1, motions[2].through[0] = 0.01;
+  motions[3].law = SCREE_MOTION_CRANK, motions[3].amplitude = 0.001, motions[3].rod = 0.01;
+  motions[3].radius = 0.02, motions[3].span[0] = 0.01, motions[3].start = 0.005;
   scree_world *world = mixed_world(SCREE_LAW_LINEAR);
   CHECK_OK(scree_world_set_wall_motion(world, 3, &motions[2], 1, &error), error);
   CHECK_OK(scree_world_set_wall_motion(world, 1, motions, 3, &error), error);
+  CHECK_OK(scree_world_set_wall_motion(world, 2, motions + 3, 1, &error), error);
   CHECK_OK(scree_world_set_wall_motion(world, 0, &motions[1], 1, &error), error);
   CHECK_OK(scree_world_set_wall_motion(world, 1, motions, 2, &error), error);
-  CHECK_OK(scree_world_set_wall_surface(world, 2, (double[3]){0, 0.3, 0}, (double[3]){0}, &error),
+  CHECK_OK(scree_world_set_wall_surface(world, 2, (double[3]){0, 0.3, 0}, (double[3]){0},
+                                        (double[3]){0.2, 0, 0.1}, &error),
            error);
   CHECK_OK(scree_world_set_body_force(world, 2, (double[3]){0.1, 0, 0}, (double[3]){0}, &error),
            error);

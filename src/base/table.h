@@ -1,0 +1,35 @@
+/* Values over a coordinate that rises from row to row: straight lines between rows, held before the
+ * first and after the last. A row begins with the coordinate and the value and is `width` numbers
+ * long. */
+#ifndef SCREE_BASE_TABLE_H
+#define SCREE_BASE_TABLE_H
+
+#include <stddef.h>
+
+typedef struct scree_lines {
+  const double *rows;
+  size_t width, count; /* count: at least 1 */
+} scree_lines;
+
+/* The last row at or before x; the first where there is none. */
+static inline const double *scree_lines_row(const scree_lines *t, double x) {
+  size_t low = 0, high = t->count - 1;
+  while (low < high) {
+    size_t middle = (low + high + 1) / 2;
+    if (t->rows[middle * t->width] <= x)
+      low = middle;
+    else
+      high = middle - 1;
+  }
+  return t->rows + low * t->width;
+}
+
+static inline double scree_lines_at(const scree_lines *t, double x, double *slope) {
+  const double *row = scree_lines_row(t, x), *next = row + t->width;
+  *slope = 0;
+  if (x <= row[0] || next == t->rows + t->count * t->width) return row[1];
+  *slope = (next[1] - row[1]) / (next[0] - row[0]);
+  return row[1] + *slope * (x - row[0]);
+}
+
+#endif
