@@ -6,13 +6,13 @@
 
 #include <stddef.h>
 
-typedef struct scree_lines {
+typedef struct scree_rows {
   const double *rows;
   size_t width, count; /* count: at least 1 */
-} scree_lines;
+} scree_rows;
 
 /* The last row at or before x; the first where there is none. */
-static inline const double *scree_lines_row(const scree_lines *t, double x) {
+static inline const double *scree_rows_last(const scree_rows *t, double x) {
   size_t low = 0, high = t->count - 1;
   while (low < high) {
     size_t middle = (low + high + 1) / 2;
@@ -24,8 +24,8 @@ static inline const double *scree_lines_row(const scree_lines *t, double x) {
   return t->rows + low * t->width;
 }
 
-static inline double scree_lines_at(const scree_lines *t, double x, double *slope) {
-  const double *row = scree_lines_row(t, x), *next = row + t->width;
+static inline double scree_rows_at(const scree_rows *t, double x, double *slope) {
+  const double *row = scree_rows_last(t, x), *next = row + t->width;
   *slope = 0;
   if (x <= row[0] || next == t->rows + t->count * t->width) return row[1];
   *slope = (next[1] - row[1]) / (next[0] - row[0]);

@@ -49,9 +49,9 @@ static bool is_within(const scree_plan_force *f, vec3 p) {
 static double factor_of(const scree_plan_force *f, vec3 p, double time) {
   const double at[] = {p.x, p.y, p.z, time};
   if (f->table.count == 0) return 1;
-  const scree_lines lines = {f->table.items[0], 2, f->table.count};
+  const scree_rows lines = {f->table.items[0], 2, f->table.count};
   double slope;
-  return scree_lines_at(&lines, at[f->by], &slope);
+  return scree_rows_at(&lines, at[f->by], &slope);
 }
 
 /* ---- how much ---- */

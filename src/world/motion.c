@@ -31,8 +31,8 @@ scree_wall_motion scree_default_wall_motion(void) {
 enum { TIME, VALUE, SUM, WIDTH };
 
 /* The way that the speeds of the rows have led since the first. */
-static double way_of_speeds(const scree_lines *rows, double t, double speed) {
-  const double *row = scree_lines_row(rows, t);
+static double way_of_speeds(const scree_rows *rows, double t, double speed) {
+  const double *row = scree_rows_last(rows, t);
   return row[SUM] + 0.5 * (row[VALUE] + speed) * (t - row[TIME]);
 }
 
@@ -50,7 +50,7 @@ static double law_at(const scree_motion_state *m, const scree_motion_row *rows, 
   bool moving = t >= m->from && t < m->until;
   t = t < m->from ? m->from : t > m->until ? m->until : t;
   double value = 0, slope = 0, turn = two_pi * m->frequency;
-  const scree_lines lines = {&rows->time, WIDTH, m->row_count};
+  const scree_rows lines = {&rows->time, WIDTH, m->row_count};
   switch ((scree_motion_law)m->law) {
   case SCREE_MOTION_CONSTANT:
     value = m->speed * (t - m->from);
@@ -61,11 +61,11 @@ static double law_at(const scree_motion_state *m, const scree_motion_row *rows, 
     slope = m->amplitude * turn * scree_cos(turn * (t - m->from) + m->phase);
     break;
   case SCREE_MOTION_POSITIONS:
-    value = scree_lines_at(&lines, t, &slope);
+    value = scree_rows_at(&lines, t, &slope);
     break;
   case SCREE_MOTION_SPEEDS: {
     double unused;
-    slope = scree_lines_at(&lines, t, &unused);
+    slope = scree_rows_at(&lines, t, &unused);
     value = way_of_speeds(&lines, t, slope);
     break;
   }
