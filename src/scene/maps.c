@@ -54,9 +54,8 @@ static vec3 belt_velocity(const scree_world_wall *wall, vec3 p, vec3 n) {
   const mat3 *turned = &wall->frame.rotation;
   if (!scree_wall_is_belt(wall)) return (vec3){0, 0, 0};
   return mat3_mul_vec(
-      turned,
-      scree_belt_velocity(wall, mat3_tmul_vec(turned, vec3_sub(p, wall->frame.position)),
-                          mat3_tmul_vec(turned, n)));
+      turned, scree_belt_velocity(wall, mat3_tmul_vec(turned, vec3_sub(p, wall->frame.position)),
+                                  mat3_tmul_vec(turned, n)));
 }
 
 /* s */
