@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How the manual reads: at most 27,800 words in docs/ (code, links' targets and what stands in backticks do not count,
+"""How the manual reads: at most MOST_WORDS words in docs/ (code, links' targets and what stands in backticks do not count,
 tables do), at most 25 words a sentence in the mean of every page and of the help texts, no sentence above 60, no idiom
 that a reader with English as a second language looks up in vain, the standard terms, and no history of the code.
 usage: words.py ROOT PROGRAM [PAGE...]    with pages: their longest sentences"""
