@@ -528,8 +528,10 @@ class Templates(unittest.TestCase):
         self.assertTrue(scene.piles(cell=0.005)["heap"].repose.peak > 0)
         with self.assertRaisesRegex(TypeError, "pile has no option 'colour'"):
             scene.piles(colour=1)
-        scree.report("heap", "heap.html")
-        self.assertGreater(os.path.getsize("heap.html"), 600000)
+        page = scree.report("heap", "heap.html")
+        self.assertGreater(os.path.getsize(page), 600000)
+        shown = page._repr_html_()
+        self.assertEqual(html.unescape(shown[shown.index('srcdoc="') + 8:shown.rindex('"')]), page.read_text(encoding="utf-8"))
         frame = scree.Scene.load("heap/last.scree")
         self.assertEqual((frame.is_frame, frame.time, frame.piles()["heap"].body_count), (True, scene.time, heap.body_count))
         with self.assertRaises(scree.Error):
