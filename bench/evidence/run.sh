@@ -43,12 +43,13 @@ drum() {
   "$here/drum/drum.py" acces >"$results/drum-acces.csv"
   "$here/drum/drum.py" sizes "$results/drum-sizes.csv" 6.0 4.5 3.5 --measured "$results/drum-measured.csv"
   fitted drum
-  local rpm friction rolling
+  local rpm friction rolling solid
   friction=$(awk -F, '$2 == "friction" { print $4 }' "$results/drum-fit.csv")
   rolling=$(awk -F, '$2 == "rolling" { print $4 }' "$results/drum-fit.csv")
+  solid=$(awk -F, '$2 == "solid" { print $4 }' "$results/drum-fit.csv")
   for rpm in 10 15 30 45; do
     [ -s "$results/drum-$rpm.csv" ] || "$here/drum/drum.py" one --rpm $rpm --friction "$friction" --rolling "$rolling" \
-      --profile "$results/drum-$rpm.csv"
+      --solid "$solid" --size 3.5 --profile "$results/drum-$rpm.csv"
   done
 }
 

@@ -2,9 +2,10 @@
 """A powder's profile in a turning drum (Nicusan and others, arXiv 2505.02967): pictures beside simulations.
 
   drum.py outlines FILE.csv     the measured profiles, by threshold, from gd_15.bmp and gd_45.bmp
-  drum.py one --rpm N --friction X --rolling Y [--seed S] [--size MM] [--measured FILE.csv] [--profile FILE.csv]
+  drum.py one --rpm N --friction X --rolling Y [--seed S] [--size MM] [--solid MM3] [--measured FILE.csv] [--profile FILE.csv]
                                 one run; prints lines NAME: NUMBER, as `scree calibrate` asks: angle_deg of the middle,
-                                area of powder mm2 and, with measured profiles, error_mm2 between the two
+                                heights of the surface left_mm and right_mm of it, area of powder mm2 and, with measured
+                                profiles, error_mm2 between the two
   drum.py sizes FILE.csv --measured FILE.csv MM...
                                 angle and error at 15 and 45 rpm of spheres of several mean diameters, at the parameters
                                 that ACCES ended at; adds to the table what it lacks
@@ -27,7 +28,7 @@ RADIUS, DEPTH = 42.0, 20.0  # mm
 COLUMNS = 100               # over the diameter: 0.84 mm each
 USED = 0.9                  # of the radius: beyond it a column is all wall
 ACCES = 0.5613, 0.2931      # sliding, rolling
-SOLID = 23400.0             # mm3 of particles: spheres of 6 mm show as much powder as the picture
+SOLID = 26000.0
 
 
 def place(column):
@@ -65,6 +66,11 @@ def angle(lengths):
     return math.degrees(math.atan2(-sum((p[0] - x) * (p[1] - z) for p in points), sum((p[0] - x) ** 2 for p in points)))
 
 
+def height(lengths, share):
+    """Mean of the surface within 0.1 R of the place x = share R."""
+    return mean([z for c, z in enumerate(surface(lengths)) if abs(place(c) - share * RADIUS) < 0.1 * RADIUS])
+
+
 def error(a, b):
     width = 2 * RADIUS / COLUMNS
     return sum(abs(p - q) * width for c, (p, q) in enumerate(zip(a, b)) if abs(place(c)) < USED * RADIUS)
@@ -77,7 +83,8 @@ def outlines(path):
     for c in range(COLUMNS):
         table.add(place(c), seen[0][c], seen[1][c])
     for rpm, lengths in zip((15, 45), seen):
-        print(f"{rpm} rpm: middle at {angle(lengths):.1f} degrees, {sum(lengths) * 2 * RADIUS / COLUMNS:.0f} mm2 of powder")
+        print(f"{rpm} rpm: middle at {angle(lengths):.1f} degrees, left and right of it {height(lengths, -0.6):.1f} and "
+              f"{height(lengths, 0.6):.1f} mm, {sum(lengths) * 2 * RADIUS / COLUMNS:.0f} mm2 of powder")
 
 
 class Camera:
@@ -111,7 +118,7 @@ class Camera:
 def simulate(options):
     scree, camera = library(), Camera()
     speed, sizes = options.rpm * 2 * math.pi / 60, [0.86 * options.size, options.size, 1.14 * options.size]
-    count = round(SOLID / (math.pi / 6 * mean([s ** 3 for s in sizes])))
+    count = round(options.solid / (math.pi / 6 * mean([s ** 3 for s in sizes])))
     begin = 0.2 + max(1.2 / speed, 0.4)     # a bed that lay level has yielded after 70 degrees
     end = begin + max(0.8 / speed, 0.4)
     fields = {"seed": options.seed, "time": end, "materials.grain.friction": options.friction,
@@ -135,6 +142,8 @@ def simulate(options):
 def one(options):
     lengths, scene = simulate(options)
     print(f"angle_deg: {angle(lengths)!r}")
+    print(f"left_mm: {height(lengths, -0.6)!r}")
+    print(f"right_mm: {height(lengths, 0.6)!r}")
     print(f"area_mm2: {sum(lengths) * 2 * RADIUS / COLUMNS!r}")
     print(f"bodies: {len(scene.world)}")
     if options.measured:
@@ -152,7 +161,8 @@ def sizes(options):
     for size in options.sizes:
         for rpm in (15, 45):
             if table.key((size, rpm)) not in table.done:
-                lengths, scene = simulate(argparse.Namespace(rpm=rpm, friction=ACCES[0], rolling=ACCES[1], seed=1, size=float(size)))
+                lengths, scene = simulate(argparse.Namespace(rpm=rpm, friction=ACCES[0], rolling=ACCES[1], seed=1, size=float(size),
+                                                                solid=SOLID))
                 seen = [float(row[f"length_{rpm}_mm"]) for row in measured]
                 table.add(size, rpm, len(scene.world), angle(lengths), sum(lengths) * 2 * RADIUS / COLUMNS, error(lengths, seen))
 
@@ -174,6 +184,7 @@ def main():
         run.add_argument(f"--{name}", type=float, required=True)
     run.add_argument("--seed", type=int, default=1)
     run.add_argument("--size", type=float, default=6.0, help="mean diameter, mm")
+    run.add_argument("--solid", type=float, default=SOLID, help="volume of all spheres, mm3")
     run.add_argument("--measured")
     run.add_argument("--profile")
     verbs.add_parser("acces")
