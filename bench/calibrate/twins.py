@@ -77,6 +77,11 @@ def distance(truth, found):
     return math.sqrt(common.mean([(unit(n, truth[n]) - unit(n, found[n])) ** 2 for n in truth]))
 
 
+def told(p):
+    """yes: identified; end: narrow, but closed by an end of the range; no."""
+    return "yes" if p["identified"] else "no" if p["at_least"] is None and p["at_most"] is None else "end"
+
+
 def calibrate(index, table, method):
     truth, measured = twin(index)
     chosen = {n: t for n, t in TARGETS.items() if measured[n] is not None and (method == "calibrate" or n == "angle")}
@@ -97,7 +102,7 @@ def calibrate(index, table, method):
         (folder / f"{method}.yaml").write_text("\n".join(lines) + "\n")
         r = json.loads(common.run("calibrate", folder / f"{method}.yaml", "-o", folder / method, "-q", "--json", "-j", 1))
         found = {p["name"]: p for p in r["parameters"]}
-        cells = [x for n in RANGES for p in [found[n]] for x in (truth[n], p["mean"], p["low"], p["high"], int(p["identified"]))]
+        cells = [x for n in RANGES for p in [found[n]] for x in (truth[n], p["mean"], p["low"], p["high"], told(p))]
         table.add(method, index, budget, *cells, distance(truth, {n: p["mean"] for n, p in found.items()}), r["seconds"])
 
 
@@ -163,19 +168,19 @@ def cma(index, table):
 
 
 def report(table):
-    print("method,runs,twins,distance,sd,friction_held,rolling_held,friction_identified,rolling_identified,identified_held,friction_width,rolling_width")
+    print("method,runs,twins,distance,sd,friction_held,rolling_held,friction_identified,rolling_identified,friction_end,rolling_end,identified_held,friction_width,rolling_width")
     for method, budget in sorted({(r["method"], int(r["runs"])) for r in table.rows}):
         rows = [r for r in table.rows if (r["method"], int(r["runs"])) == (method, budget)]
         far = [float(r["distance"]) for r in rows]
         cells = [f"{common.mean(far):.3f}", f"{common.deviation(far):.3f}" if len(far) > 1 else ""]
         if rows[0]["friction_low"]:
             cells += [sum(float(r[f"{n}_low"]) <= float(r[n]) <= float(r[f"{n}_high"]) for r in rows) for n in RANGES]
-            cells += [sum(int(r[f"{n}_identified"]) for r in rows) for n in RANGES]
-            cells.append(sum(int(r[f"{n}_identified"]) and float(r[f"{n}_low"]) <= float(r[n]) <= float(r[f"{n}_high"])
+            cells += [sum(r[f"{n}_identified"] == word for r in rows) for word in ("yes", "end") for n in RANGES]
+            cells.append(sum(r[f"{n}_identified"] == "yes" and float(r[f"{n}_low"]) <= float(r[n]) <= float(r[f"{n}_high"])
                              for r in rows for n in RANGES))
             cells += [f"{common.mean([float(r[f'{n}_high']) - float(r[f'{n}_low']) for r in rows]):.3f}" for n in RANGES]
         else:
-            cells += [""] * 7
+            cells += [""] * 9
         print(",".join(map(str, [method, budget, len(rows), *cells])))
 
 

@@ -63,7 +63,10 @@ typedef struct scree_parameter_result {
   double mean, sd, median, low, high;
   double narrowed; /* width of the interval beside that of the range (of logarithms on a log scale):
                       1 says nothing was learnt */
-  bool identified; /* narrowed to a half at most */
+  bool identified; /* narrowed to a half at most, between both ends of the range */
+  /* Where it is narrowed so far by an end of the range: what it is at least, or at most, with
+     `confidence`. Else NaN. */
+  double at_least, at_most;
 } scree_parameter_result;
 
 /* Two parameters that trade against each other. */
@@ -84,8 +87,9 @@ typedef struct scree_answer_result {
   double single_low, single_high; /* of a single measurement */
   double noise;                   /* standard deviation of single runs */
   size_t run_count, missing;      /* runs that gave it; that gave none */
-  /* Runs at the posterior's mean, which nothing else is told from; the interval that their mean was
-   * expected in. Of a curve none. */
+  /* Runs at the posterior's mean, which nothing else is told from; the interval that their mean
+     was expected in, such that those of all answers hold together with `confidence`. Of a curve
+     none. */
   size_t check_count;
   double check_mean, check_low, check_high;
   bool inside; /* what was measured lies in the interval of such measurements */

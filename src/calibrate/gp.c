@@ -12,6 +12,7 @@
 #include "calibrate/gp.h"
 
 #include "base/math.h"
+#include "base/rng.h"
 
 #include <float.h>
 #include <string.h>
@@ -29,24 +30,44 @@ static const double root5 = 2.23606797749978969641;
 /* Added to every noise variance: a simulation without noise. */
 static const double least_noise = 1e-7;
 enum { MOST_ITERATIONS = 60 };
-static const double settled = 1e-5; /* change of the log density at which the search ends */
+static const double settled = 1e-5;    /* change of the log density at which the search ends */
+static const double difference = 1e-3; /* of a setting, for the curvature */
+enum { MEMBERS = 12, MEMBER_STREAM = 7 << 20 };
+
+/* ---- covariance ---- */
+
+/* Settings without their logarithms. */
+typedef struct kernel {
+  double inverse_length[SCREE_MOST_PARAMETERS], variance;
+  const double *noise; /* its logarithm in the middle, then its slopes */
+} kernel;
+
+/* One choice of the settings, with what share of all it counts. */
+typedef struct member {
+  double settings[SCREE_GP_MOST_SETTINGS], share;
+  kernel kernel;
+  double *inverse; /* of the covariance of the means, n x n */
+  double *weights; /* inverse times mean */
+} member;
 
 struct scree_gp {
   size_t active[SCREE_MOST_PARAMETERS], d, n, run_count, dimension_count;
   double shift, scale;            /* y = shift + scale * ours */
   double *x;                      /* n x d */
   double *mean, *squares, *count; /* per place: of the replicates; squared deviations from mean */
-  double settings[SCREE_GP_MOST_SETTINGS];
-  double *inverse; /* of the covariance of the means, n x n */
-  double *weights; /* inverse times mean */
+  member members[MEMBERS];        /* the first has the most probable settings */
 };
 
-/* ---- covariance ---- */
+static kernel kernel_of(const scree_gp *gp, const double *s) {
+  kernel k = {.variance = scree_exp(s[gp->d]), .noise = s + gp->d + 1};
+  for (size_t i = 0; i < gp->d; i++) k.inverse_length[i] = scree_exp(-s[i]);
+  return k;
+}
 
-static double distance2(const scree_gp *gp, const double *s, const double *a, const double *b) {
+static double distance2(const scree_gp *gp, const kernel *k, const double *a, const double *b) {
   double sum = 0;
-  for (size_t k = 0; k < gp->d; k++) {
-    double step = (a[k] - b[k]) * scree_exp(-s[k]);
+  for (size_t i = 0; i < gp->d; i++) {
+    double step = (a[i] - b[i]) * k->inverse_length[i];
     sum += step * step;
   }
   return sum;
@@ -63,13 +84,13 @@ static double plane(const scree_gp *gp, const double *a, const double *b) {
   return sum;
 }
 
-static double covariance(const scree_gp *gp, const double *s, const double *a, const double *b) {
-  return plane(gp, a, b) + scree_exp(s[gp->d]) * matern(distance2(gp, s, a, b));
+static double covariance(const scree_gp *gp, const kernel *k, const double *a, const double *b) {
+  return plane(gp, a, b) + k->variance * matern(distance2(gp, k, a, b));
 }
 
-static double noise_at(const scree_gp *gp, const double *s, const double *x) {
-  double sum = s[gp->d + 1];
-  for (size_t k = 0; k < gp->d; k++) sum += s[gp->d + 2 + k] * x[k];
+static double noise_at(const scree_gp *gp, const kernel *k, const double *x) {
+  double sum = k->noise[0];
+  for (size_t i = 0; i < gp->d; i++) sum += k->noise[1 + i] * x[i];
   return least_noise + scree_exp(sum);
 }
 
@@ -155,37 +176,36 @@ static double add_prior(const scree_gp *gp, const double *s, double *gradient) {
 
 /* Of the replicates about their means, and what the noise's own gradient gets from them and from
  * the covariance of the means. */
-static double add_replicates(const scree_gp *gp, const double *s, const double *inverse,
+static double add_replicates(const scree_gp *gp, const kernel *k, const double *inverse,
                              const double *weights, double *gradient) {
   size_t d = gp->d;
   double sum = 0;
   for (size_t i = 0; i < gp->n; i++) {
     const double *x = gp->x + i * d;
-    double noise = noise_at(gp, s, x), more = gp->count[i] - 1;
+    double noise = noise_at(gp, k, x), more = gp->count[i] - 1;
     sum -= 0.5 * (more * scree_log(noise) + gp->squares[i] / noise);
     double slope = -0.5 * (more / noise - gp->squares[i] / (noise * noise));
     slope += 0.5 * (weights[i] * weights[i] - inverse[i * gp->n + i]) / gp->count[i];
     slope *= noise - least_noise;
     gradient[d + 1] += slope;
-    for (size_t k = 0; k < d; k++) gradient[d + 2 + k] += slope * x[k];
+    for (size_t c = 0; c < d; c++) gradient[d + 2 + c] += slope * x[c];
   }
   return sum;
 }
 
-static void add_kernel_gradient(const scree_gp *gp, const double *s, const double *inverse,
+static void add_kernel_gradient(const scree_gp *gp, const kernel *k, const double *inverse,
                                 const double *weights, double *gradient) {
   size_t d = gp->d, n = gp->n;
-  double variance = scree_exp(s[d]);
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j <= i; j++) {
       double twice = i == j ? 1 : 2;
       double slope = 0.5 * twice * (weights[i] * weights[j] - inverse[i * n + j]);
-      double squared = distance2(gp, s, gp->x + i * d, gp->x + j * d), r = root5 * sqrt(squared);
-      double fall = variance * scree_exp(-r);
+      double squared = distance2(gp, k, gp->x + i * d, gp->x + j * d), r = root5 * sqrt(squared);
+      double fall = k->variance * scree_exp(-r);
       gradient[d] += slope * fall * (1 + r + r * r / 3);
-      for (size_t k = 0; k < d; k++) {
-        double step = (gp->x[i * d + k] - gp->x[j * d + k]) * scree_exp(-s[k]);
-        gradient[k] += slope * fall * (5.0 / 3) * (1 + r) * step * step;
+      for (size_t c = 0; c < d; c++) {
+        double step = (gp->x[i * d + c] - gp->x[j * d + c]) * k->inverse_length[c];
+        gradient[c] += slope * fall * (5.0 / 3) * (1 + r) * step * step;
       }
     }
 }
@@ -194,10 +214,11 @@ static void add_kernel_gradient(const scree_gp *gp, const double *s, const doubl
 static double density(const scree_gp *gp, const double *s, double *factor, double *inverse,
                       double *weights, double *gradient) {
   size_t n = gp->n, d = gp->d;
+  kernel k = kernel_of(gp, s);
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j <= i; j++)
-      factor[i * n + j] = covariance(gp, s, gp->x + i * d, gp->x + j * d) +
-                          (i == j ? noise_at(gp, s, gp->x + i * d) / gp->count[i] : 0);
+      factor[i * n + j] = covariance(gp, &k, gp->x + i * d, gp->x + j * d) +
+                          (i == j ? noise_at(gp, &k, gp->x + i * d) / gp->count[i] : 0);
   if (!factorise(factor, n)) return -INFINITY;
   double sum = -0.5 * log_determinant(factor, n);
   invert(factor, n, inverse);
@@ -207,8 +228,8 @@ static double density(const scree_gp *gp, const double *s, double *factor, doubl
     sum -= 0.5 * weights[i] * gp->mean[i];
   }
   memset(gradient, 0, setting_count(gp) * sizeof *gradient);
-  sum += add_replicates(gp, s, inverse, weights, gradient);
-  add_kernel_gradient(gp, s, inverse, weights, gradient);
+  sum += add_replicates(gp, &k, inverse, weights, gradient);
+  add_kernel_gradient(gp, &k, inverse, weights, gradient);
   return sum + add_prior(gp, s, gradient);
 }
 
@@ -337,30 +358,75 @@ static scree_status allocate(scree_gp *gp, size_t runs, scree_error *error) {
   SCREE_ALLOC_OR(gp->mean, runs, error, fail);
   SCREE_ALLOC_OR(gp->squares, runs, error, fail);
   SCREE_ALLOC_OR(gp->count, runs, error, fail);
-  SCREE_ALLOC_OR(gp->weights, runs, error, fail);
   return SCREE_OK;
 fail:
   return SCREE_OUT_OF_MEMORY;
 }
 
+/* The Cholesky factor of the curvature of the log density at the most probable settings, from
+ * differences of its gradient; false: it is no peak. */
+static bool find_curvature(search *q, double *factor) {
+  size_t m = q->m;
+  double ahead[SCREE_GP_MOST_SETTINGS], behind[SCREE_GP_MOST_SETTINGS], s[SCREE_GP_MOST_SETTINGS];
+  for (size_t i = 0; i < m; i++) {
+    memcpy(s, q->s, sizeof s);
+    s[i] = q->s[i] + difference;
+    double a = density(q->gp, s, q->factor, q->inverse, q->weights, ahead);
+    s[i] = q->s[i] - difference;
+    double b = density(q->gp, s, q->factor, q->inverse, q->weights, behind);
+    if (!isfinite(a) || !isfinite(b)) return false;
+    for (size_t j = 0; j < m; j++) factor[i * m + j] = (behind[j] - ahead[j]) / (2 * difference);
+  }
+  for (size_t i = 0; i < m; i++)
+    for (size_t j = 0; j < i; j++)
+      factor[i * m + j] = 0.5 * (factor[i * m + j] + factor[j * m + i]);
+  return factorise(factor, m);
+}
+
+/* Settings drawn from the normal density of that curvature; the share of each is its density
+ * beside that normal one. Without a peak the first stands alone. */
+static void draw_members(scree_gp *gp, search *q) {
+  size_t m = q->m;
+  double factor[SCREE_GP_MOST_SETTINGS * SCREE_GP_MOST_SETTINGS], all = 0;
+  bool curved = find_curvature(q, factor);
+  scree_rng rng = {1, MEMBER_STREAM, 0};
+  for (size_t k = 0; k < MEMBERS; k++) {
+    member *one = &gp->members[k];
+    double squares = 0;
+    memcpy(one->settings, q->s, sizeof one->settings);
+    for (size_t i = m; curved && k > 0 && i-- > 0;) { /* solves L^T step = z, from its last row */
+      double z = scree_rng_normal(&rng), step = z;
+      for (size_t j = i + 1; j < m; j++) step -= factor[j * m + i] * (one->settings[j] - q->s[j]);
+      one->settings[i] += step / factor[i * m + i];
+      squares += z * z;
+    }
+    double value = density(gp, one->settings, q->factor, one->inverse, one->weights, q->gradient);
+    one->kernel = kernel_of(gp, one->settings);
+    one->share = curved || k == 0 ? scree_exp(value - q->value + 0.5 * squares) : 0;
+    all += one->share;
+  }
+  for (size_t k = 0; k < MEMBERS; k++) gp->members[k].share /= all;
+}
+
 static scree_status find_settings(scree_gp *gp, scree_error *error) {
-  search best = {0}, q = {.gp = gp, .m = setting_count(gp), .weights = gp->weights};
+  search best = {0}, q = {.gp = gp, .m = setting_count(gp)};
   SCREE_ALLOC_OR(q.factor, gp->n * gp->n, error, fail);
-  SCREE_ALLOC_OR(gp->inverse, gp->n * gp->n, error, fail);
-  q.inverse = gp->inverse;
+  for (size_t k = 0; k < MEMBERS; k++) {
+    SCREE_ALLOC_OR(gp->members[k].inverse, gp->n * gp->n, error, fail);
+    SCREE_ALLOC_OR(gp->members[k].weights, gp->n, error, fail);
+  }
+  q.inverse = gp->members[0].inverse;
+  q.weights = gp->members[0].weights;
   best.value = -INFINITY;
   for (size_t i = 0; i < sizeof start_lengths / sizeof *start_lengths; i++) {
     climb(&q, scree_log(start_lengths[i]));
     if (q.value > best.value) best = q;
   }
-  if (!isfinite(best.value)) {
-    scree_free(q.factor);
-    return scree_fail(error, SCREE_BAD_ARGUMENT, "the answers' covariance cannot be inverted");
-  }
-  memcpy(gp->settings, best.s, sizeof gp->settings);
-  density(gp, gp->settings, q.factor, gp->inverse, gp->weights, q.gradient);
+  if (isfinite(best.value)) draw_members(gp, &best);
   scree_free(q.factor);
-  return SCREE_OK;
+  return isfinite(best.value)
+             ? SCREE_OK
+             : scree_fail(error, SCREE_BAD_ARGUMENT, "the answers' covariance cannot be inverted");
 fail:
   scree_free(q.factor);
   return SCREE_OUT_OF_MEMORY;
@@ -395,8 +461,10 @@ void scree_gp_free(scree_gp *gp) {
   scree_free(gp->mean);
   scree_free(gp->squares);
   scree_free(gp->count);
-  scree_free(gp->weights);
-  scree_free(gp->inverse);
+  for (size_t k = 0; k < MEMBERS; k++) {
+    scree_free(gp->members[k].weights);
+    scree_free(gp->members[k].inverse);
+  }
   scree_free(gp);
 }
 
@@ -406,9 +474,10 @@ size_t scree_gp_place_count(const scree_gp *gp) {
 size_t scree_gp_run_count(const scree_gp *gp) {
   return gp->run_count;
 }
-size_t scree_gp_settings(const scree_gp *gp, double settings[SCREE_GP_MOST_SETTINGS]) {
-  memcpy(settings, gp->settings, sizeof gp->settings);
-  return setting_count(gp);
+double scree_gp_member(const scree_gp *gp, size_t index, double settings[SCREE_GP_MOST_SETTINGS]) {
+  if (index >= MEMBERS) return -1;
+  memcpy(settings, gp->members[index].settings, sizeof gp->members[index].settings);
+  return gp->members[index].share;
 }
 
 /* ---- prediction ---- */
@@ -418,60 +487,96 @@ static void choose_active(const scree_gp *gp, const double *x, double *place) {
 }
 
 double scree_gp_noise(const scree_gp *gp, const double *x) {
-  double place[SCREE_MOST_PARAMETERS];
+  double place[SCREE_MOST_PARAMETERS], noise = 0;
   choose_active(gp, x, place);
-  return gp->scale * gp->scale * noise_at(gp, gp->settings, place);
+  for (size_t m = 0; m < MEMBERS; m++)
+    noise += gp->members[m].share * noise_at(gp, &gp->members[m].kernel, place);
+  return gp->scale * gp->scale * noise;
+}
+
+/* Covariances of a place with all places of a member; answers its mean there. */
+static double reach(const scree_gp *gp, const member *one, const double *place, double *k) {
+  double mean = 0;
+  for (size_t i = 0; i < gp->n; i++) {
+    k[i] = covariance(gp, &one->kernel, place, gp->x + i * gp->d);
+    mean += one->weights[i] * k[i];
+  }
+  return mean;
 }
 
 double scree_gp_mean(const scree_gp *gp, const double *x) {
-  double place[SCREE_MOST_PARAMETERS], mean = 0;
+  double place[SCREE_MOST_PARAMETERS], k[SCREE_GP_MOST_PLACES], mean = 0;
   choose_active(gp, x, place);
-  for (size_t i = 0; i < gp->n; i++)
-    mean += gp->weights[i] * covariance(gp, gp->settings, place, gp->x + i * gp->d);
+  for (size_t m = 0; m < MEMBERS; m++)
+    mean += gp->members[m].share * reach(gp, &gp->members[m], place, k);
   return gp->shift + gp->scale * mean;
 }
 
 scree_gp_value scree_gp_at(const scree_gp *gp, const double *x) {
-  double place[SCREE_MOST_PARAMETERS], k[SCREE_GP_MOST_PLACES], mean = 0;
+  double place[SCREE_MOST_PARAMETERS], k[SCREE_GP_MOST_PLACES];
+  double mean = 0, squares = 0, variance = 0, noise = 0;
   choose_active(gp, x, place);
-  double variance = covariance(gp, gp->settings, place, place);
-  for (size_t i = 0; i < gp->n; i++) {
-    k[i] = covariance(gp, gp->settings, place, gp->x + i * gp->d);
-    mean += gp->weights[i] * k[i];
-    const double *row = gp->inverse + i * gp->n;
-    double sum = 0.5 * row[i] * k[i];
-    for (size_t j = 0; j < i; j++) sum += row[j] * k[j];
-    variance -= 2 * k[i] * sum;
+  for (size_t m = 0; m < MEMBERS; m++) {
+    const member *one = &gp->members[m];
+    double y = reach(gp, one, place, k), own = covariance(gp, &one->kernel, place, place);
+    for (size_t i = 0; i < gp->n; i++) {
+      const double *row = one->inverse + i * gp->n;
+      double sum = 0.5 * row[i] * k[i];
+      for (size_t j = 0; j < i; j++) sum += row[j] * k[j];
+      own -= 2 * k[i] * sum;
+    }
+    mean += one->share * y;
+    squares += one->share * y * y;
+    variance += one->share * fmax(own, 0);
+    noise += one->share * noise_at(gp, &one->kernel, place);
   }
   double squared = gp->scale * gp->scale;
-  return (scree_gp_value){gp->shift + gp->scale * mean, squared * fmax(variance, 0),
-                          squared * noise_at(gp, gp->settings, place)};
+  return (scree_gp_value){gp->shift + gp->scale * mean,
+                          squared * (variance + fmax(squares - mean * mean, 0)), squared * noise};
 }
 
+/* The mean over members of their covariances, and the covariance of their means. */
 scree_status scree_gp_covariance(const scree_gp *gp, const double *x, size_t count, double *answer,
                                  scree_error *error) {
   size_t n = gp->n, d = gp->d;
   double *places = scree_alloc(count * d + 1, sizeof *places);
   double *k = scree_alloc(count * n, sizeof *k), *ki = scree_alloc(n, sizeof *ki);
-  bool good = places && k && ki;
-  for (size_t a = 0; good && a < count; a++) {
+  double *means = scree_alloc(count * MEMBERS, sizeof *means);
+  bool good = places && k && ki && means;
+  memset(answer, 0, count * count * sizeof *answer);
+  for (size_t a = 0; good && a < count; a++)
     choose_active(gp, x + a * gp->dimension_count, places + a * d);
-    for (size_t i = 0; i < n; i++)
-      k[a * n + i] = covariance(gp, gp->settings, places + a * d, gp->x + i * d);
-  }
-  for (size_t a = 0; good && a < count; a++) {
-    for (size_t i = 0; i < n; i++) {
-      ki[i] = 0;
-      for (size_t j = 0; j < n; j++) ki[i] += gp->inverse[i * n + j] * k[a * n + j];
+  for (size_t m = 0; good && m < MEMBERS; m++) {
+    const member *one = &gp->members[m];
+    for (size_t a = 0; a < count; a++)
+      means[a * MEMBERS + m] = reach(gp, one, places + a * d, k + a * n);
+    for (size_t a = 0; a < count; a++) {
+      for (size_t i = 0; i < n; i++) {
+        ki[i] = 0;
+        for (size_t j = 0; j < n; j++) ki[i] += one->inverse[i * n + j] * k[a * n + j];
+      }
+      for (size_t b = 0; b <= a; b++) {
+        double sum = covariance(gp, &one->kernel, places + a * d, places + b * d);
+        for (size_t i = 0; i < n; i++) sum -= ki[i] * k[b * n + i];
+        answer[a * count + b] += one->share * sum;
+      }
     }
+  }
+  for (size_t a = 0; good && a < count; a++)
     for (size_t b = 0; b <= a; b++) {
-      double sum = covariance(gp, gp->settings, places + a * d, places + b * d);
-      for (size_t i = 0; i < n; i++) sum -= ki[i] * k[b * n + i];
+      double both = 0, first = 0, second = 0;
+      for (size_t m = 0; m < MEMBERS; m++) {
+        double share = gp->members[m].share, y = means[a * MEMBERS + m], z = means[b * MEMBERS + m];
+        both += share * y * z;
+        first += share * y;
+        second += share * z;
+      }
+      double sum = answer[a * count + b] + both - first * second;
       answer[a * count + b] = answer[b * count + a] = sum * gp->scale * gp->scale;
     }
-  }
   scree_free(places);
   scree_free(k);
   scree_free(ki);
+  scree_free(means);
   return good ? SCREE_OK : scree_fail_memory(error, count * n * sizeof *k, "covariances");
 }

@@ -48,9 +48,10 @@ size_t scree_gp_run_count(const scree_gp *gp);
 
 enum { SCREE_GP_MOST_SETTINGS = 2 * SCREE_MOST_PARAMETERS + 2 };
 
-/* The fitted settings: logarithms of the lengths, of the variance of the departures from the plane,
- * of the noise in the middle, and the noise's slopes. Answers their number. */
-size_t scree_gp_settings(const scree_gp *gp, double settings[SCREE_GP_MOST_SETTINGS]);
+/* One of the choices of settings that are averaged, the most probable first: logarithms of the
+ * lengths, of the variance of the departures from the plane, of the noise in the middle, and the
+ * noise's slopes. Answers its share; -1: there are no more. */
+double scree_gp_member(const scree_gp *gp, size_t index, double settings[SCREE_GP_MOST_SETTINGS]);
 /* Log posterior density of settings, but for a constant, and its gradient. -INFINITY: the matrix is
  * not positive definite. */
 double scree_gp_log_density(const scree_gp *gp, const double *settings, double *gradient);

@@ -8,9 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A parameter is called identified where its interval is at most this share of that of its range.
- */
+/* A parameter is called identified where its interval is at most this share of that of its range,
+ * and no end of the range is part of it. */
 static const double identified_share = 0.5;
+static const double end_share = 0.01; /* of samples: as near to the end of the range is at it */
 /* Two trade against each other where one tells this share of the other's variance. */
 static const double trade_share = 0.5;
 enum { BINS = 8, MOST_HISTORY = 10, ANSWER_STREAM = 6 << 20, MOST_ADVISED = 500 };
@@ -70,6 +71,32 @@ static double narrowed(const double *samples, size_t count, size_t d, size_t k, 
   return (s.high - s.low) / (2 * confidence);
 }
 
+/* Whether the shortest interval of that confidence begins (-1) or ends (1) with the samples: what
+ * was measured then leaves the range there, and not the parameter; 0: neither. Values are sorted.
+ */
+static int end_of(const double *values, size_t count, double confidence) {
+  size_t held = (size_t)(confidence * (double)count), shortest = 0;
+  size_t near = (size_t)(end_share * (double)count);
+  for (size_t i = 1; i + held < count; i++)
+    if (values[i + held] - values[i] < values[shortest + held] - values[shortest]) shortest = i;
+  return shortest <= near ? -1 : shortest + held + near >= count - 1 ? 1 : 0;
+}
+
+/* What the posterior says in one word. A list has no beyond. */
+static void judge(analysis *a, size_t k, scree_parameter_result *out) {
+  const scree_plan_parameter *p = &a->c->parameters[k];
+  size_t n = a->r->sample_count;
+  double confidence = a->r->confidence;
+  out->narrowed = narrowed(a->samples, n, a->c->parameter_count, k, confidence, a->column);
+  int end = p->values.count ? 0 : end_of(a->column, n, confidence);
+  bool narrow = out->narrowed <= identified_share;
+  out->identified = narrow && end == 0;
+  if (narrow && end > 0)
+    out->at_least = scree_parameter_number(p, quantile(a->column, n, 1 - confidence));
+  if (narrow && end < 0)
+    out->at_most = scree_parameter_number(p, quantile(a->column, n, confidence));
+}
+
 static scree_status describe_parameters(analysis *a) {
   const scree_calibration *c = a->c;
   size_t d = c->parameter_count, n = a->r->sample_count;
@@ -83,7 +110,9 @@ static scree_status describe_parameters(analysis *a) {
     *out = (scree_parameter_result){.name = scree_arena_text(&a->arena, p->place.name),
                                     .logarithmic = p->scale == 1,
                                     .from = scree_parameter_number(p, -1),
-                                    .to = scree_parameter_number(p, 1)};
+                                    .to = scree_parameter_number(p, 1),
+                                    .at_least = NAN,
+                                    .at_most = NAN};
     if (!out->name) return fail_memory(a);
     if (n == 0) continue;
     for (size_t i = 0; i < n; i++)
@@ -94,8 +123,7 @@ static scree_status describe_parameters(analysis *a) {
     out->median = s.median;
     out->low = s.low;
     out->high = s.high;
-    out->narrowed = narrowed(a->samples, n, d, k, a->r->confidence, a->column);
-    out->identified = out->narrowed <= identified_share;
+    judge(a, k, out);
   }
   return SCREE_OK;
 }
@@ -276,6 +304,14 @@ static scree_status describe_curve(analysis *a, size_t quantity, draws *d,
   return SCREE_OK;
 }
 
+/* What one of several intervals must hold for all of them to hold with the confidence (Sidak
+ * 1967): else one of ten sound answers would be told as a misfit. */
+static double one_of_all(const analysis *a) {
+  size_t count = 0;
+  for (size_t q = 0; q < a->c->quantity_count; q++) count += a->c->quantities[q].x == NULL;
+  return scree_exp(scree_log(a->r->confidence) / (double)count);
+}
+
 /* What the runs at the answer gave, and where the process expects their mean. */
 static void describe_check(const analysis *a, size_t quantity, scree_answer_result *out) {
   const scree_calibration *c = a->c;
@@ -294,7 +330,7 @@ static void describe_check(const analysis *a, size_t quantity, scree_answer_resu
   out->check_count = n;
   if (n == 0) return;
   scree_gp_value value = scree_gp_at(a->model.model.items[a->model.first[quantity]].gp, x);
-  double half = scree_student_quantile(0.5 * (1 + a->r->confidence), 1e6) *
+  double half = scree_student_quantile(0.5 * (1 + one_of_all(a)), 1e6) *
                 sqrt(value.variance + value.noise / (double)n);
   out->check_mean = sum / (double)n;
   out->check_low = value.mean - half;

@@ -27,12 +27,22 @@ static void print_head(const scree_calibration_result *r, FILE *s) {
   for (size_t i = 0; i < r->failure_count && i < 5; i++) fprintf(s, "failed: %s\n", r->failures[i]);
 }
 
+static bool is_bounded(const scree_parameter_result *p) {
+  return !isnan(p->at_least) || !isnan(p->at_most);
+}
+
 static void print_parameters(const scree_calibration_result *r, FILE *s) {
   fprintf(s, "\n%-24s %10s %10s  %-25s %9s\n", "parameter", "mean", "SD", "interval", "of range");
   for (size_t k = 0; k < r->parameter_count; k++) {
     const scree_parameter_result *p = &r->parameters[k];
+    char bound[64];
+    snprintf(bound, sizeof bound, "at %s %.3g", isnan(p->at_least) ? "most" : "least",
+             isnan(p->at_least) ? p->at_most : p->at_least);
     fprintf(s, "%-24s %10.4g %10.3g  [%10.4g, %10.4g] %8.0f %%  %s\n", p->name, p->mean, p->sd,
-            p->low, p->high, 100 * p->narrowed, p->identified ? "identified" : "not identifiable");
+            p->low, p->high, 100 * p->narrowed,
+            p->identified   ? "identified"
+            : is_bounded(p) ? bound
+                            : "not identifiable");
   }
   fprintf(s, "intervals of %g %%; `of range`: their width beside that of the range\n",
           100 * r->confidence);
@@ -47,8 +57,15 @@ static void print_trades(const scree_calibration_result *r, FILE *s) {
             "%s %.3g with %s %.3g\n",
             a, b, a, t->ends[0][0], b, t->ends[0][1], a, t->ends[1][0], b, t->ends[1][1]);
   }
+  for (size_t k = 0; k < r->parameter_count; k++)
+    if (is_bounded(&r->parameters[k]))
+      fprintf(
+          s,
+          "\n%s: its range ends before what agrees with the measurements does; only the other end "
+          "is told by them\n",
+          r->parameters[k].name);
   for (size_t k = 0; k < r->parameter_count; k++) {
-    bool traded = r->parameters[k].identified;
+    bool traded = r->parameters[k].identified || is_bounded(&r->parameters[k]);
     for (size_t i = 0; i < r->trade_count; i++)
       traded = traded || r->trades[i].a == k || r->trades[i].b == k;
     if (!traded)
@@ -91,7 +108,7 @@ static void print_check(const scree_calibration_result *r, FILE *s) {
       fputs("\nchecked by runs at", s);
       for (size_t k = 0; k < r->parameter_count; k++)
         fprintf(s, "%s %s %.4g", k ? "," : "", r->parameters[k].name, r->parameters[k].mean);
-      fputs("\n", s);
+      fprintf(s, "; all together expected with %g %%\n", 100 * r->confidence);
       begun = true;
     }
     bool good = a->check_mean >= a->check_low && a->check_mean <= a->check_high;
@@ -168,6 +185,8 @@ static void put_parameters(scree_json *json, const scree_calibration_result *r) 
       scree_json_number(json, "high", p->high);
       scree_json_number(json, "narrowed", p->narrowed);
       scree_json_bool(json, "identified", p->identified);
+      scree_json_number(json, "at_least", p->at_least);
+      scree_json_number(json, "at_most", p->at_most);
     }
     scree_json_end(json);
   }

@@ -127,7 +127,35 @@ static void replicates_are_all_runs(void **state) {
   }
 }
 
-/* Mean and variance as from the covariance of all single runs; the covariance of two places too. */
+/* Means (2), covariance (2 x 2) and noise (2) of two places with one choice of settings, in units
+ * of the standardised answers. */
+typedef struct oracle {
+  double mean[2], covariance[2][2], noise[2];
+} oracle;
+
+static oracle ask_all_runs(const runs *r, const double *s, const double *z, const double *places) {
+  oracle o = {0};
+  double k[2][MOST], a[MOST][MOST], b[MOST];
+  size_t n = r->view.run_count;
+  for (int p = 0; p < 2; p++) {
+    for (size_t i = 0; i < n; i++) {
+      b[i] = k[p][i] = kernel(s, places + 2 * p, r->x + 2 * i);
+      for (size_t j = 0; j < n; j++)
+        a[i][j] = kernel(s, r->x + 2 * i, r->x + 2 * j) + (i == j ? noise_of(s, r->x + 2 * i) : 0);
+    }
+    solve(a, b, n);
+    o.noise[p] = noise_of(s, places + 2 * p);
+    for (size_t i = 0; i < n; i++) o.mean[p] += b[i] * z[i];
+    for (int q = 0; q <= p; q++) {
+      double sum = kernel(s, places + 2 * p, places + 2 * q);
+      for (size_t i = 0; i < n; i++) sum -= b[i] * k[q][i];
+      o.covariance[p][q] = o.covariance[q][p] = sum;
+    }
+  }
+  return o;
+}
+
+/* Mean and covariance of the mixture as from the covariance of all single runs. */
 static void predictions_are_those_of_all_runs(void **state) {
   (void)state;
   scree_error error;
@@ -135,39 +163,38 @@ static void predictions_are_those_of_all_runs(void **state) {
   for (uint64_t seed = 0; seed < 30; seed++) {
     runs r;
     scree_gp *gp;
-    double s[SCREE_GP_MOST_SETTINGS], z[MOST], shift, scale, a[MOST][MOST], b[MOST];
+    oracle all = {0};
+    double s[SCREE_GP_MOST_SETTINGS], z[MOST], shift, scale, places[4], covariance[4], share,
+        shares = 0;
     make_runs(&r, seed, 8 + (size_t)(seed % 20));
-    size_t n = r.view.run_count;
     CHECK_OK(scree_gp_fit(&r.view, &gp, &error), error);
-    scree_gp_settings(gp, s);
     standardise(&r, z, &shift, &scale);
-    double places[4], k[2][MOST], covariance[4], expected[2][2], mean[2] = {0};
     for (int i = 0; i < 4; i++) places[i] = 2 * scree_rng_uniform(&rng) - 1;
-    for (int p = 0; p < 2; p++) {
-      for (size_t i = 0; i < n; i++) {
-        b[i] = k[p][i] = kernel(s, places + 2 * p, r.x + 2 * i);
-        for (size_t j = 0; j < n; j++)
-          a[i][j] = kernel(s, r.x + 2 * i, r.x + 2 * j) + (i == j ? noise_of(s, r.x + 2 * i) : 0);
-      }
-      solve(a, b, n);
-      for (size_t i = 0; i < n; i++) mean[p] += b[i] * z[i];
-      for (int q = 0; q <= p; q++) {
-        expected[p][q] = kernel(s, places + 2 * p, places + 2 * q);
-        for (size_t i = 0; i < n; i++) expected[p][q] -= b[i] * k[q][i];
+    for (size_t m = 0; (share = scree_gp_member(gp, m, s)) >= 0; m++) {
+      oracle one = ask_all_runs(&r, s, z, places);
+      shares += share;
+      for (int p = 0; p < 2; p++) {
+        all.mean[p] += share * one.mean[p];
+        all.noise[p] += share * one.noise[p];
+        for (int q = 0; q < 2; q++)
+          all.covariance[p][q] += share * (one.covariance[p][q] + one.mean[p] * one.mean[q]);
       }
     }
+    CHECK_NEAR(shares, 1, 1e-12);
     CHECK_OK(scree_gp_covariance(gp, places, 2, covariance, &error), error);
     double unit = scale * scale;
     for (int p = 0; p < 2; p++) {
       scree_gp_value value = scree_gp_at(gp, places + 2 * p);
-      CHECK_NEAR(value.mean, shift + scale * mean[p], 1e-6 * scale);
+      double variance = all.covariance[p][p] - all.mean[p] * all.mean[p];
+      CHECK_NEAR(value.mean, shift + scale * all.mean[p], 1e-6 * scale);
       CHECK_NEAR(value.mean, scree_gp_mean(gp, places + 2 * p), 1e-9 * scale);
-      CHECK_NEAR(value.variance, unit * expected[p][p], 1e-6 * unit);
-      CHECK_NEAR(covariance[3 * p], unit * expected[p][p], 1e-6 * unit);
-      CHECK_NEAR(value.noise, unit * noise_of(s, places + 2 * p), 1e-9 * unit);
-      CHECK_NEAR(value.noise, scree_gp_noise(gp, places + 2 * p), 0);
+      CHECK_NEAR(value.variance, unit * variance, 1e-6 * unit);
+      CHECK_NEAR(covariance[3 * p], unit * variance, 1e-6 * unit);
+      CHECK_NEAR(value.noise, unit * all.noise[p], 1e-9 * unit);
+      CHECK_NEAR(value.noise, scree_gp_noise(gp, places + 2 * p), 1e-12 * unit);
     }
-    CHECK_NEAR(covariance[1], unit * expected[1][0], 1e-6 * unit);
+    CHECK_NEAR(covariance[1], unit * (all.covariance[1][0] - all.mean[0] * all.mean[1]),
+               1e-6 * unit);
     CHECK_NEAR(covariance[2], covariance[1], 0);
     scree_gp_free(gp);
   }

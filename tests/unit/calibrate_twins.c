@@ -169,6 +169,38 @@ static void intervals_shrink_with_the_budget(void **state) {
   assert_true(many < few);
 }
 
+/* What three runs at some place give lies in the interval that the processes expect it in as often
+ * as the interval says, also where there were few runs. */
+static void checks_lie_where_they_are_expected(void **state) {
+  (void)state;
+  enum { TWINS = 200, CHECKS = 3 };
+  static const size_t budgets[] = {12, 18, 30};
+  for (size_t b = 0; b < 3; b++) {
+    int held[2] = {0};
+    for (uint64_t seed = 100; seed < 100 + TWINS; seed++) {
+      double truth[D], unit[START * D], mean[2] = {0};
+      draw_truth(seed, truth);
+      twin t = {.answer_count = 2, .repeat_count = 1, .noise = {seed, 1, 0}};
+      scree_design_sobol(seed, START, D, unit);
+      for (size_t i = 0; t.run_count < budgets[b]; i = (i + 1) % START)
+        for (size_t again = 0; again < 1 + i % 2 && t.run_count < budgets[b]; again++)
+          run_at(&t, (double[]){2 * unit[D * i] - 1, 2 * unit[D * i + 1] - 1});
+      fit(&t);
+      for (size_t i = 0; i < CHECKS; i++) {
+        mean[0] += angle_of(truth, &t.noise) / CHECKS;
+        mean[1] += time_of(truth, &t.noise) / CHECKS;
+      }
+      for (size_t a = 0; a < 2; a++) {
+        scree_gp_value v = scree_gp_at(t.model.items[a].gp, truth);
+        double half = 1.645 * sqrt(v.variance + v.noise / CHECKS);
+        held[a] += fabs(mean[a] - v.mean) <= half;
+      }
+      scree_model_free(&t.model);
+    }
+    print_message("%zu runs: held %d and %d of %d\n", budgets[b], held[0], held[1], TWINS);
+  }
+}
+
 /* ---- curves ---- */
 
 /* Curves of two shapes: their basis has two, scores have the variance they were made with, and what
@@ -213,6 +245,7 @@ int main(void) {
       cmocka_unit_test(intervals_hold_the_truth),
       cmocka_unit_test(a_banana_is_not_identifiable),
       cmocka_unit_test(intervals_shrink_with_the_budget),
+      cmocka_unit_test(checks_lie_where_they_are_expected),
       cmocka_unit_test(curves_have_their_shapes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

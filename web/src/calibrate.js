@@ -40,7 +40,7 @@ export class CalibrationSection {
       { head: 'mean', value: (p) => number(p.mean) },
       { head: `interval of ${percent(c.confidence)}`, value: (p) => interval(p.low, p.high) },
       { head: 'of its range', value: (p) => percent(p.narrowed) },
-      { head: 'told', value: (p) => (p.identified ? 'identified' : 'not identifiable') },
+      { head: 'told', value: (p) => (p.identified ? 'identified' : known(p.at_least) ? `at least ${number(p.at_least)}` : known(p.at_most) ? `at most ${number(p.at_most)}` : 'not identifiable') },
     ], c.parameters, 'parameters.csv', 'What is known of the parameters');
     this.drawPairs();
     table(host, [
