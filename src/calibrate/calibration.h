@@ -192,6 +192,10 @@ scree_status scree_calibration_sample(const scree_calibration *c, const scree_mo
                                       int effort, double **samples, size_t *count,
                                       scree_error *error);
 
+/* result.c: whether the shortest interval of that confidence begins (-1) or ends (1) with the
+ * sorted samples, so that an end of the range closes it; 0: neither. */
+int scree_samples_end(const double *values, size_t count, double confidence);
+
 /* search.c: the next places of a search, and its candidates. */
 scree_status scree_search_next(const scree_calibration *c, const scree_calibration_model *model,
                                const scree_answers *gathered, size_t count, scree_place_pick *picks,

@@ -96,14 +96,23 @@ static double noise_at(const scree_gp *gp, const kernel *k, const double *x) {
 
 /* ---- linear algebra: symmetric positive definite, row by row ---- */
 
+/* Four sums at a time, which do not wait for one another. */
+static double dot(const double *a, const double *b, size_t n) {
+  double sum[4] = {0};
+  size_t i = 0;
+  for (; i + 4 <= n; i += 4)
+    for (size_t k = 0; k < 4; k++) sum[k] += a[i + k] * b[i + k];
+  for (; i < n; i++) sum[0] += a[i] * b[i];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
 /* Lower triangle of a into its Cholesky factor; false: not positive definite. */
 static bool factorise(double *a, size_t n) {
   for (size_t i = 0; i < n; i++) {
     double *row = a + i * n;
     for (size_t j = 0; j <= i; j++) {
       const double *other = a + j * n;
-      double sum = row[j];
-      for (size_t k = 0; k < j; k++) sum -= row[k] * other[k];
+      double sum = row[j] - dot(row, other, j);
       if (i != j)
         row[j] = sum / other[j];
       else if (sum > 0)
@@ -223,8 +232,7 @@ static double density(const scree_gp *gp, const double *s, double *factor, doubl
   double sum = -0.5 * log_determinant(factor, n);
   invert(factor, n, inverse);
   for (size_t i = 0; i < n; i++) {
-    weights[i] = 0;
-    for (size_t j = 0; j < n; j++) weights[i] += inverse[i * n + j] * gp->mean[j];
+    weights[i] = dot(inverse + i * n, gp->mean, n);
     sum -= 0.5 * weights[i] * gp->mean[i];
   }
   memset(gradient, 0, setting_count(gp) * sizeof *gradient);
@@ -521,9 +529,7 @@ scree_gp_value scree_gp_at(const scree_gp *gp, const double *x) {
     double y = reach(gp, one, place, k), own = covariance(gp, &one->kernel, place, place);
     for (size_t i = 0; i < gp->n; i++) {
       const double *row = one->inverse + i * gp->n;
-      double sum = 0.5 * row[i] * k[i];
-      for (size_t j = 0; j < i; j++) sum += row[j] * k[j];
-      own -= 2 * k[i] * sum;
+      own -= 2 * k[i] * (0.5 * row[i] * k[i] + dot(row, k, i));
     }
     mean += one->share * y;
     squares += one->share * y * y;
@@ -551,13 +557,10 @@ scree_status scree_gp_covariance(const scree_gp *gp, const double *x, size_t cou
     for (size_t a = 0; a < count; a++)
       means[a * MEMBERS + m] = reach(gp, one, places + a * d, k + a * n);
     for (size_t a = 0; a < count; a++) {
-      for (size_t i = 0; i < n; i++) {
-        ki[i] = 0;
-        for (size_t j = 0; j < n; j++) ki[i] += one->inverse[i * n + j] * k[a * n + j];
-      }
+      for (size_t i = 0; i < n; i++) ki[i] = dot(one->inverse + i * n, k + a * n, n);
       for (size_t b = 0; b <= a; b++) {
         double sum = covariance(gp, &one->kernel, places + a * d, places + b * d);
-        for (size_t i = 0; i < n; i++) sum -= ki[i] * k[b * n + i];
+        sum -= dot(ki, k + b * n, n);
         answer[a * count + b] += one->share * sum;
       }
     }

@@ -11,7 +11,7 @@
 /* A parameter is called identified where its interval is at most this share of that of its range,
  * and no end of the range is part of it. */
 static const double identified_share = 0.5;
-static const double end_share = 0.01; /* of samples: as near to the end of the range is at it */
+static const double end_share = 0.01; /* of samples: so few beyond are none */
 /* Two trade against each other where one tells this share of the other's variance. */
 static const double trade_share = 0.5;
 enum { BINS = 8, MOST_HISTORY = 10, ANSWER_STREAM = 6 << 20, MOST_ADVISED = 500 };
@@ -71,10 +71,7 @@ static double narrowed(const double *samples, size_t count, size_t d, size_t k, 
   return (s.high - s.low) / (2 * confidence);
 }
 
-/* Whether the shortest interval of that confidence begins (-1) or ends (1) with the samples: what
- * was measured then leaves the range there, and not the parameter; 0: neither. Values are sorted.
- */
-static int end_of(const double *values, size_t count, double confidence) {
+int scree_samples_end(const double *values, size_t count, double confidence) {
   size_t held = (size_t)(confidence * (double)count), shortest = 0;
   size_t near = (size_t)(end_share * (double)count);
   for (size_t i = 1; i + held < count; i++)
@@ -88,7 +85,7 @@ static void judge(analysis *a, size_t k, scree_parameter_result *out) {
   size_t n = a->r->sample_count;
   double confidence = a->r->confidence;
   out->narrowed = narrowed(a->samples, n, a->c->parameter_count, k, confidence, a->column);
-  int end = p->values.count ? 0 : end_of(a->column, n, confidence);
+  int end = p->values.count ? 0 : scree_samples_end(a->column, n, confidence);
   bool narrow = out->narrowed <= identified_share;
   out->identified = narrow && end == 0;
   if (narrow && end > 0)

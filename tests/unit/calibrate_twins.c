@@ -89,6 +89,7 @@ static int compare(const void *a, const void *b) {
 
 typedef struct verdict {
   double low[D], high[D];
+  int end[D];
 } verdict;
 
 static verdict calibrate(uint64_t seed, const double *truth, size_t answers, size_t budget,
@@ -115,6 +116,7 @@ static verdict calibrate(uint64_t seed, const double *truth, size_t answers, siz
     qsort(column, count, sizeof *column, compare);
     v.low[k] = column[count / 20];
     v.high[k] = column[count - 1 - count / 20];
+    v.end[k] = scree_samples_end(column, count, 0.9);
   }
   scree_model_free(&t.model);
   return v;
@@ -139,18 +141,30 @@ static void intervals_hold_the_truth(void **state) {
   for (int k = 0; k < D; k++) assert_in_range(held[k], 16, 20);
 }
 
-/* With the angle alone the second parameter keeps more than half of its range, in every case whose
- * ridge crosses the range; with both answers the first one is told. */
+/* With the angle alone neither parameter is told: its interval is more than half of the range, or
+ * an end of the range closes it, where the ridge leaves by a corner. With both answers the first
+ * one is told. */
 static void a_banana_is_not_identifiable(void **state) {
   (void)state;
-  for (uint64_t seed = 20; seed < 26; seed++) {
+  int closed = 0;
+  for (uint64_t seed = 20; seed < 32; seed++) {
     double truth[D];
     draw_truth(seed, truth);
-    for (int k = 0; k < D; k++) truth[k] *= 0.4; /* the ridge does not leave by a corner */
-    verdict alone = calibrate(seed, truth, 1, RUNS, 1), both = calibrate(seed, truth, 2, RUNS, 1);
-    for (int k = 0; k < D; k++) assert_true((alone.high[k] - alone.low[k]) / 1.8 > 0.5);
+    verdict alone = calibrate(seed, truth, 1, 30, 1);
+    for (int k = 0; k < D; k++) {
+      bool narrow = (alone.high[k] - alone.low[k]) / 1.8 <= 0.5;
+      assert_true(!narrow || alone.end[k] != 0);
+      closed += narrow;
+    }
+  }
+  assert_true(closed > 0);
+  for (uint64_t seed = 20; seed < 23; seed++) {
+    double truth[D];
+    draw_truth(seed, truth);
+    for (int k = 0; k < D; k++) truth[k] *= 0.4;
+    verdict both = calibrate(seed, truth, 2, RUNS, 1);
     assert_true((both.high[0] - both.low[0]) / 1.8 < 0.3);
-    assert_true(both.high[1] - both.low[1] < alone.high[1] - alone.low[1]);
+    assert_int_equal(both.end[0], 0);
   }
 }
 
@@ -169,36 +183,33 @@ static void intervals_shrink_with_the_budget(void **state) {
   assert_true(many < few);
 }
 
-/* What three runs at some place give lies in the interval that the processes expect it in as often
- * as the interval says, also where there were few runs. */
-static void checks_lie_where_they_are_expected(void **state) {
+/* The mean of three runs at some place lies in the interval of 90 % that it is expected in, also
+ * where there are a dozen runs only; with the most probable settings alone 86 % do. */
+static void few_runs_are_not_too_sure(void **state) {
   (void)state;
-  enum { TWINS = 200, CHECKS = 3 };
-  static const size_t budgets[] = {12, 18, 30};
-  for (size_t b = 0; b < 3; b++) {
-    int held[2] = {0};
-    for (uint64_t seed = 100; seed < 100 + TWINS; seed++) {
-      double truth[D], unit[START * D], mean[2] = {0};
-      draw_truth(seed, truth);
-      twin t = {.answer_count = 2, .repeat_count = 1, .noise = {seed, 1, 0}};
-      scree_design_sobol(seed, START, D, unit);
-      for (size_t i = 0; t.run_count < budgets[b]; i = (i + 1) % START)
-        for (size_t again = 0; again < 1 + i % 2 && t.run_count < budgets[b]; again++)
-          run_at(&t, (double[]){2 * unit[D * i] - 1, 2 * unit[D * i + 1] - 1});
-      fit(&t);
-      for (size_t i = 0; i < CHECKS; i++) {
-        mean[0] += angle_of(truth, &t.noise) / CHECKS;
-        mean[1] += time_of(truth, &t.noise) / CHECKS;
-      }
-      for (size_t a = 0; a < 2; a++) {
-        scree_gp_value v = scree_gp_at(t.model.items[a].gp, truth);
-        double half = 1.645 * sqrt(v.variance + v.noise / CHECKS);
-        held[a] += fabs(mean[a] - v.mean) <= half;
-      }
-      scree_model_free(&t.model);
+  enum { TWINS = 200, CHECKS = 3, FEW = 12 };
+  int held[2] = {0};
+  for (uint64_t seed = 100; seed < 100 + TWINS; seed++) {
+    double truth[D], unit[START * D], mean[2] = {0};
+    draw_truth(seed, truth);
+    twin t = {.answer_count = 2, .repeat_count = 1, .noise = {seed, 1, 0}};
+    scree_design_sobol(seed, START, D, unit);
+    for (size_t i = 0; t.run_count < FEW; i++)
+      for (size_t again = 0; again < 1 + i % 2; again++)
+        run_at(&t, (double[]){2 * unit[D * i] - 1, 2 * unit[D * i + 1] - 1});
+    fit(&t);
+    for (size_t i = 0; i < CHECKS; i++) {
+      mean[0] += angle_of(truth, &t.noise) / CHECKS;
+      mean[1] += time_of(truth, &t.noise) / CHECKS;
     }
-    print_message("%zu runs: held %d and %d of %d\n", budgets[b], held[0], held[1], TWINS);
+    for (size_t a = 0; a < 2; a++) {
+      scree_gp_value v = scree_gp_at(t.model.items[a].gp, truth);
+      held[a] += fabs(mean[a] - v.mean) <= 1.645 * sqrt(v.variance + v.noise / CHECKS);
+    }
+    scree_model_free(&t.model);
   }
+  print_message("held: %d and %d of %d\n", held[0], held[1], TWINS);
+  assert_in_range(held[0] + held[1], 0.88 * 2 * TWINS, 0.96 * 2 * TWINS);
 }
 
 /* ---- curves ---- */
@@ -245,7 +256,7 @@ int main(void) {
       cmocka_unit_test(intervals_hold_the_truth),
       cmocka_unit_test(a_banana_is_not_identifiable),
       cmocka_unit_test(intervals_shrink_with_the_budget),
-      cmocka_unit_test(checks_lie_where_they_are_expected),
+      cmocka_unit_test(few_runs_are_not_too_sure),
       cmocka_unit_test(curves_have_their_shapes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
