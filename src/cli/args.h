@@ -56,6 +56,10 @@ typedef struct cli_verb {
   int (*run)(const struct cli_call *call); /* the exit code */
 } cli_verb;
 
+/* A table of options, and the verb's struct with their defaults. */
+#define CLI_OPTIONS(table, usual)                                                                  \
+  .options = table, .option_count = sizeof table / sizeof *table, .defaults = &usual,              \
+  .options_size = sizeof usual
 enum { CLI_OPTIONS_BYTES = 4096 };
 
 /* What a verb is called with. */

@@ -334,10 +334,7 @@ const cli_verb cli_verb_choose = {
                 "scree choose *.stl -o devices --tolerance mean=0.2%,hausdorff=1mm\n"
                 "scree choose --samples --paper\n"
                 "scree choose sample:fp-1 sample:dc-1 --noise 0mm --json",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 0,
     .input_maximum = SIZE_MAX,
     .partners = "density:output resolution:sample:|samples noise:sample:|samples "

@@ -323,10 +323,7 @@ const cli_verb cli_verb_clump = {
                 "scree clump phone.stl -n 20 -o clumps\n"
                 "scree clump rock.ply -u m --tolerance 0.02 --json\n"
                 "scree clump rock.ply -u m -m bubble --ratio 0.1 --angle 160 -o bubble\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 1,
     .input_maximum = 1000,
     .partners = CLI_SAMPLE_PARTNERS,

@@ -244,10 +244,7 @@ const cli_verb cli_verb_curve = {
     .examples = "scree curve phone.stl\n"
                 "scree curve phone.stl --distance --csv > phone.csv\n"
                 "scree curve phone.stl -m qecd --grid 1e-4:1e-1:20\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 1,
     .input_maximum = 1,
     .partners = "points:distance " CLI_SAMPLE_PARTNERS,

@@ -95,10 +95,7 @@ const cli_verb cli_verb_distance = {
         "built-in sample.",
     .examples = "scree distance scan.stl simplified.stl\n"
                 "scree distance --gap 0.001 --json scan.stl simplified.stl\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 2,
     .input_maximum = 2,
     .partners = CLI_SAMPLE_PARTNERS,

@@ -91,10 +91,7 @@ const cli_verb cli_verb_drop = {
         "scree drop phone.stl=50\n"
         "scree drop sample:fp-1=20 sample:dc-2=20 -n 100 --container box --width 300mm -o mixed\n"
         "scree drop sphere:40mm=200 --frames 0.01 --seed 2\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 0,
     .input_maximum = SCREE_MOST_SHAPES,
     .partners = CLI_POUR_PARTNERS " depth:container particles::|samples",

@@ -453,10 +453,7 @@ const cli_verb cli_verb_export = {
                 "scree export repose/last.scree --to m -o pile\n"
                 "scree export repose/frame-*.scree -o heap.pvd\n"
                 "scree export repose/last.scree -o packing.csv\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 1,
     .input_maximum = SIZE_MAX,
     .partners = CLI_SAMPLE_PARTNERS,

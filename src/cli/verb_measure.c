@@ -357,10 +357,7 @@ const cli_verb cli_verb_measure = {
         "Text is in the file's unit; JSON and CSV are in SI units.",
     .examples = "scree measure phone.stl\n"
                 "scree measure --unit m --csv stones/*.ply\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 1,
     .input_maximum = SIZE_MAX,
     .partners = CLI_SAMPLE_PARTNERS,

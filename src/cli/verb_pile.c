@@ -282,10 +282,7 @@ const cli_verb cli_verb_pile = {
                 "scree pile heap/frame-000012.scree -o frame.png --elevation 5\n"
                 "scree pile heap.ply --unit m --particle-size 8mm\n"
                 "scree pile photograph.png --picture-width 0.5m --csv\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 1,
     .input_maximum = 1,
     .partners = "size:output azimuth:output elevation:output rays:output view:vtp",

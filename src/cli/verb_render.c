@@ -305,10 +305,7 @@ const cli_verb cli_verb_render = {
                 "scree render scan.stl --rp 1e-1,1e-2,1e-3,1e-4,1e-5 --edges -o row.png "
                 "--size 2400x400\n"
                 "scree render scan.stl --rp 1e-3 --color-by distance -o error.png\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 1,
     .input_maximum = 1000,
     .partners = CLI_SAMPLE_PARTNERS,

@@ -49,10 +49,7 @@ const cli_verb cli_verb_report = {
         "folders, or makes it again.",
     .examples = "scree choose --samples -o devices\n"
                 "scree report devices heap -o both.html\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 1,
     .input_maximum = 1000,
     .run = run,

@@ -100,10 +100,7 @@ const cli_verb cli_verb_repose = {
                 "scree repose --resume -o heap\n"
                 "scree repose -p paper --friction 0.4 --print > mine.yaml\n"
                 "scree repose -c mine.yaml --samples --rp 1e-3 -o night\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 0,
     .input_maximum = SCREE_MOST_SHAPES,
     .partners = CLI_POUR_PARTNERS " view:output",

@@ -161,10 +161,7 @@ const cli_verb cli_verb_run = {
                 "scree run hopper.yaml --set inlets.feed.count=800 --set time=6 -o more\n"
                 "scree run -o hopper --resume\n"
                 "scree run -o hopper --resume --change gravity='[0, 0, -1.62]' --change time=8\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 0,
     .input_maximum = 1,
     .partners = "rays:output no-picture:output force:output",

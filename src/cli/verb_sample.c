@@ -142,10 +142,7 @@ const cli_verb cli_verb_sample = {
     .examples = "scree sample -o samples\n"
                 "scree sample fp-1 --noise 0 -o clean.stl\n"
                 "scree sample dc-3 sp-2 --resolution 0.5mm -o coarse\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 0,
     .input_maximum = 1000,
     .run = run,

@@ -244,10 +244,7 @@ const cli_verb cli_verb_simplify = {
                 "scree simplify phone.stl -n 500 -m qecd -o phone_500.ply\n"
                 "scree simplify phone.stl -r 1e-3 --density 1800 -o phone_dem.stl\n"
                 "scree simplify phone.stl -e 0.1mm -o phone_fine.stl\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 1,
     .input_maximum = 1,
     .partners = CLI_SAMPLE_PARTNERS,

@@ -222,10 +222,7 @@ const cli_verb cli_verb_study = {
                 "scree study status repose\n"
                 "scree study repose.yaml -o repose --slurm --dry-run\n"
                 "mpirun -n 16 scree study repose.yaml -o repose\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof defaults,
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 1,
     .input_maximum = 2,
     .partners = "tasks:slurm",
