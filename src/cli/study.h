@@ -11,6 +11,14 @@ typedef struct study_arguments {
   bool worker, no_wait, keep_failed, slurm, dry_run, json, csv;
 } study_arguments;
 
+/* Of study, calibrate and optimise. */
+enum { STUDY_OPTIONS = 11 };
+extern const cli_option study_options[STUDY_OPTIONS];
+extern const study_arguments study_defaults;
+
+/* FOLDER/report.html of what lies there. */
+scree_status study_write_page(const char *folder, scree_error *error);
+
 /* The states, a table of the points, and what follows from them, on one screen. */
 void study_print(FILE *stream, const scree_study_result *result);
 

@@ -1,9 +1,102 @@
-/* scree calibrate: parameters from measurements. */
-#include "cli/calibrate.h"
+/* scree calibrate: parameters from measurements; scree optimise: the best settings of a design.
+ * They differ in their words only. */
+#include "cli/study.h"
+#include "cli/terminal.h"
 
-static int run(const cli_call *call) {
-  return calibrate_run(call, false);
+#include <string.h>
+
+extern const cli_verb cli_verb_calibrate, cli_verb_optimise;
+
+enum { MOST_JOBS = 1000, SLURM_TASKS = 8 };
+
+static scree_status report(const cli_call *call, scree_calibration *c, const char *folder,
+                           bool files, scree_error *error) {
+  const study_arguments *a = call->options;
+  scree_calibration_result result;
+  scree_status status = scree_calibration_analyse(c, &result, error);
+  if (status != SCREE_OK) return status;
+  if (files) status = scree_calibration_report_write(&result, folder, error);
+  if (status == SCREE_OK && files) status = study_write_page(folder, error);
+  if (status == SCREE_OK && a->json)
+    status = scree_calibration_json_write(&result, "-", true, error);
+  if (status == SCREE_OK && a->csv) status = scree_calibration_csv_write(&result, "-", true, error);
+  if (status == SCREE_OK && !a->json && !a->csv) scree_calibration_print(&result, stdout);
+  scree_calibration_result_free(&result);
+  return status;
 }
+
+static int show_status(const cli_call *call) {
+  scree_calibration *c = NULL;
+  scree_error error;
+  if (call->input_count != 2) return cli_misuse(call->verb, "status needs the folder");
+  scree_status status = scree_calibration_open_folder(call->inputs[1], &c, &error);
+  if (status == SCREE_OK) status = report(call, c, call->inputs[1], false, &error);
+  scree_calibration_free(c);
+  return status == SCREE_OK ? 0 : cli_fail(&error);
+}
+
+static double fraction_done(void *context) {
+  scree_calibration_progress p;
+  if (scree_calibration_look(context, &p, NULL) != SCREE_OK) return 0;
+  return (double)(p.done + p.failed) / (double)p.budget;
+}
+
+static scree_status work_as_one(const cli_call *call, const char *folder,
+                                const scree_study_options *options, const scree_progress *progress,
+                                scree_error *error) {
+  const study_arguments *a = call->options;
+  scree_calibration *c = NULL;
+  scree_status status = scree_calibration_read(call->inputs[0], &c, error);
+  if (status == SCREE_OK) status = scree_calibration_open(c, folder, error);
+  if (status == SCREE_OK) status = scree_calibration_work(c, a->jobs, options, progress, error);
+  scree_calibration_free(c);
+  return status;
+}
+
+static int work(const cli_call *call, scree_calibration *c, const char *folder) {
+  const study_arguments *a = call->options;
+  bool worker = a->worker || study_rank() > 0;
+  scree_error error;
+  study_crew crew = {.call = call,
+                     .folder = folder,
+                     .jobs = study_jobs_wanted(call, MOST_JOBS),
+                     .fraction = fraction_done,
+                     .context = c,
+                     .work = work_as_one};
+  if (scree_calibration_open(c, folder, &error) != SCREE_OK) return cli_fail(&error);
+  if (a->slurm) return study_run_slurm(call, folder, a->tasks ? a->tasks : SLURM_TASKS);
+  int code = study_run_crew(&crew, worker);
+  if (worker) return code;
+  cli_terminal_end();
+  if (code != 0) return code;
+  return report(call, c, folder, true, &error) == SCREE_OK ? 0 : cli_fail(&error);
+}
+
+/* Refuses a file that is for the other verb. */
+static int run(const cli_call *call) {
+  const bool search = call->verb == &cli_verb_optimise;
+  scree_calibration *c = NULL;
+  scree_error error;
+  char folder[256];
+  int code = study_check_call(call);
+  if (code) return code;
+  if (!strcmp(call->inputs[0], "status")) return show_status(call);
+  if (scree_calibration_read(call->inputs[0], &c, &error) != SCREE_OK) return cli_fail(&error);
+  if (scree_calibration_is_search(c) != search)
+    code = cli_misuse(call->verb,
+                      search ? "the file has no minimise or maximise: `scree calibrate` is for it"
+                             : "the file has minimise or maximise: `scree optimise` is for it");
+  else
+    code = work(call, c, study_folder(call, call->verb->name, folder, sizeof folder));
+  scree_calibration_free(c);
+  return code;
+}
+
+/* All but what a study alone has. */
+#define CALIBRATION                                                                                \
+  .options = study_options, .option_count = STUDY_OPTIONS - 1, .defaults = &study_defaults,        \
+  .options_size = sizeof study_defaults, .input_minimum = 1, .input_maximum = 2,                   \
+  .partners = "tasks:slurm dry-run:slurm", .run = run
 
 const cli_verb cli_verb_calibrate = {
     .name = "calibrate",
@@ -23,12 +116,23 @@ const cli_verb cli_verb_calibrate = {
         "docs/reference/calibrate.md describes the file.",
     .examples = "scree calibrate heap.yaml -o heap --jobs 4\n"
                 "scree calibrate status heap\n",
-    .options = calibrate_options,
-    .option_count = CALIBRATE_OPTIONS,
-    .defaults = &calibrate_defaults,
-    .options_size = sizeof calibrate_defaults,
-    .input_minimum = 1,
-    .input_maximum = 2,
-    .partners = "tasks:slurm dry-run:slurm",
-    .run = run,
+    CALIBRATION,
+};
+
+const cli_verb cli_verb_optimise = {
+    .name = "optimise",
+    .summary = "the settings of a design that give the most or the least of an answer",
+    .inputs = "FILE.yaml | status DIR",
+    .description =
+        "Runs scenes at settings of any of their fields and looks for those that minimise or "
+        "maximise an answer of their sensors, under limits on others: angles, speeds and places of "
+        "geometry, or meshes from a list. Answers scatter from seed to seed; the next runs are "
+        "made where the improvement expected of them is greatest. It says which settings are best, "
+        "how sure that is, and which others are near.\n"
+        "\n"
+        "File, runs and folder are as of scree calibrate; docs/reference/calibrate.md describes "
+        "them.",
+    .examples = "scree optimise drum.yaml -o drum --jobs 4\n"
+                "scree optimise status drum\n",
+    CALIBRATION,
 };

@@ -6,21 +6,22 @@
 #include <string.h>
 
 #define AT(field) offsetof(study_arguments, field)
-static const cli_option options[] = {
+/* The last is of a study alone. */
+const cli_option study_options[STUDY_OPTIONS] = {
     {"output", CLI_TEXT, AT(output), "DIR",
-     "Folder of the study. Default: the file's name without its ending, in the present folder.", 0,
-     0, NULL},
+     "Folder of all that is made. Default: the file's name without its ending, in the present "
+     "folder.",
+     0, 0, NULL},
     {"jobs", CLI_COUNT, AT(jobs), "N",
      "Runs at the same time, each in a process of its own; with --backend cuda in threads that "
      "share "
-     "the device. Default: one per processor, or 80 on a device; at most one per run.",
+     "the device. Default: one per processor, or 80 on a device; of a study at most one per "
+     "run. A calibration plans as many runs at a time, at least its batch.",
      0, 1024, NULL},
     {"lease", CLI_REAL, AT(lease), "SECONDS",
      "A run whose worker on another machine gave no sign of life for so long is taken over. "
      "Default: 300.",
      5, 1e6, NULL},
-    {"keep-failed", CLI_FLAG, AT(keep_failed), NULL,
-     "Leave runs that failed before as they are; else they are tried once more.", 0, 0, NULL},
     {"worker", CLI_FLAG, AT(worker), NULL,
      "Only work on runs, in this process, and print nothing: for more workers, here or on other "
      "machines that share the folder.",
@@ -28,17 +29,21 @@ static const cli_option options[] = {
     {"no-wait", CLI_FLAG, AT(no_wait), NULL, "Do not wait for runs that others are at work on.", 0,
      0, NULL},
     {"slurm", CLI_FLAG, AT(slurm), NULL,
-     "Prepare the shapes, write DIR/study.sbatch, a job array of workers, and submit it.", 0, 0,
-     NULL},
-    {"tasks", CLI_COUNT, AT(tasks), "N", "Tasks of that array. Default: one per run.", 1, 100000,
-     NULL},
+     "Prepare a study's shapes, write DIR/study.sbatch, a job array of workers, and submit it.", 0,
+     0, NULL},
+    {"tasks", CLI_COUNT, AT(tasks), "N",
+     "Tasks of that array. Default: one per run of a study, 8 of a calibration.", 1, 100000, NULL},
     {"dry-run", CLI_FLAG, AT(dry_run), NULL,
-     "With --slurm: write it, do not submit it. Else: read the file and list the runs.", 0, 0,
-     NULL},
+     "With --slurm: write it, do not submit it. Else, of a study: read the file and list the runs.",
+     0, 0, NULL},
     {"json", CLI_FLAG, AT(json), NULL, "Print the results as JSON.", 0, 0, NULL},
-    {"csv", CLI_FLAG, AT(csv), NULL, "Print the results as CSV, a row per point.", 0, 0, NULL},
+    {"csv", CLI_FLAG, AT(csv), NULL,
+     "Print the results as CSV: a row per point, per sample, or per setting that was tried.", 0, 0,
+     NULL},
+    {"keep-failed", CLI_FLAG, AT(keep_failed), NULL,
+     "Leave runs that failed before as they are; else they are tried once more.", 0, 0, NULL},
 };
-static const study_arguments defaults = {.lease = 300};
+const study_arguments study_defaults = {.lease = 300};
 enum { RUNS_ON_DEVICE = 80 };
 
 int study_check_call(const cli_call *call) {
@@ -64,13 +69,17 @@ const char *study_folder(const cli_call *call, const char *usual, char *buffer, 
   return buffer;
 }
 
+scree_status study_write_page(const char *folder, scree_error *error) {
+  char path[4200];
+  snprintf(path, sizeof path, "%.4100s/report.html", folder);
+  return scree_page_write(&folder, 1, path, true, error);
+}
+
 /* Tables, figures and the page of them. */
 static scree_status write_files(const scree_study_result *result, const char *folder,
                                 scree_error *error) {
-  char path[4200];
-  snprintf(path, sizeof path, "%.4100s/report.html", folder);
   scree_status status = scree_study_report_write(result, folder, error);
-  return status == SCREE_OK ? scree_page_write(&folder, 1, path, true, error) : status;
+  return status == SCREE_OK ? study_write_page(folder, error) : status;
 }
 
 /* Prints, and with `files` writes tables and figures to the folder. */
@@ -222,7 +231,7 @@ const cli_verb cli_verb_study = {
                 "scree study status repose\n"
                 "scree study repose.yaml -o repose --slurm --dry-run\n"
                 "mpirun -n 16 scree study repose.yaml -o repose\n",
-    CLI_OPTIONS(options, defaults),
+    CLI_OPTIONS(study_options, study_defaults),
     .input_minimum = 1,
     .input_maximum = 2,
     .partners = "tasks:slurm",
