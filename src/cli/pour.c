@@ -215,47 +215,6 @@ static int read_base(cli_pour *r) {
   return status == SCREE_OK ? 0 : cli_fail(&r->error);
 }
 
-/* Setting `index`, after which come those of --set; NULL: it is not given, or (field "") no
- * setting.
- */
-static const char *setting(const cli_pour *r, size_t index, char field[200],
-                           char number[CLI_NUMBER_BYTES]) {
-  const cli_pour_arguments *a = r->arguments;
-  size_t count = r->kind->setting_count;
-  const char *value = index < count ? a->settings[index] : a->set.items[index - count];
-  if (index < count) {
-    snprintf(field, 200, "%s", r->kind->settings[index].field);
-    return value ? cli_si_text(r->kind->settings[index].kind, value, number) : NULL;
-  }
-  size_t length = strcspn(value, "=");
-  bool good = length && value[length] && length < 200;
-  snprintf(field, 200, "%.*s", good ? (int)length : 0, value);
-  return good ? value + length + 1 : NULL;
-}
-
-/* The options, of which the first that cannot be is told where all together cannot. */
-static int set_options(cli_pour *r) {
-  const cli_texts *set = &r->arguments->set;
-  size_t count = r->kind->setting_count;
-  char first[1200] = "";
-  for (size_t i = 0; i < count + set->count; i++) {
-    char number[CLI_NUMBER_BYTES], field[200];
-    const char *value = setting(r, i, field, number);
-    if (!*field)
-      return cli_misuse(r->call->verb, "--set %s: must be FIELD=VALUE, as in gravity.0=1",
-                        set->items[i - count]);
-    if (!value) continue;
-    scree_status status = scree_scene_file_try(r->file, field, value, &r->error);
-    bool hard = status != SCREE_OK && status != SCREE_BAD_FILE;
-    if (status != SCREE_OK && (!*first || hard))
-      snprintf(first, sizeof first, "--%s: %.1000s",
-               i < count ? r->kind->settings[i].option : "set", r->error.message);
-    if (hard) return cli_misuse(r->call->verb, "%s", first);
-  }
-  if (!*first || scree_scene_file_check(r->file, NULL) == SCREE_OK) return 0;
-  return cli_misuse(r->call->verb, "%s", first);
-}
-
 static scree_status set_number(cli_pour *r, const char *field, double value, bool scans) {
   char text[CLI_NUMBER_BYTES];
   snprintf(text, sizeof text, "%.17g", value);
@@ -466,7 +425,9 @@ int cli_pour_run(const cli_call *call, const cli_pour_kind *kind) {
   if (code == 0) code = take_words(&r);
   if (code == 0) code = read_base(&r);
   if (code == 0 && pour_words(&r) != SCREE_OK) code = cli_fail(&r.error);
-  if (code == 0) code = set_options(&r);
+  if (code == 0)
+    code = cli_set_fields(call, r.file, kind->settings, r.arguments->settings, kind->setting_count,
+                          &r.arguments->set);
   if (code == 0) code = run_file(&r);
   scree_shape_store_free(r.store);
   cli_poured_free(&r.poured);

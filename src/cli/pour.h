@@ -4,12 +4,6 @@
 
 #include "cli/scene_run.h"
 
-/* An option and the template's parameter that it sets. */
-typedef struct cli_setting {
-  const char *option, *field;
-  cli_kind kind;
-} cli_setting;
-
 enum { CLI_MOST_SETTINGS = 40, CLI_VIEW_UNSET = -1 };
 
 typedef struct cli_pour_arguments {

@@ -490,6 +490,40 @@ void cli_scene_run_free(cli_scene_run *r) {
   r->frames = (cli_frames){0};
 }
 
+/* ---- fields that options set ---- */
+
+/* "FIELD=VALUE" as field and value; NULL where it is none. */
+static const char *split(const char *text, char field[200]) {
+  size_t length = strcspn(text, "=");
+  if (length == 0 || !text[length] || length >= 200) return NULL;
+  snprintf(field, 200, "%.*s", (int)length, text);
+  return text + length + 1;
+}
+
+int cli_set_fields(const cli_call *call, scree_scene_file *file, const cli_setting *settings,
+                   const char *const *values, size_t count, const cli_texts *set) {
+  char first[1200] = "";
+  for (size_t i = 0; i < count + set->count; i++) {
+    char number[CLI_NUMBER_BYTES], other[200];
+    const char *given = i < count ? values[i] : set->items[i - count],
+               *field = i < count ? settings[i].field : other, *value = given;
+    if (!given) continue;
+    if (i < count)
+      value = cli_si_text(settings[i].kind, given, number);
+    else if (!(value = split(given, other)))
+      return cli_misuse(call->verb, "--set %s: must be FIELD=VALUE, as in gravity.0=1", given);
+    scree_error error;
+    scree_status status = scree_scene_file_try(file, field, value, &error);
+    bool hard = status != SCREE_OK && status != SCREE_BAD_FILE;
+    if (status != SCREE_OK && (!*first || hard))
+      snprintf(first, sizeof first, "--%s: %.1000s", i < count ? settings[i].option : "set",
+               error.message);
+    if (hard) return cli_misuse(call->verb, "%s", first);
+  }
+  if (!*first || scree_scene_file_check(file, NULL) == SCREE_OK) return 0;
+  return cli_misuse(call->verb, "%s", first);
+}
+
 /* ---- what is poured ---- */
 
 /* A name as scenes have them: without points, and not twice. */

@@ -37,6 +37,16 @@ scree_status cli_clear_scene_output(const cli_call *call, const char *folder, sc
 scree_status cli_run_scene(cli_scene_run *run, scree_error *error);
 void cli_scene_run_free(cli_scene_run *run);
 
+/* An option and the field or parameter that it sets. */
+typedef struct cli_setting {
+  const char *option, *field;
+  cli_kind kind;
+} cli_setting;
+/* Sets values (NULL: not given), then those of --set. Of what cannot be, alone or together, the
+ * first is told. The exit code. */
+int cli_set_fields(const cli_call *call, scree_scene_file *file, const cli_setting *settings,
+                   const char *const *values, size_t count, const cli_texts *set);
+
 /* A heap's angles, three ways, a line each, and its size. */
 void cli_print_repose(FILE *stream, const scree_repose *repose);
 /* The same of a pile, with its particles. */

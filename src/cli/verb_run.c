@@ -45,31 +45,6 @@ static const cli_option options[] = {
 };
 #undef AT
 
-/* ---- the file ---- */
-
-static scree_status set_fields(cli_scene_run *r, scree_error *error) {
-  const cli_texts *set = &((const run_arguments *)r->call->options)->set;
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < set->count; i++) {
-    const char *equals = strchr(set->items[i], '=');
-    size_t length = (size_t)(equals - set->items[i]);
-    char *field = malloc(length + 1);
-    if (!field) return cli_refuse(error, SCREE_OUT_OF_MEMORY, set->items[i], "out of memory");
-    memcpy(field, set->items[i], length);
-    field[length] = 0;
-    status = scree_scene_file_set(r->file, field, equals + 1, error);
-    free(field);
-  }
-  return status;
-}
-
-static scree_status read_file(cli_scene_run *r, scree_error *error) {
-  if (r->call->input_count == 0) return SCREE_OK;
-  scree_status status = scree_scene_file_read(r->call->inputs[0], &r->file, error);
-  if (status == SCREE_OK) status = set_fields(r, error);
-  return status == SCREE_OK ? scree_scene_file_check(r->file, error) : status;
-}
-
 static scree_status simulate(cli_scene_run *r, scree_error *error) {
   scree_status status = r->output ? cli_check_scene_output(r, error) : SCREE_OK;
   if (status == SCREE_OK && r->output && r->overwrite && !r->resume)
@@ -94,10 +69,6 @@ static int print_template(const cli_call *call, const char *name) {
 
 static int check_call(const cli_call *call) {
   const run_arguments *a = call->options;
-  for (size_t i = 0; i < a->set.count; i++)
-    if (!strchr(a->set.items[i], '=') || a->set.items[i][0] == '=')
-      return cli_misuse(call->verb, "--set %s: must be FIELD=VALUE, as in inlets.feed.rate=5",
-                        a->set.items[i]);
   if (call->input_count == 0 && !(a->resume && a->output))
     return cli_misuse(call->verb, "needs a SCENE.yaml, or --resume with -o DIR; --template NAME "
                                   "prints one to start from");
@@ -128,7 +99,14 @@ static int run(const cli_call *call) {
   if (a->template_name) return print_template(call, a->template_name);
   int code = check_call(call);
   if (code) return code;
-  scree_status status = read_file(&r, &error);
+  scree_status status = SCREE_OK;
+  if (call->input_count) status = scree_scene_file_read(call->inputs[0], &r.file, &error);
+  if (status == SCREE_OK && r.file) code = cli_set_fields(call, r.file, NULL, NULL, 0, &a->set);
+  if (status == SCREE_OK && r.file && code == 0) status = scree_scene_file_check(r.file, &error);
+  if (code) {
+    scree_scene_file_free(r.file);
+    return code;
+  }
   if (status == SCREE_OK && a->print)
     status = scree_scene_file_print(r.file, stdout, &error);
   else if (status == SCREE_OK)
