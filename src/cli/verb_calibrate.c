@@ -1,11 +1,8 @@
-/* scree calibrate: parameters from measurements; scree optimise: the best settings of a design.
- * They differ in their words only. */
-#include "cli/study.h"
+/* scree calibrate: parameters from measurements. scree optimise differs in its words only. */
+#include "cli/calibrate.h"
 #include "cli/terminal.h"
 
 #include <string.h>
-
-extern const cli_verb cli_verb_calibrate, cli_verb_optimise;
 
 enum { MOST_JOBS = 1000, SLURM_TASKS = 8 };
 
@@ -72,9 +69,8 @@ static int work(const cli_call *call, scree_calibration *c, const char *folder) 
   return report(call, c, folder, true, &error) == SCREE_OK ? 0 : cli_fail(&error);
 }
 
-/* Refuses a file that is for the other verb. */
-static int run(const cli_call *call) {
-  const bool search = call->verb == &cli_verb_optimise;
+int calibrate_run(const cli_call *call) {
+  const bool search = !strcmp(call->verb->name, "optimise");
   scree_calibration *c = NULL;
   scree_error error;
   char folder[256];
@@ -91,12 +87,6 @@ static int run(const cli_call *call) {
   scree_calibration_free(c);
   return code;
 }
-
-/* All but what a study alone has. */
-#define CALIBRATION                                                                                \
-  .options = study_options, .option_count = STUDY_OPTIONS - 1, .defaults = &study_defaults,        \
-  .options_size = sizeof study_defaults, .input_minimum = 1, .input_maximum = 2,                   \
-  .partners = "tasks:slurm dry-run:slurm", .run = run
 
 const cli_verb cli_verb_calibrate = {
     .name = "calibrate",
@@ -116,23 +106,5 @@ const cli_verb cli_verb_calibrate = {
         "docs/reference/calibrate.md describes the file.",
     .examples = "scree calibrate heap.yaml -o heap --jobs 4\n"
                 "scree calibrate status heap\n",
-    CALIBRATION,
-};
-
-const cli_verb cli_verb_optimise = {
-    .name = "optimise",
-    .summary = "the settings of a design that give the most or the least of an answer",
-    .inputs = "FILE.yaml | status DIR",
-    .description =
-        "Runs scenes at settings of any of their fields and looks for those that minimise or "
-        "maximise an answer of their sensors, under limits on others: angles, speeds and places of "
-        "geometry, or meshes from a list. Answers scatter from seed to seed; the next runs are "
-        "made where the improvement expected of them is greatest. It says which settings are best, "
-        "how sure that is, and which others are near.\n"
-        "\n"
-        "File, runs and folder are as of scree calibrate; docs/reference/calibrate.md describes "
-        "them.",
-    .examples = "scree optimise drum.yaml -o drum --jobs 4\n"
-                "scree optimise status drum\n",
     CALIBRATION,
 };

@@ -1,0 +1,16 @@
+/* The verbs `calibrate` and `optimise`. */
+#ifndef SCREE_CLI_CALIBRATE_H
+#define SCREE_CLI_CALIBRATE_H
+
+#include "cli/study.h"
+
+/* Refuses a file that is for the other verb. */
+int calibrate_run(const cli_call *call);
+
+/* All but what a study alone has. */
+#define CALIBRATION                                                                                \
+  .options = study_options, .option_count = STUDY_OPTIONS - 1, .defaults = &study_defaults,        \
+  .options_size = sizeof study_defaults, .input_minimum = 1, .input_maximum = 2,                   \
+  .partners = "tasks:slurm dry-run:slurm", .run = calibrate_run
+
+#endif
