@@ -20,7 +20,7 @@ static const scree_piece_mm compact[] = {
     {SLAB, JOIN, {-33, 29, 0}, {8, 8, 1.6}, 8, 0.7, .blend = 0.6, UPRIGHT},
     {SLAB, JOIN, {-33, 31, 0}, {5, 5, 1.4}, 5, 0.6, .blend = 0.4, UPRIGHT},
     {SLAB, JOIN, {-13, 29, 0}, {3.4, 3.4, 0.9}, 3.4, 0.4, .blend = 0.4, UPRIGHT},
-    {SLAB, CUT, {4, 28.4, 0}, {0.7, 0.7, 1.2}, 0.7, 0.2, .blend = 0.4, ROW(5, 2.4), UPRIGHT}, /* microphone
+    {SLAB, CUT, {4, 28.4, 0}, {0.7, 0.7, 1.2}, 0.7, 0.2, .blend = 0.4, ROW(5, 2.4), UPRIGHT}, /* mic
                                                                                                */
     {SLAB, CUT, {-12, -2, -10.6}, {30, 22, 0.9}, 2, 0.4, .blend = 0.5}, /* screen */
     {SLAB, JOIN, {33.5, -2, -10.4}, {8, 8, 1.4}, 8, 0.6, .blend = 0.4}, /* four-way key */
