@@ -58,10 +58,12 @@ SCREE_API scree_status scree_scene_file_pour(scree_scene_file *file, const scree
                                              size_t count, scree_error *error);
 /* Checks all but the files it names. */
 SCREE_API scree_status scree_scene_file_check(const scree_scene_file *file, scree_error *error);
-/* The columns that its sensors will have (scree_scene_column_name), known before it is made; to be
- * called with 0, 1, 2, ... until *name is "". SCREE_BAD_FILE as scree_scene_file_check. */
+/* The columns that its sensors will have (scree_scene_column_name and _unit; unit may be NULL),
+ * known before it is made; to be called with 0, 1, 2, ... until *name is "". SCREE_BAD_FILE as
+ * scree_scene_file_check. */
 SCREE_API scree_status scree_scene_file_column(const scree_scene_file *file, size_t index,
-                                               char name[96], scree_error *error);
+                                               char name[96], const char **unit,
+                                               scree_error *error);
 /* The path of file `index` of those that its shapes and geometry name; false: there are no more, or
  * no room. */
 SCREE_API bool scree_scene_file_input(const scree_scene_file *file, size_t index, char *path,

@@ -213,6 +213,7 @@ typedef struct scree_study_result {
   const char *name, *design, *method, *angle, *version;
   size_t replicate_count, point_count, factor_count;
   const char **answers; /* of a scene: their names */
+  const char **units;   /* of the answers; "" of pure numbers */
   const char **factors; /* their keys */
   size_t answer_count;  /* 0: an experiment's */
   uint64_t seed;

@@ -412,7 +412,7 @@ static scree_status check_answer(const reader *r, const scree_quantity *q) {
   scree_status status = read_scene(r, e, &file);
   if (status != SCREE_OK) return status;
   while (!found && count < MOST_NAMES &&
-         scree_scene_file_column(file, count, name, NULL) == SCREE_OK && *name) {
+         scree_scene_file_column(file, count, name, NULL, NULL) == SCREE_OK && *name) {
     found = !strcmp(name, p->answer);
     if (!(names[count++] = scree_arena_text(&r->c->arena, name))) break;
   }

@@ -77,6 +77,8 @@ static void print_point(FILE *stream, const scree_study_result *r, size_t index,
     fprintf(stream, " %-38s", " no heap");
   else if (a->count < 2)
     fprintf(stream, " %6.2f %31s", a->mean, "");
+  else if (a->sd == 0) /* no interval of no width: what scatter there is was not seen */
+    fprintf(stream, " %6.2f %-31s", a->mean, "all runs alike");
   else
     fprintf(stream, " %6.2f [%6.2f, %6.2f] %6.2f %6.1f %%", a->mean, a->mean_low, a->mean_high,
             a->sd, 100 * a->cv);
@@ -163,14 +165,22 @@ static void print_answers(FILE *stream, const scree_study_result *r) {
   }
   fprintf(stream, "intervals of %g %%; time of the processor\n", 100 * r->confidence);
   for (size_t k = 0; k < r->answer_count; k++) {
-    fprintf(stream, "%s\n  %-*s %7s %12s %-27s %10s %9s\n", r->answers[k], width, "point", "runs",
-            "mean", "  interval", "SD", "time (s)");
+    fprintf(stream, "%s%s%s%s\n  %-*s %7s %12s %-25s %11s %9s\n", r->answers[k],
+            r->units[k][0] ? " [" : "", r->units[k], r->units[k][0] ? "]" : "", width, "point",
+            "runs", "mean", "  interval", "SD", "time (s)");
     for (size_t i = 0; i < r->point_count; i++) {
       const scree_point_result *p = &r->points[i];
       const scree_summary *a = &p->answers[k];
-      fprintf(stream, "  %-*.*s %3zu/%-3zu %12.5g [%11.5g, %11.5g] %11.4g %9.4g\n", width, width,
-              p->label[0] ? p->label : r->name, p->counts.done, r->replicate_count, a->mean,
-              a->mean_low, a->mean_high, a->sd, p->seconds.mean);
+      fprintf(stream, "  %-*.*s %3zu/%-3zu ", width, width, p->label[0] ? p->label : r->name,
+              p->counts.done, r->replicate_count);
+      if (a->count == 0)
+        fprintf(stream, "%12s %37s", "-", "");
+      else if (a->count < 2 || a->sd == 0)
+        fprintf(stream, "%12.5g %-37s", a->mean, a->count < 2 ? "" : "all runs alike");
+      else
+        fprintf(stream, "%12.5g [%11.5g, %11.5g] %10.4g", a->mean, a->mean_low, a->mean_high,
+                a->sd);
+      fprintf(stream, " %9.4g\n", p->seconds.mean);
     }
   }
 }

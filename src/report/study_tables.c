@@ -151,6 +151,9 @@ static void put_result(scree_json *json, const scree_study_result *r) {
   scree_json_number(json, "seconds_spent", r->seconds_spent);
   scree_json_number(json, "seconds_left", r->seconds_left);
   scree_json_bool(json, "mixed_versions", r->mixed_versions);
+  scree_json_object(json, "units");
+  for (size_t k = 0; k < r->answer_count; k++) scree_json_text(json, r->answers[k], r->units[k]);
+  scree_json_end(json);
   scree_json_array(json, "points");
   for (size_t i = 0; i < r->point_count; i++) put_point(json, r, &r->points[i]);
   scree_json_end(json);
@@ -181,6 +184,31 @@ scree_status scree_study_json_write(const scree_study_result *result, const char
 
 /* ---- CSV ---- */
 
+/* A summary of a point, and what its columns are called. */
+static const struct {
+  const char *name;
+  size_t offset;
+} csv_summaries[] = {{"angle_deg", offsetof(scree_point_result, angle_deg)},
+                     {"seconds", offsetof(scree_point_result, seconds)},
+                     {"height", offsetof(scree_point_result, height)},
+                     {"run_out", offsetof(scree_point_result, run_out)},
+                     {"coordination", offsetof(scree_point_result, coordination)},
+                     {"packing_fraction", offsetof(scree_point_result, packing)},
+                     {"left", offsetof(scree_point_result, left)},
+                     {"peak_rotation", offsetof(scree_point_result, peak_rotation)}};
+enum { SUMMARIES = sizeof csv_summaries / sizeof *csv_summaries };
+
+static const scree_summary *summary_of(const scree_point_result *p, size_t which) {
+  return (const scree_summary *)(const void *)((const char *)p + csv_summaries[which].offset);
+}
+
+/* What no point has gets no columns. */
+static bool any_has(const scree_study_result *r, size_t which) {
+  for (size_t i = 0; i < r->point_count; i++)
+    if (summary_of(&r->points[i], which)->count) return true;
+  return false;
+}
+
 static void csv_summary(FILE *stream, const scree_summary *s) {
   const double values[] = {s->mean, s->mean_low, s->mean_high, s->sd, s->sd_low, s->sd_high, s->cv};
   for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
@@ -196,9 +224,6 @@ static bool has_column(const char *factor) {
 
 scree_status scree_study_csv_write(const scree_study_result *result, const char *path,
                                    bool overwrite, scree_error *error) {
-  static const char *const names[] = {"angle_deg", "seconds",      "height",
-                                      "run_out",   "coordination", "packing_fraction",
-                                      "left",      "peak_rotation"};
   scree_output output;
   scree_status status = scree_output_open(path, overwrite, &output, error);
   if (status != SCREE_OK) return status;
@@ -210,9 +235,12 @@ scree_status scree_study_csv_write(const scree_study_result *result, const char 
     scree_csv_text(stream, result->factors[k]);
   }
   fputs(",done,failed,waiting,heap_count,triangle_count", stream);
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-    fprintf(stream, ",%s,%s_low,%s_high,%s_sd,%s_sd_low,%s_sd_high,%s_cv", names[i], names[i],
-            names[i], names[i], names[i], names[i], names[i]);
+  for (size_t i = 0; i < SUMMARIES; i++) {
+    const char *name = csv_summaries[i].name;
+    if (any_has(result, i))
+      fprintf(stream, ",%s,%s_low,%s_high,%s_sd,%s_sd_low,%s_sd_high,%s_cv", name, name, name, name,
+              name, name, name);
+  }
   for (size_t k = 0; k < result->answer_count; k++) {
     static const char *const parts[] = {"", " low", " high", " sd", " sd low", " sd high", " cv"};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
@@ -225,9 +253,6 @@ scree_status scree_study_csv_write(const scree_study_result *result, const char 
   putc('\n', stream);
   for (size_t i = 0; i < result->point_count; i++) {
     const scree_point_result *p = &result->points[i];
-    const scree_summary *summaries[] = {&p->angle_deg, &p->seconds,      &p->height,
-                                        &p->run_out,   &p->coordination, &p->packing,
-                                        &p->left,      &p->peak_rotation};
     scree_csv_text(stream, p->label);
     putc(',', stream);
     scree_csv_text(stream, p->rp);
@@ -241,8 +266,8 @@ scree_status scree_study_csv_write(const scree_study_result *result, const char 
     fprintf(stream, ",%zu,%zu,%zu,%zu,", p->counts.done, p->counts.failed,
             p->counts.waiting + p->counts.leased + p->counts.running, p->heap_count);
     scree_csv_number(stream, p->triangle_count);
-    for (size_t k = 0; k < sizeof summaries / sizeof *summaries; k++)
-      csv_summary(stream, summaries[k]);
+    for (size_t k = 0; k < SUMMARIES; k++)
+      if (any_has(result, k)) csv_summary(stream, summary_of(p, k));
     for (size_t k = 0; k < result->answer_count; k++) csv_summary(stream, &p->answers[k]);
     putc('\n', stream);
   }

@@ -7,6 +7,7 @@
 #include "base/number.h"
 #include "base/unit.h"
 
+#include <float.h>
 #include <stdarg.h>
 #include <string.h>
 
@@ -133,6 +134,10 @@ static scree_status read_body(const table *t, char *line, scree_scene *scene, sc
   memcpy(body.angular_velocity, v + 10, sizeof body.angular_velocity);
   scree_error why;
   scree_status status = scree_scene_admit(scene, index, &body, &why);
+  double length2 = 0;
+  for (int k = 3; k < 7; k++) length2 += v[k] * v[k];
+  if (status == SCREE_OK && fabs(length2 - 1) <= 4 * DBL_EPSILON) /* as a world wrote it */
+    scree_body_keep_orientation(scene->world, scene->shape_of.count - 1, v + 3);
   return status == SCREE_BAD_ARGUMENT ? fail(t, error, "%s", why.message)
          : status == SCREE_OK         ? status
                                       : scree_fail(error, status, "%s", why.message);

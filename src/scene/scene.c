@@ -378,13 +378,15 @@ scree_status scree_scene_create(const scree_scene_file *file, const scree_progre
 }
 
 scree_status scree_scene_file_column(const scree_scene_file *file, size_t index, char name[96],
-                                     scree_error *error) {
+                                     const char **unit, scree_error *error) {
   scree_scene *made = scree_alloc_zero(1, sizeof *made);
   if (!made) return scree_fail_memory(error, sizeof *made, "a scene");
   scree_status status = scree_scene_file_plan(file, &made->arena, &made->plan, error);
   if (status == SCREE_OK) status = scree_scene_prepare(made, error);
   if (status == SCREE_OK)
     snprintf(name, 96, "%s", index < made->columns.count ? made->columns.items[index].name : "");
+  if (status == SCREE_OK && unit)
+    *unit = index < made->columns.count ? made->columns.items[index].unit : NULL; /* static */
   scree_scene_free(made);
   return status;
 }

@@ -201,11 +201,14 @@ static scree_status name_columns(const analysis *a) {
   scree_study_result *r = a->result;
   r->answer_count = a->study->answer_count;
   r->answers = take(a, r->answer_count, sizeof *r->answers);
+  r->units = take(a, r->answer_count, sizeof *r->units);
   r->factors = take(a, r->factor_count, sizeof *r->factors);
-  if (!r->answers || !r->factors) return no_memory(a);
-  for (size_t k = 0; k < r->answer_count; k++)
-    if (!(r->answers[k] = scree_arena_text(a->arena, a->study->answers[k].name)))
-      return no_memory(a);
+  if (!r->answers || !r->units || !r->factors) return no_memory(a);
+  for (size_t k = 0; k < r->answer_count; k++) {
+    const scree_answer *answer = &a->study->answers[k];
+    r->units[k] = answer->outline ? "m" : answer->unit ? answer->unit : "";
+    if (!(r->answers[k] = scree_arena_text(a->arena, answer->name))) return no_memory(a);
+  }
   for (size_t k = 0; k < r->factor_count; k++)
     if (!(r->factors[k] = scree_arena_text(a->arena, a->study->factors[k].key)))
       return no_memory(a);

@@ -333,7 +333,7 @@ static scree_status read_answers(const reader *r, const scree_yaml *node) {
   for (size_t i = 0; status == SCREE_OK && i < node->item_count; i++) {
     status = read_answer(r, &node->items[i], &study->answers[i]);
     if (status == SCREE_OK && study->scene_text && !study->answers[i].outline &&
-        !scree_study_has_column(study, study->answers[i].column))
+        !scree_study_has_column(study, study->answers[i].column, &study->answers[i].unit))
       status = fail_at(r, &node->items[i], "no column '%s' in the scene; its sensors are %s",
                        study->answers[i].column, scree_study_sensor_names(study));
     study->answer_count += status == SCREE_OK;

@@ -241,13 +241,13 @@ scree_status scree_study_stock(const scree_study *study, size_t run, const scree
 
 /* ---- answers ---- */
 
-bool scree_study_has_column(const scree_study *study, const char *column) {
+bool scree_study_has_column(const scree_study *study, const char *column, const char **unit) {
   scree_scene_file *file;
   char name[96] = "?";
   bool found = false;
   if (scree_study_scene(study, NULL, &file, NULL) != SCREE_OK) return false;
   for (size_t i = 0; !found && *name; i++) {
-    if (scree_scene_file_column(file, i, name, NULL) != SCREE_OK) break;
+    if (scree_scene_file_column(file, i, name, unit, NULL) != SCREE_OK) break;
     found = !strcmp(name, column);
   }
   scree_scene_file_free(file);
@@ -259,7 +259,7 @@ const char *scree_study_sensor_names(scree_study *study) {
   scree_scene_file *file;
   char name[96] = "?", list[400] = "";
   if (scree_study_scene(study, NULL, &file, NULL) != SCREE_OK) return none;
-  for (size_t i = 0; *name && scree_scene_file_column(file, i, name, NULL) == SCREE_OK; i++) {
+  for (size_t i = 0; *name && scree_scene_file_column(file, i, name, NULL, NULL) == SCREE_OK; i++) {
     size_t used = strlen(list);
     if (strchr(name, '.'))
       snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", name);

@@ -55,6 +55,7 @@ typedef enum scree_design {
  */
 typedef struct scree_answer {
   const char *name, *column;
+  const char *unit; /* NULL: not known */
   bool mean, sd, outline;
   double from, until; /* s; NaN: the sensor's */
   double at;          /* s; of an outline m; NAN: the last */
@@ -145,8 +146,9 @@ scree_status scree_study_try(const scree_study *study, const char *key, const ch
 scree_status scree_study_stock(const scree_study *study, size_t run, const scree_scene_file *file,
                                scree_shape_store *store, double *triangle_count,
                                scree_error *error);
-/* Whether the base has such a column, known from its sensors and shapes; the sensors' names. */
-bool scree_study_has_column(const scree_study *study, const char *column);
+/* Whether the base has such a column, and its unit, known from its sensors and shapes; the sensors'
+ * names. */
+bool scree_study_has_column(const scree_study *study, const char *column, const char **unit);
 const char *scree_study_sensor_names(scree_study *study);
 /* The scene's text into the study's folder. */
 scree_status scree_study_keep_scene(const scree_study *study, scree_error *error);

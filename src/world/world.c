@@ -354,6 +354,11 @@ scree_status scree_world_set_body(scree_world *world, size_t index, const scree_
   return SCREE_OK;
 }
 
+void scree_body_keep_orientation(scree_world *world, size_t index, const double told[4]) {
+  world->bodies.orientation[index] = (quat){told[0], told[1], told[2], told[3]};
+  world->bodies.frame[index].rotation = quat_to_mat3(world->bodies.orientation[index]);
+}
+
 scree_particle *scree_world_body_particle(const scree_world *world, size_t index) {
   return world->bodies.particle[index];
 }

@@ -517,6 +517,8 @@ static inline const scree_particle *scree_pair_shape_b(const scree_world *w, con
 }
 /* wall.c: where it is now, until the next step, and its faces. */
 const scree_world_wall *scree_world_wall_at(const scree_world *world, size_t index);
+/* Of a body without neighbours yet: an orientation that scree_world_get_body told, to the bit. */
+void scree_body_keep_orientation(scree_world *world, size_t index, const double told[4]);
 /* Of two worlds with the same walls: both keep one surface of each. */
 void scree_world_share_walls(scree_world *world, const scree_world *like);
 /* Else it sleeps until the bodies' paths have grown. */

@@ -84,8 +84,8 @@ factors: {rp: [0.02]}
 END
 "$SCREE" study one.yaml -o one --jobs 1 -q >/dev/null
 once="-p demo --particles 6 --cylinder 0.2 --pack-time 0.2 --settle-time 0.05 --lift-speed 1 --lift-time 0.05 --hold-time 0.05 --seed 1 --no-picture --json -q"
-"$SCREE" repose round.stl --rp 0.02 $once | grep -v '"command"\|"file"\|_seconds"\|"name"\|"source"' >scan.json
-"$SCREE" repose one/shapes/round-rp0.02.ply --unit m $once | grep -v '"command"\|"file"\|_seconds"\|"name"\|"source"' >written.json
+"$SCREE" repose round.stl --rp 0.02 $once | grep -v '"command"\|"file"\|_seconds"\|"name"\|"family"\|"source"' >scan.json
+"$SCREE" repose one/shapes/round-rp0.02.ply --unit m $once | grep -v '"command"\|"file"\|_seconds"\|"name"\|"family"\|"source"' >written.json
 diff scan.json written.json
 grep -c height scan.json
 # of shapes that are not decimated yet nothing is said to be known

@@ -329,7 +329,7 @@ static scree_status live(void *context, scree_error *error) {
   status = scree_scene_file_set(file, "output.series", "0.002", error);
   char column[96];
   if (status == SCREE_OK) status = scree_scene_file_check(file, error);
-  if (status == SCREE_OK) status = scree_scene_file_column(file, 3, column, error);
+  if (status == SCREE_OK) status = scree_scene_file_column(file, 3, column, NULL, error);
   if (status == SCREE_OK) status = scree_scene_create(file, NULL, &scene, error);
   scree_scene_file_free(file);
   double values[200]; /* the columns of its sensors, and more */

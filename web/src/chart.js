@@ -54,7 +54,7 @@ export class Chart {
       cursor: { drag: { x: false, y: false } },
       legend: { markers: { width: 0, fill: (_, i) => lineImage(series[i - 1].color(), series[i - 1].dash) } },
       scales: { x: { time: false, distr: this.logX ? 3 : 1 }, y: { distr: this.logY ? 3 : 1, ...(this.logY ? {} : { range: () => this.span() }), ...(this.yLeast ? { range: (_, low, high) => uPlot.rangeLog(Math.max(low, this.yLeast), high, 10, true) } : {}) } },
-      axes: [axis(x.label, this.logX), { ...axis(this.yLabel, this.logY), size: 56 }],
+      axes: [axis(x.label, this.logX), { ...axis(this.yLabel, this.logY), size: (_, at) => 26 + 7 * Math.max(4, ...(at ?? []).map((text) => String(text ?? '').length)) }],
       series: [{ label: x.label, value: (_, v) => (v === null ? '' : `: ${x.text(v)}`) }, ...series.map((s) => ({
         label: s.label, stroke: s.color, width: s.width ?? 1.5, dash: s.dash, spanGaps: true, points: { show: s.points ?? false },
         value: (_, v) => (v === null ? '' : `: ${s.text(v)}`),

@@ -55,15 +55,16 @@ export class StudySection {
     element('p', `${whole(study.runs.done)} of ${counted(study.points.length * study.replicates, 'run')} are done; ${counted(study.replicates, 'replicate')} a point. Intervals are of ${number(100 * study.confidence)} % confidence.`, host, { class: 'soft' });
     for (const answer of this.answers) {
       const get = (p) => p.answers[answer];
-      element('h2', answer, host);
-      this.against(null, answer, (p) => ({ value: get(p).mean, ...spread(get(p), 'mean_low', 'mean_high') }), 'the interval of the mean');
+      const unit = study.units?.[answer], named = unit ? `${answer} / ${unit}` : answer;
+      element('h2', named, host);
+      this.against(null, named, (p) => ({ value: get(p).mean, ...spread(get(p), 'mean_low', 'mean_high') }), 'the interval of the mean');
       table(host, [
         { head: 'point', value: (p) => p.label || study.name }, { head: 'runs done', value: (p) => p.runs.done },
         { head: 'mean', value: (p) => get(p).mean, text: (p) => number(get(p).mean, 5) },
         ...[['low', 'mean_low'], ['high', 'mean_high']].map(([head, key]) => ({ head, value: (p) => (alike(get(p)) ? null : get(p)[key]), text: (p) => number(alike(get(p)) ? null : get(p)[key], 5) })),
         { head: 'sd', value: (p) => get(p).sd, text: (p) => sdText(get(p), 5) }, { head: 'CV', value: (p) => get(p).cv, text: (p) => number(get(p).cv, 5) },
-      ], study.points, `${study.name}-${answer}.csv`, answer);
-      this.tellEffects(answer, get);
+      ], study.points, `${study.name}-${answer}.csv`, named);
+      this.tellEffects(named, get);
     }
   }
 

@@ -7,9 +7,9 @@ export const whole = (n) => (n === null || n === undefined ? '–' : Number(n).t
 // A few digits, without zeros at the end: 0.00123, 12.3, 1.2e-7.
 export function number(x, digits = 4) {
   if (x === null || x === undefined || !Number.isFinite(Number(x))) return '–';
-  const text = Number(x).toPrecision(digits);
-  const [mantissa, exponent] = text.split('e');
-  if (Number(exponent) > 0 && Number(exponent) < 6) return String(Number(text));
+  const small = Math.abs(x) < 1e-4 && Number(x) !== 0;
+  const [mantissa, exponent] = (small ? Number(x).toExponential(digits - 1) : Number(x).toPrecision(digits)).split('e');
+  if (Number(exponent) > 0 && Number(exponent) < 6) return String(Number(`${mantissa}e${exponent}`));
   const short = mantissa.includes('.') ? mantissa.replace(/\.?0+$/, '') : mantissa;
   return exponent ? `${short}e${Number(exponent)}` : short;
 }
