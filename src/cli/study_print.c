@@ -61,15 +61,38 @@ static void print_comparison(FILE *stream, const scree_study_result *r, size_t p
           c->difference);
 }
 
+/* A longer label stands on a line of its own. */
+enum { LABEL_WIDTH = 20 };
+
+static const char *label_of(const scree_study_result *r, size_t index, const char *other) {
+  const char *label = r->points[index].label[0] ? r->points[index].label : other;
+  return label + (!strncmp(label, "rp ", 3) && r->factor_count == 1 ? 3 : 0);
+}
+
+static int label_width(const scree_study_result *r, bool shapes) {
+  size_t width = 5;
+  for (size_t i = 0; i < r->point_count; i++) {
+    size_t length = strlen(label_of(r, i, shapes ? r->points[i].shapes : r->name));
+    if (length > width && length <= LABEL_WIDTH) width = length;
+  }
+  return (int)width;
+}
+
+static void print_label(FILE *stream, const char *label, int width) {
+  if (strlen(label) <= (size_t)width)
+    fprintf(stream, "%-*s", width, label);
+  else
+    fprintf(stream, "%s\n%*s", label, width, "");
+}
+
 static void print_point(FILE *stream, const scree_study_result *r, size_t index, int width) {
   const scree_point_result *p = &r->points[index];
   const scree_summary *a = &p->angle_deg;
-  const char *label = p->label[0] ? p->label : p->shapes;
-  if (!strncmp(label, "rp ", 3) && r->factor_count == 1) label += 3;
+  print_label(stream, label_of(r, index, p->shapes), width);
   if (isnan(p->triangle_count)) /* before the first run */
-    fprintf(stream, "%-*.*s %9s", width, width, label, "-");
+    fprintf(stream, " %9s", "-");
   else
-    fprintf(stream, "%-*.*s %9.0f", width, width, label, p->triangle_count);
+    fprintf(stream, " %9.0f", p->triangle_count);
   fprintf(stream, " %3zu/%-3zu", p->counts.done, r->replicate_count);
   if (!p->counts.done)
     fprintf(stream, " %-38s", " -");
@@ -93,13 +116,8 @@ static void print_point(FILE *stream, const scree_study_result *r, size_t index,
 }
 
 static void print_table(FILE *stream, const scree_study_result *r) {
-  int width = 7;
+  int width = label_width(r, true);
   bool only_rp = r->factor_count == 1 && !strncmp(r->points[0].label, "rp ", 3);
-  for (size_t i = 0; i < r->point_count; i++) {
-    const scree_point_result *p = &r->points[i];
-    int length = (int)strlen(p->label[0] ? p->label : p->shapes) - (only_rp ? 3 : 0);
-    if (length > width) width = length < 48 ? length : 48;
-  }
   fprintf(stream, "%-*s %9s %7s %6s %-16s %6s %8s %9s  %s\n", width, only_rp ? "Rp" : "point",
           "triangles", "runs", "angle", "  interval", "SD", "CV", "time (s)",
           r->family_count ? "against finest" : "");
@@ -158,29 +176,24 @@ static void print_family(FILE *stream, const scree_study_result *r, const scree_
 
 /* A table for each answer of a scene. */
 static void print_answers(FILE *stream, const scree_study_result *r) {
-  int width = 5;
-  for (size_t i = 0; i < r->point_count; i++) {
-    int length = (int)strlen(r->points[i].label);
-    if (length > width) width = length < 80 ? length : 80;
-  }
+  int width = label_width(r, false);
   fprintf(stream, "intervals of %g %%; time of the processor\n", 100 * r->confidence);
   for (size_t k = 0; k < r->answer_count; k++) {
-    fprintf(stream, "%s%s%s%s\n  %-*s %7s %12s %-25s %11s %9s\n", r->answers[k],
+    fprintf(stream, "%s%s%s%s\n%-*s %7s %10s %-22s %9s %8s\n", r->answers[k],
             r->units[k][0] ? " [" : "", r->units[k], r->units[k][0] ? "]" : "", width, "point",
             "runs", "mean", "  interval", "SD", "time (s)");
     for (size_t i = 0; i < r->point_count; i++) {
       const scree_point_result *p = &r->points[i];
       const scree_summary *a = &p->answers[k];
-      fprintf(stream, "  %-*.*s %3zu/%-3zu ", width, width, p->label[0] ? p->label : r->name,
-              p->counts.done, r->replicate_count);
+      print_label(stream, label_of(r, i, r->name), width);
+      fprintf(stream, " %3zu/%-3zu ", p->counts.done, r->replicate_count);
       if (a->count == 0)
-        fprintf(stream, "%12s %37s", "-", "");
+        fprintf(stream, "%10s %32s", "-", "");
       else if (a->count < 2 || a->sd == 0)
-        fprintf(stream, "%12.5g %-37s", a->mean, a->count < 2 ? "" : "all runs alike");
+        fprintf(stream, "%10.5g %-32s", a->mean, a->count < 2 ? "" : "all runs alike");
       else
-        fprintf(stream, "%12.5g [%11.5g, %11.5g] %10.4g", a->mean, a->mean_low, a->mean_high,
-                a->sd);
-      fprintf(stream, " %9.4g\n", p->seconds.mean);
+        fprintf(stream, "%10.5g [%9.4g, %9.4g] %9.4g", a->mean, a->mean_low, a->mean_high, a->sd);
+      fprintf(stream, " %8.3g\n", p->seconds.mean);
     }
   }
 }

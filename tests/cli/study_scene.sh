@@ -17,7 +17,7 @@ answers: [all.count, all.count: {from: 0.15}, all.count: mean]
 replicates: 2
 END
 # the last two columns are noise and time
-table() { sed -E 's/( +[0-9.e-]+)? +[0-9.e-]+$//'; }
+table() { sed -E '/^ .*[/]/s/( +[0-9.e-]+)? +[0-9.e-]+$//'; } # without deviations and times
 run study study.yaml -o out -q | table
 sed -n '1s/.*,\(all.count.*\)/\1/p' out/points.csv
 head -2 out/points.csv | cut -d, -f1-8
