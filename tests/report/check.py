@@ -492,6 +492,12 @@ def a_machine(browser, folder):
     pictures(browser, "machine")
     pictures(browser, "machine-phone", width=400, height=844)
     browser.look()
+    with open(os.path.join(folder, "fall.yaml"), "w", encoding="utf-8") as file:
+        file.write("time: 0.4\nshapes: {ball: {sphere: 0.01}}\ninlets: {i: {box: {min: [0, 0, 0.2], max: [0.2, 0.2, 0.4]}, shapes: ball, count: 20}}\n"
+                   "outlets: {o: {box: {min: [-1, -1, -2], max: [1, 1, 0]}}}\ndomain: {min: [-1, -1, -2], max: [1, 1, 1]}\nsensors: {stay: {residence: {bins: 5}}}\n")
+    scree("run", "fall.yaml", "-o", "fall", "--no-picture", folder=folder)
+    ready(browser, os.path.join(folder, "fall", "report.html"))
+    check("stay: how long bodies stayed" in browser.text("main"), "the residence times are not drawn")
 
 
 def a_real_study(browser, folder):

@@ -1,5 +1,6 @@
 // The section of one scene (result.json with scene.yaml, docs/reference/formats.md): its bodies and walls to play, what its
 // sensors read beside them.
+import { Chart, palette } from './chart.js';
 import { PlayedSection, known } from './played.js';
 import { counted, element, folded, number, table, whole } from './text.js';
 
@@ -82,7 +83,7 @@ export class SceneSection extends PlayedSection {
   // What the sensors read at the moment shown, over their windows, and its course.
   tellSensors() {
     const read = this.scene.columns.filter(({ name, values }) => name.includes('.') && values.some((v) => v));
-    const none = this.scene.columns.filter((column) => column.name.includes('.') && !read.includes(column));
+    const rest = this.scene.columns.filter((column) => column.name.includes('.') && !read.includes(column));
     this.now = [];
     if (read.length) {
       element('h2', 'What the sensors read', this.host);
@@ -97,7 +98,10 @@ export class SceneSection extends PlayedSection {
         summary('mean', 'mean'), summary('sd', 'sd'), summary('least', 'least'), summary('greatest', 'greatest'), { head: 'over', value: window },
       ], read, `${this.name}-sensors.csv`, 'What the sensors read');
     }
-    if (none.length) element('p', `Zero throughout: ${none.map(({ name }) => name).join(', ')}.`, this.host, { class: 'soft' });
+    for (const [what, empty] of [['Zero throughout', ({ values }) => values.some(known)], ['Nothing to measure yet', ({ values }) => !values.some(known)]]) {
+      const names = rest.filter(empty).map(({ name }) => name);
+      if (names.length) element('p', `${what}: ${names.join(', ')}.`, this.host, { class: 'soft' });
+    }
   }
 
   drawCurves() {
@@ -109,7 +113,22 @@ export class SceneSection extends PlayedSection {
     this.chart('Bodies', 'bodies', [['came in', 'entered'], ['inside', 'inside'], ['went out', 'left'], ['waiting', 'waiting']]);
     this.fallingChart('Energy of motion', 'energy / J', [['translation', 'kinetic'], ['rotation', 'rotational']]);
     this.chart('Rotational velocity', 'mean |ω| / (rad/s)', [['mean |ω|', 'mean_rotation']], { from: 2 });
+    this.drawResidence();
     this.host = all;
+  }
+
+  // How many bodies stayed how long, by class.
+  drawResidence() {
+    for (const { name, from, until, classes } of this.scene.residence) {
+      if (!(until > from)) continue;
+      const { length } = classes[0].counts;
+      element('h2', `${name}: how long bodies stayed`, this.host);
+      new Chart(element('div', null, this.host, { class: 'chart' }), {
+        x: { label: 'time inside / s', values: classes[0].counts.map((_, i) => from + ((i + 0.5) * (until - from)) / length), text: (v) => number(v, 3) },
+        yLabel: 'bodies', logX: false, logY: false,
+        series: classes.map((one, i) => ({ label: one.name, values: one.counts, color: palette[i % palette.length], width: 2, points: true, text: whole })),
+      });
+    }
   }
 
   tellTables() {
