@@ -37,6 +37,15 @@ static bool acts_on(const scree_scene *scene, const scree_plan_force *f, size_t 
   return f->of.count == 0;
 }
 
+scree_status scree_scene_plan_forces(scree_scene *scene, scree_error *error) {
+  const size_t forces = scene->plan.forces.count, shapes = SCREE_SCENE_SHAPES(scene);
+  scene->acts_on = scree_arena_take(&scene->arena, forces * shapes + 1, 1);
+  if (!scene->acts_on) return scree_fail_memory(error, forces * shapes, "forces");
+  for (size_t i = 0; i < forces * shapes; i++)
+    scene->acts_on[i] = acts_on(scene, plan_of(scene, i / shapes), i % shapes);
+  return SCREE_OK;
+}
+
 static bool is_within(const scree_plan_force *f, vec3 p) {
   if (f->box) return scree_is_in((const double[3]){p.x, p.y, p.z}, f->box->min, f->box->max);
   if (!f->cylinder) return true;
@@ -69,12 +78,13 @@ static vec3 drag_of(const scree_scene *scene, const scree_plan_drag *d, const sc
   return vec3_mad(lift, flow, rate);
 }
 
-static vec3 force_of(const scree_scene *scene, const scree_plan_force *f, size_t shape,
-                     const scree_body *body) {
+static vec3 force_of(const scree_scene *scene, size_t index, size_t shape, const scree_body *body) {
+  const scree_plan_force *f = plan_of(scene, index);
   const scree_scene_shape *s = &scene->shapes[shape];
   vec3 p = vec3_load(body->position), none = {0, 0, 0};
   double time = scree_world_time(scene->world);
-  if (time < f->from || time > f->until || !acts_on(scene, f, shape) || !is_within(f, p))
+  if (time < f->from || time > f->until ||
+      !scene->acts_on[index * SCREE_SCENE_SHAPES(scene) + shape] || !is_within(f, p))
     return none;
   double factor = factor_of(f, p, time);
   if (!f->drag) {
@@ -97,7 +107,7 @@ scree_status scree_scene_apply_forces(scree_scene *scene, scree_error *error) {
     if (scree_world_body_removed(scene->world, b)) continue;
     scree_world_get_body(scene->world, b, &body);
     for (size_t i = 0; i < scene->plan.forces.count; i++)
-      force = vec3_add(force, force_of(scene, plan_of(scene, i), scene->shape_of.items[b], &body));
+      force = vec3_add(force, force_of(scene, i, scene->shape_of.items[b], &body));
     vec3_store(sum, force);
     status = scree_world_set_body_force(scene->world, b, sum, none, error);
   }

@@ -72,6 +72,10 @@ static double wanted_of(const scree_scene *scene, const scree_scene_inlet *inlet
 
 /* ---- remarks ---- */
 
+/* Of a body's size: contacts that give way by less than the first are stiffer than flows can tell;
+ * the second is usual. */
+static const double stiff_share = 3e-4, usual_share = 1e-2;
+
 typedef struct remarks {
   size_t wanted, count;
   char *text;
@@ -164,6 +168,11 @@ static void remark_softness(const scree_scene *scene, remarks *r) {
   scree_scene_softness soft;
   if (scree_scene_soft(scene, &soft) && is_asked(r))
     scree_scene_describe_softness(scene, &soft, r->text, SCREE_REMARK);
+  if (soft.least > 0 && soft.least < stiff_share && is_asked(r))
+    snprintf(r->text, SCREE_REMARK,
+             "materials: the stiffest contact gives way by at most %.2g of a body's size, and 0.01 "
+             "is usual: with `young` lower by a factor of %.1g a run takes 1/%.2g of the steps",
+             soft.least, pow(usual_share / soft.least, 2), usual_share / soft.least);
 }
 
 bool scree_scene_remark(const scree_scene *scene, size_t index, char text[SCREE_REMARK]) {

@@ -361,8 +361,8 @@ static const scree_record vibrate_record = {"vibrate", FIELDS(vibrate_fields),
                                             sizeof(scree_plan_vibrate), &vibrate_defaults,
                                             check_vibrate};
 
-static scree_status check_window(const scree_reader *r, const scree_place *place, double from,
-                                 double until) {
+scree_status scree_plan_check_window(const scree_reader *r, const scree_place *place, double from,
+                                     double until) {
   if (!given(&until) || from < until) return SCREE_OK;
   return scree_fail_place(r, place, "until %g s must be after from %g s", until, from);
 }
@@ -388,7 +388,7 @@ static scree_status check_motion(const scree_reader *r, const void *record) {
                               "speed may act");
   if (status == SCREE_OK && m->during && (m->from > 0 || given(&m->until)))
     status = scree_fail_place(r, &m->place, "during stands instead of from and until");
-  return status == SCREE_OK ? check_window(r, &m->place, m->from, m->until) : status;
+  return status == SCREE_OK ? scree_plan_check_window(r, &m->place, m->from, m->until) : status;
 }
 static const scree_plan_motion motion_defaults = {.until = NAN};
 static const scree_record motion_record = {
@@ -554,7 +554,7 @@ static scree_status check_inlet(const scree_reader *r, const void *record) {
     return scree_fail_place(r, &i->place, "a rate of 0: nothing would ever enter");
   if (rates[0] && rates[1])
     return scree_fail_place(r, &i->place, "only one of rate, mass_rate may be given");
-  return check_window(r, &i->place, i->from, i->until);
+  return scree_plan_check_window(r, &i->place, i->from, i->until);
 }
 static const scree_plan_inlet inlet_defaults = {.rate = NAN, .mass_rate = NAN, .until = NAN};
 static const scree_record inlet_record = {"an inlet", FIELDS(inlet_fields),
@@ -570,7 +570,7 @@ static const scree_field outlet_fields[] = {
 static scree_status check_outlet(const scree_reader *r, const void *record) {
   const scree_plan_outlet *o = record;
   if (!o->box) return scree_fail_place(r, &o->place, "needs a box: {min: ..., max: ...}");
-  return check_window(r, &o->place, o->from, o->until);
+  return scree_plan_check_window(r, &o->place, o->from, o->until);
 }
 static const scree_plan_outlet outlet_defaults = {.until = NAN};
 static const scree_record outlet_record = {

@@ -25,6 +25,9 @@ scree_status scree_plan_one_of(const scree_reader *r, const scree_place *place, 
                                size_t count, const char *names);
 scree_status scree_plan_check_direction(const scree_reader *r, const scree_place *place,
                                         const char *what, const double *v);
+/* Of a record with `from` and `until`. */
+scree_status scree_plan_check_window(const scree_reader *r, const scree_place *place, double from,
+                                     double until);
 /* plan_solids.c: of wheels `span` apart. */
 scree_status scree_plan_check_span(const scree_reader *r, const scree_place *place,
                                    const double axis[3], const double span[3]);

@@ -52,10 +52,7 @@ static scree_status check_force(const scree_reader *r, const void *record) {
   if (status == SCREE_OK && f->cylinder &&
       (!given(&f->cylinder->radius) || !given(f->cylinder->at)))
     status = scree_fail_place(r, &f->cylinder->place, "needs a radius and at: [x, y, z]");
-  if (status == SCREE_OK && given(&f->until) && !(f->from < f->until))
-    status =
-        scree_fail_place(r, &f->place, "until %g s must be after from %g s", f->until, f->from);
-  return status;
+  return status == SCREE_OK ? scree_plan_check_window(r, &f->place, f->from, f->until) : status;
 }
 static const scree_plan_force force_defaults = {
     .until = NAN, .force = NONE, .acceleration = NONE, .per_volume = NONE};

@@ -198,15 +198,14 @@ static const scree_field sensor_fields[] = {
 #undef AT
 static scree_status check_sensor(const scree_reader *r, const void *record) {
   const scree_plan_sensor *s = record;
-  if (s->until <= s->from)
-    return scree_fail_place(r, &s->place, "from %g s must be below until %g s", s->from, s->until);
   const bool there[] = {s->flow != NULL,      s->region != NULL,   s->wall != NULL,
                         s->pile != NULL,      s->slope != NULL,    s->segregation != NULL,
                         s->residence != NULL, s->position != NULL, s->impacts != NULL,
                         s->part != NULL,      s->grid != NULL};
-  return scree_plan_one_of(
+  scree_status status = scree_plan_one_of(
       r, &s->place, there, sizeof there / sizeof *there,
       "flow, region, wall, position, part, pile, slope, segregation, residence, impacts, grid");
+  return status == SCREE_OK ? scree_plan_check_window(r, &s->place, s->from, s->until) : status;
 }
 static const scree_plan_sensor sensor_defaults = {.until = NAN};
 const scree_record scree_plan_sensor_record = {

@@ -249,7 +249,8 @@ scree_status scree_scene_prepare(scree_scene *scene, scree_error *error) {
   scene->still_since = NAN;
   for (int k = 0; k < 3; k++) scene->table_low[k] = INFINITY, scene->table_high[k] = -INFINITY;
   scene->costs.piece_count = 1;
-  status = scree_scene_plan_parts(scene, error);
+  status = scree_scene_plan_forces(scene, error);
+  if (status == SCREE_OK) status = scree_scene_plan_parts(scene, error);
   if (status != SCREE_OK) return status;
   if (allocate_inlets(scene) != SCREE_OK) return scree_fail_memory(error, 0, "inlets");
   return scree_scene_plan_columns(scene, error);

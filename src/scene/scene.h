@@ -174,6 +174,7 @@ struct scree_scene {
   uint64_t hit_steps, next_hits; /* and of looks at impacts */
   scree_scene_hits hits, hits_now; /* hits_now: scratch */
   bool has_parts;
+  bool *acts_on; /* of forces, each by shape */
   size_t still_ticks;
   double entered_mass, left_mass, entered_energy, left_energy;
   size_t left_count;
@@ -321,6 +322,7 @@ typedef struct scree_scene_softness {
   double speed, overlap, limit; /* m/s; m: v sqrt(m/K), and what the law reads */
   double size;                  /* m, of the smaller */
   double stiffer; /* so many times as stiff it would hold, in the root as many steps */
+  double least;   /* of its size, by how much the stiffest contact gives way */
 } scree_scene_softness;
 /* False where none may. The sentence that says so is put into text. */
 bool scree_scene_soft(const scree_scene *scene, scree_scene_softness *softness);
@@ -369,7 +371,8 @@ double scree_scene_wall_work(const scree_scene *scene, size_t geometry);
 double scree_scene_push(const scree_scene *scene, size_t geometry);
 double scree_scene_parts_balance(const scree_scene *scene);
 
-/* forces.c: of the coming step. */
+/* forces.c: on whom; of the coming step. */
+scree_status scree_scene_plan_forces(scree_scene *scene, scree_error *error);
 scree_status scree_scene_apply_forces(scree_scene *scene, scree_error *error);
 
 /* residence.c: its columns; its tables. */

@@ -125,12 +125,14 @@ typedef struct search {
   const scree_scene *scene;
   scree_scene_softness worst;
   double worst_share; /* of the limit */
+  double least;       /* of the size: what the stiffest gives way; infinity: there is none */
 } search;
 
 static void look(search *s, size_t inlet, const touching *t, double speed) {
   double size, give = give_of(s->scene, t, &size), share,
                limit = s->scene->world->options.overlap_limit * size;
   share = give * speed / limit;
+  s->least = fmin(s->least, give * speed / size);
   if (!(share > s->worst_share)) return;
   s->worst_share = share;
   s->worst = (scree_scene_softness){.inlet = inlet,
@@ -175,13 +177,14 @@ static double speed_of_inlet(const scree_scene_inlet *inlet) {
 }
 
 bool scree_scene_soft(const scree_scene *scene, scree_scene_softness *softness) {
-  search s = {.scene = scene};
+  search s = {.scene = scene, .least = INFINITY};
   double g = vec3_norm(vec3_load(scene->plan.gravity));
   for (size_t i = 0; i < scene->plan.inlets.count; i++) {
     double speed = speed_of_inlet(&scene->inlets[i]);
     look_at_inlet(&s, i, sqrt(speed * speed + 2 * g * fall_from(scene, &scene->inlets[i])), true);
   }
   *softness = s.worst;
+  softness->least = s.least;
   return s.worst_share > 1;
 }
 

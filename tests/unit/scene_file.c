@@ -345,6 +345,7 @@ static void remarks(void **state) {
       {"seed", "4", NULL},
       {"materials.grain", "{young: 1e6}", "materials.grain: no density is given: 2000 kg/m3"},
       {"materials.steel", "{young: 1e7}", NULL}, /* no shape is of it */
+      {"materials.grain.young", "210e9", "materials: the stiffest contact gives way by at most"},
       {"inlets.feed.rate", "20000", "inlets.feed: of 20000 bodies about"},
       {"inlets.feed.count", "10", NULL},
       {"output.frames", "1e-6", "output.frames: 1e-06 s is shorter than a time step"},
