@@ -166,7 +166,8 @@ typedef struct scree_wall_motion {
   double radius; /* m; above 0: it is carried round two wheels of this radius, of which one is at
                     `through` and the other further by `span`, square to the axis or 0; right-handed
                     about the axis, by m and m/s. It stands as a way of `start` from the beginning
-                    of the strand that leads to the other wheel has turned it */
+                    of the strand that leads to the other wheel has turned it; one whose first
+                    motion was of that kind already goes on from where that is */
   double span[3], start; /* m */
   const double *table;   /* row_count rows of a time (s, growing) and a value (m, m/s,
                             rad or rad/s) */

@@ -1,92 +1,29 @@
 /* Bodies from a table, and into one: a line of names, then a line for each body, between commas.
  * Names are x, y, z; qw, qx, qy, qz, which turn the particle's axes into space; vx, vy, vz; wx, wy,
  * wz in space; size; shape. Behind a name its unit may stand: `x [mm]`. */
-#include "scene/scene.h"
-
 #include "base/file.h"
 #include "base/number.h"
-#include "base/unit.h"
+#include "scene/named_table.h"
+#include "scene/scene.h"
 
 #include <float.h>
-#include <stdarg.h>
 #include <string.h>
 
-enum { REALS = 14, SHAPE = REALS, COLUMNS = REALS + 1, MOST_COLUMNS = 64, MOST_BYTES = 1 << 30 };
-static const struct {
-  const char *name, *unit;
-} known[COLUMNS] = {{"x", "m"},      {"y", "m"},    {"z", "m"},      {"qw", ""},
-                    {"qx", ""},      {"qy", ""},    {"qz", ""},      {"vx", "m/s"},
-                    {"vy", "m/s"},   {"vz", "m/s"}, {"wx", "rad/s"}, {"wy", "rad/s"},
-                    {"wz", "rad/s"}, {"size", "m"}, {"shape", ""}};
+enum { REALS = 14, SHAPE = REALS, COLUMNS = REALS + 1, MOST_BYTES = 1 << 30 };
+static const scree_named_column known[COLUMNS] = {
+    {"x", "m"},      {"y", "m"},      {"z", "m"},      {"qw", ""},    {"qx", ""},
+    {"qy", ""},      {"qz", ""},      {"vx", "m/s"},   {"vy", "m/s"}, {"vz", "m/s"},
+    {"wx", "rad/s"}, {"wy", "rad/s"}, {"wz", "rad/s"}, {"size", "m"}, {"shape", NULL}};
 
-typedef struct table {
-  const char *name; /* of the file */
-  size_t line;
-  int column_count, columns[MOST_COLUMNS]; /* which of the known each is */
-  double factors[MOST_COLUMNS];            /* of its unit */
-  bool there[COLUMNS];
-} table;
-
-SCREE_PRINTF(3, 4)
-static scree_status fail(const table *t, scree_error *error, const char *format, ...) {
-  char text[400];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return scree_fail(error, SCREE_BAD_FILE, "%s: line %zu: %s", t->name, t->line, text);
-}
-
-/* The next field of a line, without blanks around it; false at the line's end. */
-static bool next_field(char **at, char **field) {
-  if (!*at) return false;
-  char *comma = strchr(*at, ','), *end = comma ? comma : *at + strlen(*at);
-  char *begin = *at + strspn(*at, " \t");
-  while (end > begin && strchr(" \t\r", end[-1])) end--;
-  *end = 0;
-  *field = begin;
-  *at = comma ? comma + 1 : NULL;
-  return true;
-}
-
-static scree_status read_name(table *t, char *field, scree_error *error) {
-  char *unit = strchr(field, '[');
-  int which = 0;
-  if (unit) {
-    *unit++ = 0;
-    unit[strcspn(unit, "]")] = 0;
-    size_t length = strlen(field);
-    while (length && field[length - 1] == ' ') field[--length] = 0;
-  }
-  while (which < COLUMNS && strcmp(known[which].name, field) != 0) which++;
-  if (which == COLUMNS)
-    return fail(t, error,
-                "no column '%.40s'; there are x, y, z, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz, "
-                "size, shape",
-                field);
-  if (t->there[which]) return fail(t, error, "the column %s stands here twice", field);
-  if (t->column_count == MOST_COLUMNS) return fail(t, error, "more than %d columns", MOST_COLUMNS);
-  double factor = 1;
-  if (unit && scree_unit_convert(unit, known[which].unit, &factor) != SCREE_UNIT_FITS)
-    return fail(t, error, "the column %s is in %s, not '%.20s'", field, known[which].unit, unit);
-  t->there[which] = true;
-  t->factors[t->column_count] = factor;
-  t->columns[t->column_count++] = which;
-  return SCREE_OK;
-}
-
-static scree_status read_names(table *t, char *line, const scree_scene *scene, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (char *field; status == SCREE_OK && next_field(&line, &field);)
-    status = read_name(t, field, error);
-  if (status != SCREE_OK) return status;
+static scree_status check_names(const scree_named_table *t, const scree_scene *scene,
+                                scree_error *error) {
   if (!t->there[0] || !t->there[1] || !t->there[2])
-    return fail(t, error, "needs columns x, y and z");
+    return scree_named_fail(t, error, "needs columns x, y and z");
   bool turned = t->there[3] || t->there[4] || t->there[5] || t->there[6];
   if (turned && !(t->there[3] && t->there[4] && t->there[5] && t->there[6]))
-    return fail(t, error, "an orientation needs qw, qx, qy and qz");
+    return scree_named_fail(t, error, "an orientation needs qw, qx, qy and qz");
   if (!t->there[SHAPE] && scene->plan.families.count > 1)
-    return fail(t, error, "needs a column shape: there are several");
+    return scree_named_fail(t, error, "needs a column shape: there are several");
   return SCREE_OK;
 }
 
@@ -104,25 +41,11 @@ static size_t find_shape(const scree_scene *scene, const char *name, double size
   return i;
 }
 
-static scree_status read_body(const table *t, char *line, scree_scene *scene, scree_error *error) {
-  double v[REALS] = {0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, NAN};
-  const char *shape = NULL;
-  int count = 0;
-  for (char *field; next_field(&line, &field); count++) {
-    if (count == t->column_count) return fail(t, error, "more fields than names");
-    int which = t->columns[count];
-    if (which == SHAPE) {
-      shape = field;
-      continue;
-    }
-    if (!scree_number_read(field, &v[which]))
-      return fail(t, error, "%s: '%.40s' is no number", known[which].name, field);
-    v[which] *= t->factors[count];
-  }
-  if (count < t->column_count) return fail(t, error, "fewer fields than names");
+static scree_status admit(const scree_named_table *t, const double v[REALS], const char *shape,
+                          scree_scene *scene, scree_error *error) {
   size_t index = find_shape(scene, shape, v[13]);
   if (index == SCREE_SCENE_SHAPES(scene))
-    return fail(t, error, "no shape '%.40s' of that name and size", shape ? shape : "");
+    return scree_named_fail(t, error, "no shape '%.40s' of that name and size", shape ? shape : "");
   scree_body body = scree_default_body();
   memcpy(body.position, v, sizeof body.position);
   for (int k = 0; k < 3; k++) {
@@ -138,21 +61,22 @@ static scree_status read_body(const table *t, char *line, scree_scene *scene, sc
   for (int k = 3; k < 7; k++) length2 += v[k] * v[k];
   if (status == SCREE_OK && fabs(length2 - 1) <= 4 * DBL_EPSILON) /* as a world wrote it */
     scree_body_keep_orientation(scene->world, scene->shape_of.count - 1, v + 3);
-  return status == SCREE_BAD_ARGUMENT ? fail(t, error, "%s", why.message)
+  return status == SCREE_BAD_ARGUMENT ? scree_named_fail(t, error, "%s", why.message)
          : status == SCREE_OK         ? status
                                       : scree_fail(error, status, "%s", why.message);
 }
 
-static scree_status read_table(table *t, char *text, scree_scene *scene, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (char *line = text, *next; status == SCREE_OK && line; line = next) {
-    next = strchr(line, '\n');
-    if (next) *next++ = 0;
-    t->line++;
-    if (*line == '#' || line[strspn(line, " \t\r")] == 0) continue;
-    status = t->column_count ? read_body(t, line, scene, error) : read_names(t, line, scene, error);
+static scree_status read_table(const char *name, char *text, scree_scene *scene,
+                               scree_error *error) {
+  scree_named_table t;
+  scree_status status = scree_named_open(&t, name, text, known, COLUMNS, error);
+  if (status == SCREE_OK) status = check_names(&t, scene, error);
+  for (bool there = true; status == SCREE_OK && there;) {
+    double v[COLUMNS] = {0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, NAN};
+    const char *words[COLUMNS] = {NULL};
+    status = scree_named_row(&t, v, words, &there, error);
+    if (status == SCREE_OK && there) status = admit(&t, v, words[SHAPE], scene, error);
   }
-  if (status == SCREE_OK && !t->column_count) return fail(t, error, "no line of names");
   return status;
 }
 
@@ -166,8 +90,7 @@ scree_status scree_scene_read_bodies(scree_scene *scene, const char *folder, scr
   scree_error why;
   scree_status status = scree_file_read(path, MOST_BYTES, &bytes, &count, &why);
   if (status == SCREE_OK) {
-    table t = {.name = path};
-    status = read_table(&t, bytes, scene, &why);
+    status = read_table(path, bytes, scene, &why);
     scree_free(bytes);
   }
   scree_free(path);

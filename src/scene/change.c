@@ -73,6 +73,7 @@ static bool is_among(const char *path, const char *const *patterns, size_t count
 
 typedef struct comparison {
   scree_scene *scene; /* whose arena has the texts */
+  const char *folder; /* where its files lie */
   scree_scene_change_list list;
   scree_status status;
   scree_error *error;
@@ -393,6 +394,7 @@ static scree_status set_geometry(const comparison *c, scree_scene *scene, scree_
     for (size_t w = made->first_wall; w < made->first_wall + made->wall_count; w++)
       if (status == SCREE_OK)
         status = scree_world_set_wall_surface(scene->world, w, surface, still, loop, error);
+    if (status == SCREE_OK) status = scree_scene_read_paths(scene, i, c->folder, error);
     if (status == SCREE_OK) status = scree_scene_set_motions(scene, i, scene->world, error);
   }
   return status == SCREE_OK ? scree_scene_lead_by_phase(scene, error) : status;
@@ -454,7 +456,7 @@ static scree_status take_over(comparison *c, scree_scene *is, scree_error *error
 static scree_status change_to(scree_scene **scene, const scree_scene_file *file,
                               scree_error *error) {
   scree_scene *was = *scene, *is = NULL;
-  comparison c = {.scene = was, .error = error};
+  comparison c = {.scene = was, .folder = file->folder, .error = error};
   char *text;
   scree_status status = scree_scene_file_text(file, &text, error);
   if (status != SCREE_OK) return status;

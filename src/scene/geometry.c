@@ -5,10 +5,11 @@
 #include "particle/closest.h"
 #include "particle/shape.h"
 #include "scene/solids.h"
+#include "world/loop.h"
 
 #include <string.h>
 
-static const double degree = 0.017453292519943295;
+static const double degree = 0.017453292519943295, two_pi = 6.283185307179586;
 
 static const scree_plan_geometry *plan_of(const scree_scene *scene, size_t index) {
   return SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, index);
@@ -64,42 +65,50 @@ static scree_status note(scree_scene *scene, size_t index, const char *text, scr
   return SCREE_OK;
 }
 
+/* One copy of a geometry that goes into a world. */
+typedef struct making {
+  scree_scene *scene;
+  size_t index; /* of the geometry */
+  scree_plan_geometry copy;
+  const char *folder;
+  scree_world *world;
+  bool tells; /* the first copy, for the gallery */
+} making;
+
 /* What is solid and what is a sheet of it; of a file (NULL: there is none) with what was done. */
-static scree_status add_mesh(scree_scene *scene, size_t index, const char *file, scree_world *world,
-                             scree_mesh *mesh, scree_error *error) {
-  const scree_plan_geometry *g = plan_of(scene, index);
+static scree_status add_mesh(const making *m, const char *file, scree_mesh *mesh,
+                             scree_error *error) {
+  const scree_plan_geometry *g = &m->copy;
   scree_scene_walls walls;
   turn_mesh(g, mesh);
-  scree_status status = scree_scene_make_walls(scene, g, mesh, &walls, error);
+  scree_status status = scree_scene_make_walls(m->scene, g, mesh, &walls, error);
   scree_mesh_free(mesh);
   if (status != SCREE_OK) return status;
   scree_wall wall = {.kind = SCREE_WALL_MESH, .axis = {0, 0, 1}, .mesh = &walls.solid};
-  if (walls.solid.triangle_count) status = add_wall(scene, g, world, &wall, error);
+  if (walls.solid.triangle_count) status = add_wall(m->scene, g, m->world, &wall, error);
   wall.mesh = &walls.sheet;
   wall.two_sided = true;
   if (status == SCREE_OK && walls.sheet.triangle_count)
-    status = add_wall(scene, g, world, &wall, error);
-  bool tells = world == scene->gallery && (file || !walls.is_plain);
-  if (status == SCREE_OK && tells) status = note(scene, index, walls.note, error);
+    status = add_wall(m->scene, g, m->world, &wall, error);
+  if (status == SCREE_OK && m->tells && (file || !walls.is_plain))
+    status = note(m->scene, m->index, walls.note, error);
   scree_scene_walls_free(&walls);
   return status;
 }
 
-static scree_status add_file(scree_scene *scene, size_t index, const char *folder, const char *name,
-                             scree_world *world, scree_error *error) {
-  const scree_plan_geometry *g = plan_of(scene, index);
+static scree_status add_file(const making *m, const char *name, scree_error *error) {
   scree_read_options o = scree_default_read_options();
   scree_scan scan;
-  o.unit_m = scree_plan_unit(g->unit);
-  char *path = scree_scene_path(folder, name);
+  o.unit_m = scree_plan_unit(m->copy.unit);
+  char *path = scree_scene_path(m->folder, name);
   if (!path) return scree_fail_memory(error, strlen(name), "a path");
   scree_status status = scree_scan_read(path, &o, &scan, error);
   scree_free(path);
-  return status == SCREE_OK ? add_mesh(scene, index, name, world, &scan.mesh, error) : status;
+  return status == SCREE_OK ? add_mesh(m, name, &scan.mesh, error) : status;
 }
 
-static scree_status add_shaft(const scree_scene *scene, const scree_plan_geometry *g,
-                              scree_world *world, scree_error *error) {
+static scree_status add_shaft(const making *m, scree_error *error) {
+  const scree_plan_geometry *g = &m->copy;
   scree_status status = SCREE_OK;
   for (int side = 0; status == SCREE_OK && side < 4; side++) {
     int k = side / 2;
@@ -110,22 +119,35 @@ static scree_status add_shaft(const scree_scene *scene, const scree_plan_geometr
     normal[k] = inwards;
     one.at[k] -= inwards * half;
     turn_vector(g, normal, wall.axis);
-    status = add_wall(scene, &one, world, &wall, error);
+    status = add_wall(m->scene, &one, m->world, &wall, error);
   }
   return status;
 }
 
-static scree_status add_solid(scree_scene *scene, size_t index, scree_world *world,
-                              scree_error *error) {
-  const scree_plan_geometry *g = plan_of(scene, index);
+/* By the numbers of the plan: a box or what solids.h makes; false: no mesh. */
+static bool describes_mesh(const scree_plan_geometry *g, scree_mesh *mesh, scree_status *status,
+                           scree_error *error) {
+  if (!isnan(g->box[0]))
+    *status = scree_box_mesh(g->box, mesh, error);
+  else if (g->loop)
+    *status = scree_loop_mesh(g->loop, mesh, error);
+  else if (g->screw)
+    *status = scree_screw_mesh(g->screw, mesh, error);
+  else if (g->sieve)
+    *status = scree_sieve_mesh(g->sieve, mesh, error);
+  else
+    return false;
+  return true;
+}
+
+static scree_status add_solid(const making *m, scree_error *error) {
+  const scree_plan_geometry *g = &m->copy;
   scree_wall wall = {.kind = SCREE_WALL_PLANE};
-  if (g->shaft) return add_shaft(scene, g, world, error);
-  if (!isnan(g->box[0]) || g->loop) {
-    scree_mesh mesh;
-    scree_status status =
-        g->loop ? scree_loop_mesh(g->loop, &mesh, error) : scree_box_mesh(g->box, &mesh, error);
-    return status == SCREE_OK ? add_mesh(scene, index, NULL, world, &mesh, error) : status;
-  }
+  scree_mesh mesh;
+  scree_status status;
+  if (g->shaft) return add_shaft(m, error);
+  if (describes_mesh(g, &mesh, &status, error))
+    return status == SCREE_OK ? add_mesh(m, NULL, &mesh, error) : status;
   if (g->disc) {
     wall.kind = SCREE_WALL_DISC;
     wall.radius = g->disc->radius;
@@ -138,7 +160,37 @@ static scree_status add_solid(scree_scene *scene, size_t index, scree_world *wor
   } else {
     turn_vector(g, g->plane, wall.axis);
   }
-  return add_wall(scene, g, world, &wall, error);
+  return add_wall(m->scene, g, m->world, &wall, error);
+}
+
+/* ---- copies ---- */
+
+/* Their way; of those about an axis alone round a wheel of 1 m. */
+static scree_loop loop_of(const scree_plan_round *round) {
+  return (scree_loop){vec3_unit(vec3_load(round->axis)), vec3_load(round->through),
+                      vec3_load(round->span), isnan(round->radius) ? 1 : round->radius};
+}
+
+static double way_of_copy(const scree_plan_round *round, size_t copy) {
+  const scree_loop loop = loop_of(round);
+  return scree_loop_length(&loop) * (double)copy / (double)round->count;
+}
+
+/* The geometry as the copy stands; its turn is put into `turn`. */
+static scree_plan_geometry copied(const scree_plan_geometry *g, size_t copy,
+                                  scree_plan_turn *turn) {
+  scree_plan_geometry one = *g;
+  if (copy == 0) return one;
+  const scree_loop loop = loop_of(g->copies);
+  const scree_loop_place place = scree_loop_at(&loop, way_of_copy(g->copies, copy));
+  const quat q = quat_mul(place.turn, turn_of(g));
+  const vec3 axis = {q.x, q.y, q.z};
+  *turn = (scree_plan_turn){.axis = {0, 0, 1},
+                            .angle_deg = 2 * scree_atan2(vec3_norm(axis), q.w) / degree};
+  if (vec3_norm(axis) > 0) vec3_store(turn->axis, axis);
+  vec3_store(one.at, scree_loop_carry(&loop, &place, vec3_load(g->at)));
+  one.turn = turn;
+  return one;
 }
 
 /* ---- motions ---- */
@@ -159,8 +211,6 @@ static void take_sine(scree_wall_motion *m, double amplitude, double frequency, 
 
 static scree_wall_motion motion_of(const scree_plan_motion *plan) {
   scree_wall_motion m = scree_default_wall_motion();
-  m.from = plan->from;
-  if (!isnan(plan->until)) m.until = plan->until;
   if (plan->translate) {
     const scree_plan_translate *t = plan->translate;
     bool constant = !isnan(t->velocity[0]);
@@ -178,6 +228,12 @@ static scree_wall_motion motion_of(const scree_plan_motion *plan) {
     if (!isnan(t->amplitude)) take_sine(&m, t->amplitude, t->frequency, t->phase);
     take_table(&m, &t->table, SCREE_MOTION_SPEEDS);
     take_table(&m, &t->positions, SCREE_MOTION_POSITIONS);
+  } else if (plan->crank) {
+    const scree_plan_crank *c = plan->crank;
+    memcpy(m.axis, c->along, sizeof m.axis);
+    take_sine(&m, c->radius, c->speed / two_pi, c->phase);
+    m.law = SCREE_MOTION_CRANK;
+    m.rod = c->rod;
   } else {
     const scree_plan_vibrate *v = plan->vibrate;
     memcpy(m.axis, v->along, sizeof m.axis);
@@ -186,32 +242,96 @@ static scree_wall_motion motion_of(const scree_plan_motion *plan) {
   return m;
 }
 
+static scree_wall_motion motion_round(const scree_plan_geometry *g, double speed, size_t copy) {
+  scree_wall_motion m = scree_default_wall_motion();
+  memcpy(m.axis, g->copies->axis, sizeof m.axis);
+  memcpy(m.through, g->copies->through, sizeof m.through);
+  memcpy(m.span, g->copies->span, sizeof m.span);
+  m.radius = g->copies->radius;
+  m.start = way_of_copy(g->copies, copy);
+  m.speed = speed;
+  return m;
+}
+
+/* The angles first, then the ways. */
+static size_t put_path(const scree_plan_path *path, scree_wall_motion *motions) {
+  size_t count = 0;
+  for (int k = 0; k < SCREE_PATH_COLUMNS; k++) {
+    const int column = (k + 3) % SCREE_PATH_COLUMNS;
+    if (!path->tables[column].count) continue;
+    scree_wall_motion *m = &motions[count++];
+    *m = scree_default_wall_motion();
+    m->axis[2] = 0;
+    m->axis[k % 3] = 1;
+    m->turns = k < 3;
+    memcpy(m->through, path->through, sizeof m->through);
+    take_table(m, &path->tables[column], SCREE_MOTION_POSITIONS);
+  }
+  return count;
+}
+
+/* Of a copy; answers how many motions there are. */
+static size_t put_motions(const scree_plan_geometry *g, size_t copy, scree_wall_motion *motions) {
+  size_t count = 0;
+  for (size_t i = 0; i < g->motion.count; i++) {
+    const scree_plan_motion *plan = &((const scree_plan_motion *)g->motion.items)[i];
+    const size_t first = count;
+    if (plan->path)
+      count += put_path(plan->path, motions + count);
+    else
+      motions[count++] = plan->round ? motion_round(g, plan->round->speed, copy) : motion_of(plan);
+    for (size_t k = first; k < count; k++) {
+      motions[k].from = plan->from;
+      if (!isnan(plan->until)) motions[k].until = plan->until;
+    }
+  }
+  return count;
+}
+
 scree_status scree_scene_set_motions(const scree_scene *scene, size_t index, scree_world *world,
                                      scree_error *error) {
   const scree_plan_geometry *g = plan_of(scene, index);
   const scree_scene_geometry *made = &scene->geometry[index];
+  const size_t copies = g->copies ? g->copies->count : 1, most = SCREE_PATH_COLUMNS;
   scree_status status = SCREE_OK;
-  scree_wall_motion *motions = scree_alloc(g->motion.count, sizeof *motions);
+  scree_wall_motion *motions = scree_alloc(most * g->motion.count, sizeof *motions);
   if (!motions) return scree_fail_memory(error, g->motion.count * sizeof *motions, "motions");
-  for (size_t i = 0; i < g->motion.count; i++)
-    motions[i] = motion_of(&((const scree_plan_motion *)g->motion.items)[i]);
-  for (size_t w = 0; status == SCREE_OK && w < made->wall_count; w++)
-    status =
-        scree_world_set_wall_motion(world, made->first_wall + w, motions, g->motion.count, error);
+  for (size_t w = 0; status == SCREE_OK && w < made->wall_count; w++) {
+    const size_t count = put_motions(g, w / (made->wall_count / copies), motions);
+    status = scree_world_set_wall_motion(world, made->first_wall + w, motions, count, error);
+  }
   scree_free(motions);
   return status;
+}
+
+/* ---- all of it ---- */
+
+static scree_status add_copy(const making *m, scree_error *error) {
+  const scree_plan_geometry *g = &m->copy;
+  scree_status status = SCREE_OK;
+  for (size_t k = 0; status == SCREE_OK && k < g->file.count; k++)
+    status = add_file(m, g->file.items[k], error);
+  return status == SCREE_OK && g->file.count == 0 ? add_solid(m, error) : status;
 }
 
 static scree_status add_one(scree_scene *scene, size_t index, const char *folder,
                             scree_world *world, scree_error *error) {
   const scree_plan_geometry *g = plan_of(scene, index);
   scree_scene_geometry *made = &scene->geometry[index];
+  const size_t copies = g->copies ? g->copies->count : 1;
   made->first_wall = scree_world_wall_count(world);
   scree_status status = SCREE_OK;
-  for (size_t k = 0; status == SCREE_OK && k < g->file.count; k++)
-    status = add_file(scene, index, folder, g->file.items[k], world, error);
-  if (status == SCREE_OK && g->file.count == 0) status = add_solid(scene, index, world, error);
-  made->wall_count = scree_world_wall_count(world) - made->first_wall;
+  for (size_t k = 0; status == SCREE_OK && k < copies; k++) {
+    scree_plan_turn turn;
+    const making m = {scene,  index, copied(g, k, &turn),
+                      folder, world, k == 0 && world == scene->gallery};
+    status = add_copy(&m, error);
+    made->wall_count = scree_world_wall_count(world) - made->first_wall;
+    if (status == SCREE_OK && made->wall_count % (k + 1))
+      status = scree_fail(error, SCREE_BAD_MESH,
+                          "copies: they have bodies on different sides; set side: outside");
+  }
+  if (status == SCREE_OK) status = scree_scene_read_paths(scene, index, folder, error);
   if (status != SCREE_OK || g->motion.count == 0) return status;
   return scree_scene_set_motions(scene, index, world, error);
 }

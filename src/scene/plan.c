@@ -285,114 +285,13 @@ static const scree_plan_shaft shaft_defaults = {{0}, NAN, NAN};
 static const scree_record shaft_record = {"a shaft", FIELDS(shaft_fields), sizeof(scree_plan_shaft),
                                           &shaft_defaults, NULL};
 
-/* ---- motions ---- */
-
-#define AT(member) offsetof(scree_plan_translate, member)
-static const scree_field translate_fields[] = {
-    {"velocity", SCREE_FIELD_VECTOR, AT(velocity), -1e3, 1e3, "m/s", "", NULL},
-    {"along", SCREE_FIELD_VECTOR, AT(along), 0, 0, "", "direction of what the table says", NULL},
-    {"table", SCREE_FIELD_TABLE, AT(table), 0, 0, "s|m/s",
-     "[time in s, speed in m/s], linear between", NULL},
-    {"positions", SCREE_FIELD_TABLE, AT(positions), 0, 0, "s|m",
-     "or [time in s, way in m], linear between", NULL},
-};
-#undef AT
-static scree_status check_translate(const scree_reader *r, const void *record) {
-  const scree_plan_translate *t = record;
-  const bool there[] = {given(t->velocity), t->table.count > 0, t->positions.count > 0};
-  scree_status status = scree_plan_one_of(r, &t->place, there, 3,
-                                          "velocity, table (with along), positions (with along)");
-  if (status != SCREE_OK) return status;
-  if (!there[0] && !given(t->along))
-    return scree_fail_place(r, &t->place, "a table needs along: [x, y, z]");
-  return scree_plan_check_direction(r, &t->place, "along", t->along);
-}
-static const scree_plan_translate translate_defaults = {{0}, NONE, NONE, {0}, {0}};
-static const scree_record translate_record = {"translate", FIELDS(translate_fields),
-                                              sizeof(scree_plan_translate), &translate_defaults,
-                                              check_translate};
-
-#define AT(member) offsetof(scree_plan_rotate, member)
-static const scree_field rotate_fields[] = {
-    {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "", NULL},
-    {"through", SCREE_FIELD_VECTOR, AT(through), -1e6, 1e6, "m", "a point of the axis", NULL},
-    {"speed", SCREE_FIELD_REAL, AT(speed), -1e4, 1e4, "rad/s", "right-handed about the axis", NULL},
-    {"table", SCREE_FIELD_TABLE, AT(table), 0, 0, "s|rad/s",
-     "[time in s, speed in rad/s], linear between", NULL},
-    {"positions", SCREE_FIELD_TABLE, AT(positions), 0, 0, "s|rad",
-     "or [time in s, angle in rad], linear between", NULL},
-    {"amplitude", SCREE_FIELD_REAL, AT(amplitude), 0, 1e3, "rad", "or it rocks so far both ways",
-     NULL},
-    {"frequency", SCREE_FIELD_REAL, AT(frequency), 0, 1e5, "Hz", "", NULL},
-    {"phase", SCREE_FIELD_REAL, AT(phase), -7, 7, "rad", "of the sine", NULL},
-};
-#undef AT
-static scree_status check_rotate(const scree_reader *r, const void *record) {
-  const scree_plan_rotate *t = record;
-  const bool there[] = {given(&t->speed), t->table.count > 0, t->positions.count > 0,
-                        given(&t->amplitude)};
-  scree_status status =
-      scree_plan_one_of(r, &t->place, there, 4, "speed, table, positions, amplitude");
-  if (status == SCREE_OK && there[3] != given(&t->frequency))
-    status = scree_fail_place(r, &t->place, "amplitude and frequency go together");
-  return status == SCREE_OK ? scree_plan_check_direction(r, &t->place, "axis", t->axis) : status;
-}
-static const scree_plan_rotate rotate_defaults = {
-    .axis = {0, 0, 1}, .speed = NAN, .amplitude = NAN, .frequency = NAN};
-static const scree_record rotate_record = {
-    "rotate", FIELDS(rotate_fields), sizeof(scree_plan_rotate), &rotate_defaults, check_rotate};
-
-#define AT(member) offsetof(scree_plan_vibrate, member)
-static const scree_field vibrate_fields[] = {
-    {"along", SCREE_FIELD_VECTOR, AT(along), 0, 0, "", "", NULL},
-    {"amplitude", SCREE_FIELD_REAL, AT(amplitude), 0, 1e3, "m", "", NULL},
-    {"frequency", SCREE_FIELD_REAL, AT(frequency), 0, 1e5, "Hz", "", NULL},
-    {"phase", SCREE_FIELD_REAL, AT(phase), -7, 7, "rad", "of the sine", NULL},
-};
-#undef AT
-static scree_status check_vibrate(const scree_reader *r, const void *record) {
-  const scree_plan_vibrate *v = record;
-  if (!given(&v->amplitude) || !given(&v->frequency))
-    return scree_fail_place(r, &v->place, "needs amplitude and frequency");
-  return scree_plan_check_direction(r, &v->place, "along", v->along);
-}
-static const scree_plan_vibrate vibrate_defaults = {{0}, {0, 0, 1}, NAN, NAN, 0};
-static const scree_record vibrate_record = {"vibrate", FIELDS(vibrate_fields),
-                                            sizeof(scree_plan_vibrate), &vibrate_defaults,
-                                            check_vibrate};
-
 scree_status scree_plan_check_window(const scree_reader *r, const scree_place *place, double from,
                                      double until) {
   if (!given(&until) || from < until) return SCREE_OK;
   return scree_fail_place(r, place, "until %g s must be after from %g s", until, from);
 }
 
-#define AT(member) offsetof(scree_plan_motion, member)
-static const scree_field motion_fields[] = {
-    {"translate", SCREE_FIELD_RECORD, AT(translate), 0, 0, "", "", &translate_record},
-    {"rotate", SCREE_FIELD_RECORD, AT(rotate), 0, 0, "", "", &rotate_record},
-    {"vibrate", SCREE_FIELD_RECORD, AT(vibrate), 0, 0, "", "", &vibrate_record},
-    WINDOW(scree_plan_motion),
-    {"during", SCREE_FIELD_TEXT, AT(during), 0, 0, "", "a phase: only while it lasts", NULL},
-};
-#undef AT
-static scree_status check_motion(const scree_reader *r, const void *record) {
-  const scree_plan_motion *m = record;
-  const bool there[] = {m->translate != NULL, m->rotate != NULL, m->vibrate != NULL};
-  scree_status status = scree_plan_one_of(r, &m->place, there, 3, "translate, rotate, vibrate");
-  bool constant =
-      (m->translate && given(m->translate->velocity)) || (m->rotate && given(&m->rotate->speed));
-  if (status == SCREE_OK && m->during && !constant)
-    status = scree_fail_place(r, &m->place,
-                              "during a phase only a translate with a velocity or a rotate with a "
-                              "speed may act");
-  if (status == SCREE_OK && m->during && (m->from > 0 || given(&m->until)))
-    status = scree_fail_place(r, &m->place, "during stands instead of from and until");
-  return status == SCREE_OK ? scree_plan_check_window(r, &m->place, m->from, m->until) : status;
-}
-static const scree_plan_motion motion_defaults = {.until = NAN};
-static const scree_record motion_record = {
-    "a motion", FIELDS(motion_fields), sizeof(scree_plan_motion), &motion_defaults, check_motion};
+/* ---- geometry, whole ---- */
 
 #define AT(member) offsetof(scree_plan_geometry, member)
 static const scree_field geometry_fields[] = {
@@ -405,6 +304,10 @@ static const scree_field geometry_fields[] = {
     {"shaft", SCREE_FIELD_RECORD, AT(shaft), 0, 0, "", "four endless walls about z", &shaft_record},
     {"loop", SCREE_FIELD_RECORD, AT(loop), 0, 0, "",
      "a sheet round two wheels, one of them at `at`", &scree_plan_loop_record},
+    {"screw", SCREE_FIELD_RECORD, AT(screw), 0, 0, "", "a flight on a shaft",
+     &scree_plan_screw_record},
+    {"sieve", SCREE_FIELD_RECORD, AT(sieve), 0, 0, "", "a plate with round holes, flat or bent",
+     &scree_plan_sieve_record},
     {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, SCREE_PLAN_UNITS, "of the file's lengths", NULL},
     {"at", SCREE_FIELD_VECTOR, AT(at), -1e6, 1e6, "m", "where its origin goes", NULL},
     {"turn", SCREE_FIELD_RECORD, AT(turn), 0, 0, "", "about its origin, before it goes there",
@@ -412,7 +315,9 @@ static const scree_field geometry_fields[] = {
     {"side", SCREE_FIELD_WORD, AT(side), 0, 0, "auto|outside|inside|both",
      "of a closed mesh or box: where bodies are; auto: where the inlets are", NULL},
     {"material", SCREE_FIELD_TEXT, AT(material), 0, 0, "", "", NULL},
-    {"motion", SCREE_FIELD_LIST, AT(motion), 0, 0, "", "in this order", &motion_record},
+    {"copies", SCREE_FIELD_RECORD, AT(copies), 0, 0, "", "of it, about an axis or along a chain",
+     &scree_plan_copies_record},
+    {"motion", SCREE_FIELD_LIST, AT(motion), 0, 0, "", "in this order", &scree_plan_motion_record},
     {"slide", SCREE_FIELD_RECORD, AT(slide), 0, 0, "", "moved by forces along a direction",
      &scree_plan_slide_record},
     {"hinge", SCREE_FIELD_RECORD, AT(hinge), 0, 0, "", "turned by forces about an axis",
@@ -426,10 +331,11 @@ static const scree_field geometry_fields[] = {
 #undef AT
 static scree_status check_geometry(const scree_reader *r, const void *record) {
   const scree_plan_geometry *g = record;
-  const bool there[] = {g->file.count > 0,   given(g->box),    given(g->plane), g->disc != NULL,
-                        g->cylinder != NULL, g->shaft != NULL, g->loop != NULL};
-  scree_status status =
-      scree_plan_one_of(r, &g->place, there, 7, "file, box, plane, disc, cylinder, shaft, loop");
+  const bool there[] = {g->file.count > 0, given(g->box),       given(g->plane),
+                        g->disc != NULL,   g->cylinder != NULL, g->shaft != NULL,
+                        g->loop != NULL,   g->screw != NULL,    g->sieve != NULL};
+  scree_status status = scree_plan_one_of(
+      r, &g->place, there, 9, "file, box, plane, disc, cylinder, shaft, loop, screw, sieve");
   if (status == SCREE_OK) status = scree_plan_check_direction(r, &g->place, "plane", g->plane);
   if (status == SCREE_OK && g->cylinder && given(g->cylinder->at))
     status = scree_fail_place(r, &g->cylinder->place,
@@ -447,7 +353,14 @@ static scree_status check_geometry(const scree_reader *r, const void *record) {
     status = scree_fail_place(r, &g->place, "only one of surface_velocity, belt may be given");
   if (status == SCREE_OK && (g->slide != NULL) + (g->hinge != NULL) + (g->motion.count > 0) > 1)
     status = scree_fail_place(r, &g->place, "only one of motion, slide, hinge may be given");
+  if (status == SCREE_OK && g->copies && (g->belt || given(g->surface_velocity)))
+    status = scree_fail_place(r, &g->copies->place, "of belts there are none: give each its own");
   const scree_plan_motion *motions = g->motion.items;
+  for (size_t i = 0; status == SCREE_OK && i < g->motion.count; i++)
+    if (motions[i].round && (g->motion.count > 1 || !g->copies || !given(&g->copies->radius)))
+      status = scree_fail_place(r, &motions[i].place,
+                                "round is the only motion of copies along a chain: give copies: "
+                                "{count, axis, through, span, radius}");
   for (size_t i = 0; status == SCREE_OK && g->motion.count > 1 && i < g->motion.count; i++)
     if (motions[i].during)
       status = scree_fail_place(r, &motions[i].place,

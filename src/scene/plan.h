@@ -96,11 +96,35 @@ typedef struct scree_plan_vibrate {
   double along[3], amplitude, frequency, phase;
 } scree_plan_vibrate;
 
+typedef struct scree_plan_crank {
+  scree_place place;
+  double along[3], radius, rod, speed, phase;
+} scree_plan_crank;
+
+/* The copies are carried along their way. */
+typedef struct scree_plan_travel {
+  scree_place place;
+  double speed;
+} scree_plan_travel;
+
+/* Rows of time and value, one table for each of x, y, z and the angles about them. */
+enum { SCREE_PATH_COLUMNS = 6 };
+typedef struct scree_plan_path {
+  scree_place place;
+  const char *file;
+  double through[3];
+  scree_table tables[SCREE_PATH_COLUMNS]; /* without rows: not there */
+  bool is_read;                           /* scree_scene_read_paths */
+} scree_plan_path;
+
 typedef struct scree_plan_motion {
   scree_place place;
   scree_plan_translate *translate;
   scree_plan_rotate *rotate;
   scree_plan_vibrate *vibrate;
+  scree_plan_crank *crank;
+  scree_plan_travel *round;
+  scree_plan_path *path;
   double from, until;
   const char *during; /* a phase */
 } scree_plan_motion;
@@ -133,13 +157,34 @@ typedef struct scree_plan_loop {
   double axis[3], span[3], radius, width;
 } scree_plan_loop;
 
+/* A flight of a helix about its axis, from the geometry's origin on, and its shaft. */
+typedef struct scree_plan_screw {
+  scree_place place;
+  double axis[3], radius, shaft, pitch, length, thickness;
+} scree_plan_screw;
+
+/* A plate with round holes in a square pattern, about the geometry's origin: size along x and y; or
+ * bent about a line of that radius above it, along y. */
+typedef struct scree_plan_sieve {
+  scree_place place;
+  double size[3], hole, pitch, bend;
+} scree_plan_sieve;
+
 /* The surface of closed loops about an axis runs along itself. */
 typedef struct scree_plan_belt {
   scree_place place;
   double axis[3], speed;
 } scree_plan_belt;
 
-/* One of file, box, plane, disc, cylinder, shaft, loop. */
+/* Copies at equal ways round two wheels `span` apart, of which one is at `through`, from the strand
+ * that leads to the other on; without a span about the axis. */
+typedef struct scree_plan_round {
+  scree_place place;
+  double axis[3], through[3], span[3], radius;
+  size_t count;
+} scree_plan_round;
+
+/* One of file, box, plane, disc, cylinder, shaft, loop, screw, sieve. */
 typedef struct scree_plan_geometry {
   scree_place place;
   scree_texts file;
@@ -150,8 +195,11 @@ typedef struct scree_plan_geometry {
   scree_plan_cylinder *cylinder;
   scree_plan_shaft *shaft;
   scree_plan_loop *loop;
+  scree_plan_screw *screw;
+  scree_plan_sieve *sieve;
   scree_plan_belt *belt;
   scree_plan_turn *turn;
+  scree_plan_round *copies;
   scree_records motion; /* of scree_plan_motion */
   scree_plan_part *slide, *hinge;
 } scree_plan_geometry;
@@ -349,7 +397,10 @@ scree_size_class *scree_plan_size_classes(const scree_plan_size *size, scree_are
 scree_status scree_plan_expand(scree_plan *plan, scree_arena *arena, scree_error *error);
 extern const scree_record scree_plan_size_record;
 /* plan_solids.c */
-extern const scree_record scree_plan_loop_record, scree_plan_belt_record;
+extern const scree_record scree_plan_loop_record, scree_plan_screw_record, scree_plan_sieve_record,
+    scree_plan_belt_record, scree_plan_copies_record;
+/* plan_motions.c */
+extern const scree_record scree_plan_motion_record;
 /* plan_parts.c */
 extern const scree_record scree_plan_slide_record, scree_plan_hinge_record;
 /* plan_forces.c */

@@ -28,9 +28,6 @@ scree_status scree_plan_check_direction(const scree_reader *r, const scree_place
 /* Of a record with `from` and `until`. */
 scree_status scree_plan_check_window(const scree_reader *r, const scree_place *place, double from,
                                      double until);
-/* plan_solids.c: of wheels `span` apart. */
-scree_status scree_plan_check_span(const scree_reader *r, const scree_place *place,
-                                   const double axis[3], const double span[3]);
 extern const scree_record scree_plan_box_record, scree_plan_cylinder_record;
 /* plan_sensors.c */
 extern const scree_record scree_plan_sensor_record;

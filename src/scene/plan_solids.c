@@ -12,8 +12,8 @@ static const scree_field loop_fields[] = {
     {"width", SCREE_FIELD_REAL, AT(width), 1e-9, 1e6, "m", "along the axis", NULL},
 };
 #undef AT
-scree_status scree_plan_check_span(const scree_reader *r, const scree_place *place,
-                                   const double axis[3], const double span[3]) {
+static scree_status check_span(const scree_reader *r, const scree_place *place,
+                               const double axis[3], const double span[3]) {
   const vec3 a = vec3_load(axis), s = vec3_load(span);
   if (fabs(vec3_dot(a, s)) <= 1e-6 * vec3_norm(a) * vec3_norm(s)) return SCREE_OK;
   return scree_fail_place(r, place, "span must be square to the axis");
@@ -25,11 +25,75 @@ static scree_status check_loop(const scree_reader *r, const void *record) {
   if (!(vec3_norm(vec3_load(l->span)) > 0))
     return scree_fail_place(r, &l->place, "span has no length: a cylinder is round one wheel");
   scree_status status = scree_plan_check_direction(r, &l->place, "axis", l->axis);
-  return status == SCREE_OK ? scree_plan_check_span(r, &l->place, l->axis, l->span) : status;
+  return status == SCREE_OK ? check_span(r, &l->place, l->axis, l->span) : status;
 }
 static const scree_plan_loop loop_defaults = {{0}, {0, 1, 0}, NONE, NAN, NAN};
 const scree_record scree_plan_loop_record = {"a loop", FIELDS(loop_fields), sizeof(scree_plan_loop),
                                              &loop_defaults, check_loop};
+
+#define AT(member) offsetof(scree_plan_screw, member)
+static const scree_field screw_fields[] = {
+    {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "from `at` on; the flight is right-handed",
+     NULL},
+    {"radius", SCREE_FIELD_REAL, AT(radius), 1e-9, 1e6, "m", "of the flight", NULL},
+    {"shaft", SCREE_FIELD_REAL, AT(shaft), 1e-9, 1e6, "m", "radius of the shaft", NULL},
+    {"pitch", SCREE_FIELD_REAL, AT(pitch), 1e-9, 1e6, "m", "", NULL},
+    {"length", SCREE_FIELD_REAL, AT(length), 1e-9, 1e6, "m", "", NULL},
+    {"thickness", SCREE_FIELD_REAL, AT(thickness), 1e-9, 1e6, "m", "of the flight, along the axis",
+     NULL},
+};
+#undef AT
+static scree_status check_screw(const scree_reader *r, const void *record) {
+  const scree_plan_screw *s = record;
+  if (!given(&s->radius) || !given(&s->shaft) || !given(&s->pitch) || !given(&s->length) ||
+      !given(&s->thickness))
+    return scree_fail_place(r, &s->place, "needs radius, shaft, pitch, length and thickness");
+  if (!(s->shaft < s->radius))
+    return scree_fail_place(r, &s->place, "shaft %g m: must be below the radius %g m", s->shaft,
+                            s->radius);
+  if (!(s->thickness < s->pitch && s->thickness < s->length))
+    return scree_fail_place(r, &s->place, "thickness %g m: must be below the pitch and the length",
+                            s->thickness);
+  if (s->length > 100 * s->pitch)
+    return scree_fail_place(r, &s->place, "length %g m: at most 100 times the pitch", s->length);
+  return scree_plan_check_direction(r, &s->place, "axis", s->axis);
+}
+static const scree_plan_screw screw_defaults = {
+    .axis = {1, 0, 0}, .radius = NAN, .shaft = NAN, .pitch = NAN, .length = NAN, .thickness = NAN};
+const scree_record scree_plan_screw_record = {
+    "a screw", FIELDS(screw_fields), sizeof(scree_plan_screw), &screw_defaults, check_screw};
+
+#define AT(member) offsetof(scree_plan_sieve, member)
+static const scree_field sieve_fields[] = {
+    {"size", SCREE_FIELD_VECTOR, AT(size), 1e-9, 1e6, "m", "along x and y, and its thickness",
+     NULL},
+    {"hole", SCREE_FIELD_REAL, AT(hole), 1e-9, 1e6, "m", "diameter", NULL},
+    {"pitch", SCREE_FIELD_REAL, AT(pitch), 1e-9, 1e6, "m", "from hole to hole, along x and y",
+     NULL},
+    {"bend", SCREE_FIELD_REAL, AT(bend), 1e-9, 1e6, "m",
+     "radius of the upper face about a line along y above it; not given: flat", NULL},
+};
+#undef AT
+static scree_status check_sieve(const scree_reader *r, const void *record) {
+  const scree_plan_sieve *s = record;
+  if (!given(s->size) || !given(&s->hole) || !given(&s->pitch))
+    return scree_fail_place(r, &s->place, "needs size: [x, y, thickness], hole and pitch");
+  if (!(s->hole <= 0.95 * s->pitch))
+    return scree_fail_place(r, &s->place, "hole %g m: must be below 0.95 of the pitch, %g m",
+                            s->hole, 0.95 * s->pitch);
+  if (s->size[0] < s->pitch || s->size[1] < s->pitch ||
+      s->size[0] * s->size[1] > 1e4 * s->pitch * s->pitch)
+    return scree_fail_place(r, &s->place, "has %.0f holes: 1 to 10000",
+                            floor(s->size[0] / s->pitch) * floor(s->size[1] / s->pitch));
+  if (given(&s->bend) && s->size[0] > 6 * s->bend)
+    return scree_fail_place(r, &s->place, "bend %g m: size along x must be below 6 times that",
+                            s->bend);
+  return SCREE_OK;
+}
+static const scree_plan_sieve sieve_defaults = {
+    .size = NONE, .hole = NAN, .pitch = NAN, .bend = NAN};
+const scree_record scree_plan_sieve_record = {
+    "a sieve", FIELDS(sieve_fields), sizeof(scree_plan_sieve), &sieve_defaults, check_sieve};
 
 #define AT(member) offsetof(scree_plan_belt, member)
 static const scree_field belt_fields[] = {
@@ -46,3 +110,28 @@ static scree_status check_belt(const scree_reader *r, const void *record) {
 static const scree_plan_belt belt_defaults = {{0}, {0, 1, 0}, NAN};
 const scree_record scree_plan_belt_record = {"a belt", FIELDS(belt_fields), sizeof(scree_plan_belt),
                                              &belt_defaults, check_belt};
+
+/* ---- copies ---- */
+
+#define AT(member) offsetof(scree_plan_round, member)
+static const scree_field copies_fields[] = {
+    {"count", SCREE_FIELD_COUNT, AT(count), 1, 1000, "", "of all, at equal distances", NULL},
+    {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "about which they stand", NULL},
+    {"through", SCREE_FIELD_VECTOR, AT(through), -1e6, 1e6, "m", "a point of it", NULL},
+    {"span", SCREE_FIELD_VECTOR, AT(span), -1e6, 1e6, "m",
+     "of a chain: from the wheel there to the other; the first copy begins the strand along it",
+     NULL},
+    {"radius", SCREE_FIELD_REAL, AT(radius), 1e-9, 1e6, "m", "of the wheels, to the chain", NULL},
+};
+#undef AT
+static scree_status check_copies(const scree_reader *r, const void *record) {
+  const scree_plan_round *c = record;
+  if (!c->count) return scree_fail_place(r, &c->place, "needs a count");
+  if ((vec3_norm(vec3_load(c->span)) > 0) != given(&c->radius))
+    return scree_fail_place(r, &c->place, "span and radius go together: they are of a chain");
+  scree_status status = scree_plan_check_direction(r, &c->place, "axis", c->axis);
+  return status == SCREE_OK ? check_span(r, &c->place, c->axis, c->span) : status;
+}
+static const scree_plan_round copies_defaults = {.axis = {0, 0, 1}, .radius = NAN};
+const scree_record scree_plan_copies_record = {
+    "copies", FIELDS(copies_fields), sizeof(scree_plan_round), &copies_defaults, check_copies};

@@ -249,6 +249,9 @@ void scree_scene_code_sensor(struct scree_codec *c, scree_scene *scene, scree_sc
 /* geometry.c: motions of one, from where it stands. */
 scree_status scree_scene_set_motions(const scree_scene *scene, size_t index, scree_world *world,
                                      scree_error *error);
+/* paths.c: the tables of a geometry's motions, once. */
+scree_status scree_scene_read_paths(scree_scene *scene, size_t geometry, const char *folder,
+                                    scree_error *error);
 /* geometry.c: how the surface of one runs round, as of scree_wall. */
 void scree_scene_belt_loop(const scree_plan_geometry *geometry, double loop[3]);
 /* geometry.c: walls into a world. */

@@ -27,9 +27,8 @@ static double largest_of(const scree_table *table, bool slopes) {
 }
 
 /* m: the farthest point of a geometry from an axis; 0 where it has no end. */
-static double arm_of(const scree_scene *scene, size_t geometry, const scree_plan_rotate *r) {
+static double arm_of(const scree_scene *scene, size_t geometry, vec3 axis, vec3 through) {
   const scree_scene_geometry *g = &scene->geometry[geometry];
-  vec3 axis = vec3_unit(vec3_load(r->axis)), through = vec3_load(r->through);
   double far = 0;
   for (size_t w = g->first_wall; w < g->first_wall + g->wall_count; w++) {
     const scree_world_wall *wall = scree_world_wall_at(scene->world, w);
@@ -42,6 +41,27 @@ static double arm_of(const scree_scene *scene, size_t geometry, const scree_plan
     }
   }
   return far;
+}
+
+/* m/s of what stands out of a chain, as it goes round a wheel. */
+static double speed_round(const scree_scene *scene, size_t geometry, double speed) {
+  const scree_plan_round *c =
+      SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, geometry)->copies;
+  const vec3 axis = vec3_unit(vec3_load(c->axis)), first = vec3_load(c->through);
+  const double far = fmin(arm_of(scene, geometry, axis, first),
+                          arm_of(scene, geometry, axis, vec3_add(first, vec3_load(c->span))));
+  return fabs(speed) * fmax(1, (far - vec3_norm(vec3_load(c->span))) / c->radius);
+}
+
+static double speed_on_path(const scree_scene *scene, size_t geometry,
+                            const scree_plan_path *path) {
+  double speed = 0;
+  for (int k = 0; k < SCREE_PATH_COLUMNS; k++) {
+    const vec3 axis = {k % 3 == 0, k % 3 == 1, k % 3 == 2};
+    const double arm = k < 3 ? 1 : arm_of(scene, geometry, axis, vec3_load(path->through));
+    speed += arm * largest_of(&path->tables[k], true);
+  }
+  return speed;
 }
 
 static const double two_pi = 6.283185307179586;
@@ -61,9 +81,13 @@ static double speed_of_geometry(const scree_scene *scene, size_t index) {
       double most = isnan(r->speed) ? 0 : fabs(r->speed);
       if (!isnan(r->amplitude)) most = two_pi * r->frequency * r->amplitude;
       most += largest_of(&r->table, false) + largest_of(&r->positions, true);
-      speed += arm_of(scene, index, r) * most;
+      speed += arm_of(scene, index, vec3_unit(vec3_load(r->axis)), vec3_load(r->through)) * most;
     }
     if (v) speed += two_pi * v->frequency * fabs(v->amplitude);
+    if (m->crank)
+      speed += m->crank->speed * m->crank->radius * (1 + m->crank->radius / m->crank->rod);
+    if (m->round) speed += speed_round(scene, index, m->round->speed);
+    if (m->path) speed += speed_on_path(scene, index, m->path);
   }
   return speed;
 }

@@ -336,6 +336,17 @@ static void splice(void *items, size_t size, size_t *total, size_t at, size_t ol
   *total -= old;
 }
 
+/* A wall that is carried round wheels already is somewhere on its way. */
+static double start_of_first(const scree_world *world, const motion_range *r,
+                             const scree_wall_motion *motions, size_t count) {
+  if (count == 0) return 0;
+  const scree_motion_state *old = &world->motions.items[r->motion];
+  if (r->motion_count == 0 || !(old->radius > 0 && motions->radius > 0)) return motions->start;
+  double rate;
+  return old->start + law_at(old, &world->motion_rows.items[r->row], world->time, &rate) -
+         old->origin;
+}
+
 scree_status scree_world_set_wall_motion(scree_world *world, size_t index,
                                          const scree_wall_motion *motions, size_t count,
                                          scree_error *error) {
@@ -354,6 +365,7 @@ scree_status scree_world_set_wall_motion(scree_world *world, size_t index,
   if (!SCREE_RESERVE(&world->motions, world->motions.count + count) ||
       !SCREE_RESERVE(&world->motion_rows, world->motion_rows.count + row_count))
     return scree_fail_memory(error, row_count * sizeof(scree_motion_row), "motions of a wall");
+  const double start = start_of_first(world, &r, motions, count);
   splice(world->motions.items, sizeof *world->motions.items, &world->motions.count, r.motion,
          r.motion_count, count);
   splice(world->motion_rows.items, sizeof *world->motion_rows.items, &world->motion_rows.count,
@@ -363,6 +375,7 @@ scree_status scree_world_set_wall_motion(scree_world *world, size_t index,
     if (has_table(&motions[i])) copy_rows(&motions[i], rows);
     scree_motion_state *made = &world->motions.items[r.motion + i];
     *made = make_motion(&motions[i], rows, world->time);
+    if (i == 0) made->start = start;
     rows += made->row_count;
   }
   scree_world_wall *wall = &world->walls.items[index];
