@@ -56,13 +56,15 @@ typedef struct scree_repose {
   double silhouette_deg, silhouette_sd_deg; /* 3: mean and SD over the silhouettes' flanks */
   size_t flank_count;                       /*    flanks that gave a line */
   double spread_deg;                        /* between the largest and the least of the three */
-  double volume_deg;  /* cross-check: of the cone with the heap's volume and height of centroid */
-  double axis[2];     /* of the heap: mean position weighted by the square of the height, m */
-  double height;      /* m: mean within a particle size of the axis */
-  double peak;        /* m: greatest height of all */
-  double base_radius; /* m: where the flank line of the rings' mean heights, fitted
-                         in the band, meets the floor */
-  double run_out;     /* m: the farthest occupied cell from the axis */
+  double volume_deg, volume_se_deg; /* of the cone with the heap's volume and height of centroid:
+                                       the number of one heap that scatters least; its standard
+                                       error, by leaving out each sector in turn */
+  double axis[2];         /* of the heap: mean position weighted by the square of the height, m */
+  double height;          /* m: mean within a particle size of the axis */
+  double peak;            /* m: greatest height of all */
+  double base_radius;     /* m: where the flank line of the rings' mean heights, fitted
+                             in the band, meets the floor */
+  double run_out;         /* m: the farthest occupied cell from the axis */
   double envelope_volume; /* m^3 under the field: packing fraction = solid over this */
 } scree_repose;
 

@@ -260,8 +260,9 @@ void cli_print_repose(FILE *stream, const scree_repose *r) {
     fprintf(stream, "                    %5.1f deg  sd %4.1f   silhouettes (%zu flank%s)\n",
             r->silhouette_deg, r->silhouette_sd_deg, r->flank_count, cli_plural(r->flank_count));
     fprintf(stream,
-            "                    %5.1f deg  by volume and centroid; the three differ by %.1f\n",
-            r->volume_deg, r->spread_deg);
+            "                    %5.1f deg  se %4.1f   by volume and centroid; the three differ by "
+            "%.1f\n",
+            r->volume_deg, r->volume_se_deg, r->spread_deg);
   }
   if (r->peak == 0) return;
   fprintf(stream, "  height            %5.0f mm, its highest point %.0f mm\n", 1e3 * r->height,

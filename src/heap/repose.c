@@ -42,6 +42,7 @@ scree_repose scree_no_repose(void) {
                         .silhouette_sd_deg = NAN,
                         .spread_deg = NAN,
                         .volume_deg = NAN,
+                        .volume_se_deg = NAN,
                         .height = NAN,
                         .peak = NAN,
                         .base_radius = NAN,
@@ -230,16 +231,32 @@ static void fill_sectors(heap *h, size_t count) {
 }
 
 /* A cone of this volume, with its centroid as high: tan = sqrt(pi H^3 / 3 V), H = 4 z. From the
- * rings' means, since roughness would raise the centroid of the cells. */
-static double volume_angle(const heap *h, const bin *rings) {
+ * rings' means, since roughness would raise the centroid of the cells; without those of a sector
+ * where one is given, as if the others stood there too. */
+static double volume_angle(const heap *h, const bin *rings, const bin *without) {
   double volume = 0, moment = 0, area = h->field->cell * h->field->cell;
   for (size_t i = 0; i < h->bin_count; i++) {
-    double z = bin_mean(&rings[i]);
+    bin left = rings[i];
+    if (without && left.weight > without[i].weight) {
+      left.weight -= without[i].weight;
+      left.z -= without[i].z;
+    }
+    double z = bin_mean(&left);
     volume += z * rings[i].weight * area;
     moment += 0.5 * z * z * rings[i].weight * area;
   }
   double height = volume > 0 ? 4 * moment / volume : 0;
   return height > 0 ? degree * atan(sqrt(pi * height * height * height / (3 * volume))) : NAN;
+}
+
+/* Its standard error by the jackknife over sectors (Efron 1982). */
+static double volume_error(const heap *h) {
+  const bin *rings = profile_of(h, &h->sectors, h->sectors.count);
+  spread angles = {0};
+  for (size_t row = 0; row < h->sectors.count; row++)
+    spread_add(&angles, volume_angle(h, rings, profile_of(h, &h->sectors, row)));
+  double n = (double)angles.count;
+  return (n - 1) / sqrt(n) * spread_sd(&angles);
 }
 
 /* ---- way 1: sectors ---- */
@@ -258,13 +275,14 @@ static void measure_sectors(heap *h, flank *f) {
   fill_sectors(h, h->options->sector_count);
   const bin *rings = profile_of(h, &h->sectors, h->sectors.count);
   r->height = top_height(h, rings);
-  r->volume_deg = volume_angle(h, rings);
-  r->sector_deg = r->sector_sd_deg = r->base_radius = NAN;
+  r->volume_deg = volume_angle(h, rings, NULL);
+  r->sector_deg = r->sector_sd_deg = r->base_radius = r->volume_se_deg = NAN;
   if (!find_flank(h, rings, r->height, f)) return;
   r->base_radius = -f->intercept / f->slope;
   r->sector_total = count_sectors(h, f);
   fill_sectors(h, r->sector_total);
   r->sector_count = measure_lines(h, &h->sectors, *f, &r->sector_deg, &r->sector_sd_deg);
+  r->volume_se_deg = volume_error(h);
 }
 
 /* ---- way 2: a cone ---- */
@@ -422,7 +440,8 @@ static void conclude(heap *h) {
   judge(h, r->reason, sizeof r->reason);
   r->heap = r->reason[0] == 0;
   if (!r->heap) {
-    r->sector_deg = r->sector_sd_deg = r->cone_deg = r->cone_rms = r->volume_deg = NAN;
+    r->sector_deg = r->sector_sd_deg = r->cone_deg = r->cone_rms = NAN;
+    r->volume_deg = r->volume_se_deg = NAN;
     r->silhouette_deg = r->silhouette_sd_deg = NAN;
   }
   r->spread_deg = fmax(r->sector_deg, fmax(r->cone_deg, r->silhouette_deg)) -

@@ -23,6 +23,7 @@ void scree_json_repose(scree_json *json, const scree_repose *h) {
   scree_json_end(json);
   scree_json_number(json, "spread_deg", h->spread_deg);
   scree_json_number(json, "volume_deg", h->volume_deg);
+  scree_json_number(json, "volume_se_deg", h->volume_se_deg);
   scree_json_number(json, "height", h->height);
   scree_json_number(json, "peak", h->peak);
   scree_json_number(json, "base_radius", h->base_radius);

@@ -181,6 +181,29 @@ static void heaps_of_particles_give_their_angle(void **state) {
   check_mean_of_heaps(20, 1200, 4, 1.5);
 }
 
+/* The standard error that one heap tells of its angle by volume and centroid is what heaps built
+ * alike scatter by. */
+static void one_heap_tells_how_sure_its_angle_is(void **state) {
+  (void)state;
+  enum { HEAPS = 40 };
+  static const struct {
+    double angle;
+    size_t count;
+  } piles[] = {{30, 150}, {20, 270}, {33, 600}};
+  for (size_t k = 0; k < sizeof piles / sizeof *piles; k++) {
+    double sum = 0, squares = 0, errors = 0;
+    for (uint64_t seed = 1; seed <= HEAPS; seed++) {
+      scree_repose r = measured_boxes(piles[k].angle, piles[k].count, seed);
+      sum += r.volume_deg;
+      squares += r.volume_deg * r.volume_deg;
+      errors += r.volume_se_deg * r.volume_se_deg / HEAPS;
+    }
+    double sd = sqrt((squares - sum * sum / HEAPS) / (HEAPS - 1));
+    print_message("%zu boxes: SD %.2f, told %.2f degrees\n", piles[k].count, sd, sqrt(errors));
+    assert_true(sqrt(errors) > 0.65 * sd && sqrt(errors) < 1.5 * sd);
+  }
+}
+
 static void what_is_too_small_gets_no_number(void **state) {
   (void)state;
   for (uint64_t seed = 1; seed <= 10; seed++) {
@@ -263,6 +286,7 @@ int main(void) {
       cmocka_unit_test(rough_and_truncated_heaps_give_the_angle_of_their_flanks),
       cmocka_unit_test(pyramids_and_tilted_cones_give_the_mean_over_directions),
       cmocka_unit_test(heaps_of_particles_give_their_angle),
+      cmocka_unit_test(one_heap_tells_how_sure_its_angle_is),
       cmocka_unit_test(what_is_too_small_gets_no_number),
       cmocka_unit_test(what_is_no_heap_gets_no_number),
       cmocka_unit_test(lengths_without_end_are_refused),
