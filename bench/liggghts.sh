@@ -2,15 +2,18 @@
 # Spheres beside LIGGGHTS on one core, with the same places, stiffness, damping, friction and step on both sides:
 # a lifted tube, flow through an orifice, a sphere that rolls out.
 #
-#   bench/liggghts.sh [SEEDS]
+#   bench/liggghts.sh [SEEDS [SCENE...]]
 #
 # SEEDS (default 10) runs a scene and engine, of half a minute at most; needs liggghts (apt-get install liggghts).
-# Writes results/liggghts.md. LIGGGHTS has its rolling model CDT, a constant couple; in the tube also EPSD, a spring up to
+# Writes results/liggghts.md; of scenes that are named, results/liggghts-SCENE.md by the first of them: tube, roll, and
+# orifice-MM through a hole of as many millimetres. LIGGGHTS has its rolling model CDT, a constant couple; in the tube also EPSD, a spring up to
 # the same couple, without a dashpot and with one of 0.3 of critical besides. Here it is a spring and such a dashpot, both
 # together up to the same couple.
 set -euo pipefail
 . "$(dirname "$0")/lib.sh"
 seeds=${1:-10}
+named=("${@:2}")
+[ ${#named[@]} -gt 0 ] || named=(tube orifice-30 roll)
 cmake -S "$root" --preset release -B "$build" -DSCREE_BENCH=ON -DBUILD_TESTING=OFF >/dev/null
 cmake --build "$build" --target bench_spheres ${SCREE_BENCH_JOBS:+-j "$SCREE_BENCH_JOBS"} >/dev/null
 scenes=$work/liggghts
@@ -44,7 +47,9 @@ sheet() {
     }'
 }
 sheet 0.036 0 0.036 0.14 >"$scenes/tube.stl"
-sheet 0.015 0 0.036 0 >"$scenes/ring.stl"
+for scene in "${named[@]}"; do
+  [[ $scene != orifice-* ]] || sheet "$(awk "BEGIN { print ${scene#orifice-} / 2000 }")" 0 0.036 0 >"$scenes/$scene.stl"
+done
 
 # property NAME PAIR WALL: of sphere and sphere, sphere and wall.
 property() { echo "fix $1 all property/global $1 peratomtypepair 2 $2 $3 $3 $2"; }
@@ -79,9 +84,9 @@ I
   echo 'fix weight all gravity 9.81 vector 0 0 -1'
   local floor="fix floor all wall/gran $model primitive type 2 zplane 0.0 $options"
   case $1 in
-  orifice)
+  orifice-*)
     echo "fix bin all mesh/surface file $scenes/tube.stl type 2"
-    echo "fix ring all mesh/surface file $scenes/ring.stl type 2"
+    echo "fix ring all mesh/surface file $scenes/$1.stl type 2"
     echo "fix walls all wall/gran $model mesh n_meshes 2 meshes bin ring $options"
     ;;
   *) echo "$floor" ;;
@@ -107,7 +112,7 @@ undump places
 shell mv $scenes/places.txt $scenes"
   case $1 in
   tube) printf 'run 14000\nfix lift all move/mesh mesh tube linear 0. 0. 0.1\nrun 38000\n%s/last.txt\n' "$write" ;;
-  orifice) printf 'run 10000\n%s/first.txt\ndump places all custom 1000000 %s id x y z\nrun 20000\n%s/last.txt\n' \
+  orifice-*) printf 'run 10000\n%s/first.txt\ndump places all custom 1000000 %s id x y z\nrun 20000\n%s/last.txt\n' \
     "$write" "$scenes/places.txt" "$write" ;;
   roll) printf 'run 40000\n%s/last.txt\n' "$write" ;;
   esac
@@ -125,14 +130,14 @@ peer() {
   local TIMEFORMAT=%U seconds
   seconds=$({ time liggghts -in "$scenes/in" -log "$scenes/log" >"$scenes/screen" 2>&1; } 2>&1) || tail -3 "$scenes/screen" >&2
   local files=("$scenes/last.txt")
-  [ "$1" != orifice ] || files=("$scenes/first.txt" "$scenes/last.txt")
+  [[ $1 != orifice-* ]] || files=("$scenes/first.txt" "$scenes/last.txt")
   echo "$(of_places "$1" "${files[@]}") $seconds"
 }
 rows=$scenes/rows
 : >"$rows"
 for ((seed = 1; seed <= seeds; seed++)); do
   places "$seed" >"$scenes/at"
-  for scene in tube orifice roll; do
+  for scene in "${named[@]}"; do
     [ $scene != roll ] || [ "$seed" = 1 ] || continue
     echo "$scene scree $("$bin/bench_spheres" $scene "$scenes/at")" >>"$rows"
     echo "$scene liggghts,cdt $(peer $scene "$scenes/at" cdt)" >>"$rows"
@@ -146,16 +151,16 @@ done
 {
   echo '# Spheres beside LIGGGHTS'
   echo
-  provenance "bench/liggghts.sh $seeds" | sed 's/^# /    /'
+  provenance "bench/liggghts.sh $seeds ${*:2}" | sed 's/^# /    /'
   echo "    $(cd "$scenes" && liggghts -h 2>/dev/null | grep -m1 -o 'PUBLIC [0-9.]*' | sed 's/^/LIGGGHTS-/' || true), one core each, in turns"
   echo
   echo '| scene | engine | n | mean | standard error | CPU s a run |'
   echo '|---|---|--:|--:|--:|--:|'
-  awk 'BEGIN { what["tube"] = "lifted tube, rms radius of the heap (mm)"; what["orifice"] = "through a hole of 30 mm in 0.5 s"
-      what["roll"] = "a sphere of 0.5 m/s stops after (mm)" }
+  awk 'BEGIN { what["tube"] = "lifted tube, rms radius of the heap (mm)"; what["roll"] = "a sphere of 0.5 m/s stops after (mm)" }
     { k = $1 " " $2; if (!(k in n)) order[++m] = k; n[k]++; s[k] += $3; q[k] += $3 * $3; t[k] += $4 }
     END { for (i = 1; i <= m; i++) { k = order[i]; split(k, name, " "); mean = s[k] / n[k]
       v = n[k] > 1 ? (q[k] - n[k] * mean * mean) / (n[k] - 1) : 0
+      if (sub(/orifice-/, "", name[1])) what[name[1]] = "through a hole of " name[1] " mm in 0.5 s"
       printf "| %s | %s | %d | %.2f | %s | %.1f |\n", what[name[1]], name[2], n[k], mean,
         (n[k] > 1 ? sprintf("%.2f", sqrt((v > 0 ? v : 0) / n[k])) : "-"), t[k] / n[k] } }' "$rows"
-} >"$results/liggghts.md"
+} >"$results/liggghts${2:+-${2%-*}}.md"

@@ -1,8 +1,8 @@
 /* Spheres of 6 mm beside LIGGGHTS (bench/liggghts.sh), one core, the same constants on both sides:
  *
  *   bench_spheres tube POSITIONS            a lifted tube; prints the heap's rms radius, mm
- *   bench_spheres orifice POSITIONS         a bin with a hole of 30 mm; spheres through it in half
- * a s bench_spheres roll POSITIONS            the first sphere rolls at 0.5 m/s; where it stops, mm
+ *   bench_spheres orifice-MM POSITIONS      a bin with such a hole; spheres through it in half a s
+ *   bench_spheres roll POSITIONS            the first sphere rolls at 0.5 m/s; where it stops, mm
  *
  * POSITIONS has a centre a line. Printed are the value, and CPU seconds. */
 #include "scree.h"
@@ -123,11 +123,11 @@ static void add_ring(scree_world *world, double inner, double outer) {
   add_wall(world, &wall);
 }
 
-static double orifice(scree_world *world) {
+static double orifice(scree_world *world, double radius) {
   const scree_wall bin = {
       .kind = SCREE_WALL_CYLINDER, .axis = {0, 0, 1}, .radius = 0.036, .length = 0.14};
   add_wall(world, &bin);
-  add_ring(world, 0.015, 0.036);
+  add_ring(world, radius, 0.036);
   step(world, HALF_SECOND / 2);
   double before = count_below(world);
   step(world, HALF_SECOND);
@@ -151,10 +151,12 @@ static double roll(scree_world *world) {
 int main(int argc, char **argv) {
   if (argc < 3) return 2;
   scree_set_threads(1);
-  const bool rolls = !strcmp(argv[1], "roll"), flows = !strcmp(argv[1], "orifice");
+  const bool rolls = !strcmp(argv[1], "roll"), flows = !strncmp(argv[1], "orifice-", 8);
   scree_world *world = make_world();
   add_spheres(world, argv[2], rolls ? 1 : SIZE_MAX);
-  double value = rolls ? roll(world) : flows ? orifice(world) : tube(world);
+  double value = rolls   ? roll(world)
+                 : flows ? orifice(world, 0.5e-3 * atof(argv[1] + 8))
+                         : tube(world);
   printf("%.4f %.2f\n", value, (double)clock() / CLOCKS_PER_SEC);
   scree_world_free(world);
   return 0;
