@@ -102,18 +102,42 @@ static vec3 way_into_body(const probe *x) {
   return (vec3){0, 0, 0};
 }
 
-/* The face of the sheet that lies between the point and the inside of its body, which went round a
- * rim and then came back over the sheet; false for none. */
-static bool find_cut(const probe *x, uint32_t *face) {
+static double distance_to_rim(const scree_particle *sheet, vec3 place) {
+  double nearest = INFINITY;
+  for (size_t i = 0; i < sheet->edge_count; i++) {
+    const scree_edge *edge = &sheet->edges[i];
+    double s = scree_clamped(vec3_dot(vec3_sub(place, edge->start), edge->along), edge->length);
+    if (scree_is_rim(edge))
+      nearest = scree_min(nearest, vec3_distance(place, vec3_mad(edge->start, edge->along, s)));
+  }
+  return nearest;
+}
+
+/* Whether a sheet lies between the point and the inside of its body. */
+typedef enum sheet_cut { NO_CUT, SHALLOW_CUT, DEEP_CUT } sheet_cut;
+
+/* The point went round a rim and then came back over the sheet. It leaves by the sheet where that
+ * is no farther than the rim; else the rim, which lies in the body, is felt. */
+static sheet_cut find_cut(const probe *x, double distance, uint32_t *face) {
   vec3 way = way_into_body(x);
   double length = vec3_norm(way);
-  if (!(length > 0)) return false;
+  if (!(length > 0)) return NO_CUT;
   const scree_ray_interval inwards = {x->p, vec3_scale(way, 1 / length), 0, length};
-  if (!(scree_next_passage(x->surface, &inwards, 0, SIZE_MAX, face) < INFINITY)) return false;
+  double passage = scree_next_passage(x->surface, &inwards, 0, SIZE_MAX, face);
+  if (!(passage < INFINITY)) return NO_CUT;
+  if (distance_to_rim(x->surface, vec3_mad(x->p, inwards.along, passage)) < distance)
+    return SHALLOW_CUT;
   vec3 normal = x->surface->faces[*face].normal;
   x->feature->side = vec3_dot(normal, way) < 0 ? -1 : 1;
   x->feature->reference = x->feature->side < 0 ? vec3_neg(normal) : normal;
   x->feature->has_reference = true;
+  return DEEP_CUT;
+}
+
+/* It may come to either side. */
+static bool is_of_rim(scree_feature_pair *feature, vec3 offset, vec3 *outward) {
+  if (!feature->inside) feature->side = 0;
+  *outward = offset;
   return true;
 }
 
@@ -123,11 +147,7 @@ static bool find_cut(const probe *x, uint32_t *face) {
  * is where it is. A rim has no sides: what goes round it may come to either. */
 static bool is_on_its_side(const probe *x, vec3 offset, uint32_t face, vec3 *outward) {
   scree_feature_pair *feature = x->feature;
-  if (vec3_norm2(*outward) == 0) {
-    if (!feature->inside) feature->side = 0;
-    *outward = offset;
-    return true;
-  }
+  if (vec3_norm2(*outward) == 0) return is_of_rim(feature, offset, outward);
   const int8_t side = vec3_dot(*outward, offset) < 0 ? -1 : 1;
   const uint16_t sheet = sheet_of(x->surface, face);
   uint32_t passed;
@@ -138,9 +158,10 @@ static bool is_on_its_side(const probe *x, vec3 offset, uint32_t face, vec3 *out
       feature->side = vec3_dot(x->surface->faces[passed].normal, x->velocity) < 0 ? 1 : -1;
       feature->sheet = sheet_of(x->surface, passed);
       feature->inside = true;
-    } else if (find_cut(x, &passed)) {
-      feature->sheet = sheet_of(x->surface, passed);
-      feature->inside = true;
+    } else {
+      sheet_cut cut = find_cut(x, vec3_norm(offset), &passed);
+      if (cut == SHALLOW_CUT) return is_of_rim(feature, offset, outward);
+      if (cut == DEEP_CUT) feature->sheet = sheet_of(x->surface, passed), feature->inside = true;
     }
   }
   const bool same = feature->sheet == sheet;
