@@ -31,6 +31,8 @@ static const double slack_cosines[2] = {0.9982005, 0.9928086};
 static const double slack_sines[2] = {0.0599640, 0.1197122};
 /* Over this part of contact radii and overlap a crossing fades at its ends. */
 static const double end_share = 0.1;
+/* It fades as for this sharing where that is less. */
+static const double least_sharing = 0.01;
 /* From 73 degrees on a face at an end bears what its corner would. */
 static const double corner_facing_cosine = 0.3;
 
@@ -59,7 +61,7 @@ static const double rolling_damping_ratio = 0.3;
 /* Contact radii: deeper features are blended, and not stepped finely. */
 static const double blended_depth = 0.5;
 /* Contact radii in a sub-step. */
-static const double longest_way = 0.04;
+static const double longest_way = 0.02;
 
 /* ---- bodies that lie in each other (law.c, depth.c, watch.c) ---- */
 

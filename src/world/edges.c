@@ -168,16 +168,20 @@ static double fading_way(double overlap, double reach) {
   return scree_min(end_share * (reach + scree_max(overlap, 0)), 0.5 * reach);
 }
 
-/* The taper near an end, and how it falls. */
-static void fade(scree_contact_point *contact, const crossing *x, double reach) {
+/* The taper near an end, and how it falls. Of u = way/fading way the taper w = (kappa v/(1 -
+ * (1 - kappa) v))^2 lets the pair's overlap fall as v = u (2 - u), if nothing else touches: of a w
+ * that is a polynomial it would fall as 1/u, and all at once in the end. */
+static void fade(scree_contact_point *contact, const crossing *x, double reach, double sharing) {
   double way = fading_way(contact->overlap, reach), grown = end_share * (reach + contact->overlap),
          end = way_from_end(x);
   if (end >= way) return;
-  double fall = contact->taper * scree_smooth_slope(0, way, end),
-         longer = contact->overlap > 0 && way == grown ? end_share * end / way : 0;
+  double kappa = scree_max(sharing, least_sharing), u = end / way, v = u * (2 - u),
+         rest = 1 - (1 - kappa) * v, root = kappa * v / rest,
+         fall = contact->taper * 4 * kappa * root * (1 - u) / (rest * rest * way),
+         longer = contact->overlap > 0 && way == grown ? end_share * u : 0;
   edge_end nearest = end_of(x, x->nearest);
   vec3 along = inward(x, &nearest);
-  contact->taper *= scree_smooth_step(0, way, end);
+  contact->taper *= root * root;
   contact->fading = vec3_scale(vec3_mad(along, contact->normal, longer), -fall);
 }
 
@@ -403,7 +407,7 @@ double scree_edge_contact(const scree_world *world, const scree_pair *pair,
   double gap = scree_add_contact(scratch, pair, x.on_b, c.normal, values, &feature->anchor);
   if (scratch->contacts.count > contacts) {
     scree_contact_point *contact = &scratch->contacts.items[contacts];
-    fade(contact, &x, pair->law.reach);
+    fade(contact, &x, pair->law.reach, world->options.sharing);
     taper(contact, relative, &x, pair->law.reach);
     hold_back(&x, feature, contact, c.first);
   } else {

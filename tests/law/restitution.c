@@ -202,7 +202,7 @@ static void elastic_boxes_keep_their_energy(void **state) {
     changes[k] = change;
   }
   LAW_BELOW("L17", "27 elastic boxes, 1000 hits: ledger, median of rooms", changes[ROOMS / 2],
-            3e-3);
+            1e-3);
 }
 
 /* Where an elastic box is 2 ms after a corner met a plane at 1 m/s. */
