@@ -50,7 +50,7 @@ static double law_at(const scree_motion_state *m, const scree_motion_row *rows, 
   bool moving = t >= m->from && t < m->until;
   t = t < m->from ? m->from : t > m->until ? m->until : t;
   double value = 0, slope = 0, turn = two_pi * m->frequency;
-  const scree_rows lines = {&rows->time, WIDTH, m->row_count};
+  const scree_rows lines = {m->row_count ? &rows->time : NULL, WIDTH, m->row_count};
   switch ((scree_motion_law)m->law) {
   case SCREE_MOTION_CONSTANT:
     value = m->speed * (t - m->from);
