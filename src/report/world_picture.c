@@ -86,31 +86,46 @@ scree_status scree_world_picture(const scree_world *world, const scree_render_op
 static const float wall_color[3] = {0.32f, 0.36f, 0.42f};
 static const double steep = 0.7; /* of a normal's length along z: what is flatter is a floor */
 
-enum { FINE_WALL = 4000 }; /* triangles from which on a wall is cut as it is */
+/* A convex piece of a triangle that two planes have cut: each adds a corner. */
+typedef struct piece {
+  vec3 corners[5];
+  size_t count;
+} piece;
 
-/* Each triangle becomes four, their corners no longer shared: a coarse wall is cut more finely. */
-static scree_status refine(scree_mesh *mesh, scree_error *error) {
-  size_t count = mesh->triangle_count;
-  scree_mesh fine = {.vertex_count = 6 * count, .triangle_count = 4 * count};
-  static const unsigned char quarters[12] = {0, 3, 5, 3, 1, 4, 5, 4, 2, 3, 4, 5};
-  fine.positions = scree_alloc(fine.vertex_count, 3 * sizeof *fine.positions);
-  fine.triangles = scree_alloc(fine.triangle_count, 3 * sizeof *fine.triangles);
-  if (!fine.positions || !fine.triangles) {
-    scree_mesh_free(&fine);
-    return scree_fail_memory(error, 6 * count, "a wall's triangles");
+/* The side of a plane on which `along` grows, or the other. */
+typedef struct half {
+  vec3 along;
+  double from;
+} half;
+
+static double beyond(const half *h, vec3 p) {
+  return vec3_dot(h->along, p) - h->from;
+}
+
+/* What of the piece lies on the half's side; with sign -1 on the other. */
+static piece clip(const piece *p, const half *h, double sign) {
+  piece cut = {.count = 0};
+  for (size_t i = 0; i < p->count; i++) {
+    vec3 a = p->corners[i], b = p->corners[(i + 1) % p->count];
+    double da = sign * beyond(h, a), db = sign * beyond(h, b);
+    if (da >= 0) cut.corners[cut.count++] = a;
+    if ((da < 0) != (db < 0))
+      cut.corners[cut.count++] = vec3_add(a, vec3_scale(vec3_sub(b, a), da / (da - db)));
   }
-  for (size_t t = 0; t < count; t++) {
-    double *p = fine.positions + 18 * t;
-    for (size_t c = 0; c < 3; c++)
-      memcpy(p + 3 * c, mesh->positions + 3 * (size_t)mesh->triangles[3 * t + c], 3 * sizeof *p);
-    for (size_t c = 0; c < 3; c++)
-      for (size_t k = 0; k < 3; k++)
-        p[9 + 3 * c + k] = 0.5 * (p[3 * c + k] + p[3 * ((c + 1) % 3) + k]);
-    for (size_t c = 0; c < 12; c++) fine.triangles[12 * t + c] = (uint32_t)(6 * t + quarters[c]);
+  return cut;
+}
+
+/* As a fan, its corners its own; room for it is there. */
+static void add_piece(const piece *p, scree_mesh *mesh) {
+  for (size_t i = 2; i < p->count; i++) {
+    const vec3 corners[3] = {p->corners[0], p->corners[i - 1], p->corners[i]};
+    for (size_t c = 0; c < 3; c++) {
+      double *at = mesh->positions + 3 * mesh->vertex_count;
+      at[0] = corners[c].x, at[1] = corners[c].y, at[2] = corners[c].z;
+      mesh->triangles[3 * mesh->triangle_count + c] = (uint32_t)mesh->vertex_count++;
+    }
+    mesh->triangle_count++;
   }
-  scree_mesh_free(mesh);
-  *mesh = fine;
-  return SCREE_OK;
 }
 
 /* Where the bodies are: their middle, and the centres of the lowest and of the highest. */
@@ -118,30 +133,88 @@ typedef struct crowd {
   double middle[3], low, high;
 } crowd;
 
+/* To the camera, level or from its elevation. */
+static vec3 to_camera(const scree_render_options *o, bool level) {
+  const double degree = 0.017453292519943295;
+  double a = o->azimuth_deg * degree, e = level ? 0 : o->elevation_deg * degree;
+  return (vec3){cos(e) * sin(a), -cos(e) * cos(a), sin(e)};
+}
+
+/* Whether a ray from the point meets the triangle: by the signs of three volumes. */
+static bool meets(vec3 from, vec3 along, const vec3 corners[3]) {
+  vec3 a = vec3_sub(corners[0], from), b = vec3_sub(corners[1], from),
+       c = vec3_sub(corners[2], from);
+  double u = vec3_dot(along, vec3_cross(a, b)), v = vec3_dot(along, vec3_cross(b, c)),
+         w = vec3_dot(along, vec3_cross(c, a)), facing = u + v + w;
+  bool inside = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+  return inside && facing != 0 && vec3_dot(a, vec3_cross(b, c)) / facing > 0;
+}
+
+/* Whether the wall stands before more than a few of the bodies, of which many are asked. */
+static bool hides(const scree_mesh *mesh, const scree_render_item *item, const scree_world *world,
+                  const scree_render_options *o) {
+  enum { ASKED = 200 };
+  static const double few = 0.25;
+  const double *q = item->quaternion;
+  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]}), back = mat3_transpose(&turn);
+  vec3 along = mat3_mul_vec(&back, to_camera(o, false));
+  size_t bodies = scree_world_body_count(world), stride = bodies / ASKED + 1;
+  size_t asked = 0, hidden = 0;
+  for (size_t i = 0; i < bodies; i += stride) {
+    scree_body body;
+    if (scree_world_body_removed(world, i)) continue;
+    scree_world_get_body(world, i, &body);
+    vec3 from = mat3_mul_vec(&back, vec3_sub(vec3_load(body.position), vec3_load(item->position)));
+    bool met = false;
+    for (size_t t = 0; !met && t < mesh->triangle_count; t++) {
+      vec3 corners[3];
+      for (size_t k = 0; k < 3; k++)
+        corners[k] = vec3_load(mesh->positions + 3 * (size_t)mesh->triangles[3 * t + k]);
+      met = meets(from, along, corners);
+    }
+    asked++;
+    hidden += met;
+  }
+  return (double)hidden > few * (double)asked;
+}
+
 /* Cuts away what stands between the viewer and the middle, but not what lies below all bodies, nor
  * floors that one may lie on. */
-static void cut_open(scree_mesh *mesh, const scree_render_item *item, const crowd *all,
-                     const scree_render_options *o) {
-  double azimuth = o->azimuth_deg / 57.29577951308232;
-  vec3 viewer = {cos(azimuth), sin(azimuth), 0};
-  mat3 turn = quat_to_mat3(
-      (quat){item->quaternion[0], item->quaternion[1], item->quaternion[2], item->quaternion[3]});
-  size_t kept = 0;
-  for (size_t t = 0; t < mesh->triangle_count; t++) {
-    vec3 c[3];
-    for (int k = 0; k < 3; k++) {
-      vec3 p = vec3_load(mesh->positions + 3 * (size_t)mesh->triangles[3 * t + (size_t)k]);
-      c[k] = vec3_add(mat3_mul_vec(&turn, p), vec3_load(item->position));
-    }
-    vec3 n = vec3_unit(vec3_triangle_normal(c[0], c[1], c[2]));
-    vec3 at = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
-    bool before = vec3_dot(vec3_sub(at, vec3_load(all->middle)), viewer) > 0;
-    bool below = fmax(c[0].z, fmax(c[1].z, c[2].z)) < all->low;
-    bool floor = fabs(n.z) >= steep && at.z < all->high;
-    if (before && !below && !floor) continue;
-    memmove(mesh->triangles + 3 * kept++, mesh->triangles + 3 * t, 3 * sizeof *mesh->triangles);
+static scree_status cut_open(scree_mesh *mesh, const scree_render_item *item, const crowd *all,
+                             const scree_render_options *o, scree_error *error) {
+  enum { MOST_PIECES = 2 + 3 }; /* triangles of what lies behind, and of what lies below before */
+  vec3 viewer = to_camera(o, true), position = vec3_load(item->position);
+  const double *q = item->quaternion;
+  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]}), back = mat3_transpose(&turn);
+  half before = {mat3_mul_vec(&back, viewer),
+                 vec3_dot(vec3_sub(vec3_load(all->middle), position), viewer)};
+  half above = {mat3_mul_vec(&back, (vec3){0, 0, 1}), all->low - position.z};
+  size_t most = MOST_PIECES * mesh->triangle_count;
+  scree_mesh open = {.positions = scree_alloc(most, 9 * sizeof *open.positions),
+                     .triangles = scree_alloc(most, 3 * sizeof *open.triangles)};
+  if (!open.positions || !open.triangles) {
+    scree_mesh_free(&open);
+    return scree_fail_memory(error, most, "a wall's triangles");
   }
-  mesh->triangle_count = kept;
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    piece whole = {.count = 3};
+    for (size_t k = 0; k < 3; k++)
+      whole.corners[k] = vec3_load(mesh->positions + 3 * (size_t)mesh->triangles[3 * t + k]);
+    vec3 n = vec3_unit(vec3_triangle_normal(whole.corners[0], whole.corners[1], whole.corners[2]));
+    vec3 middle = vec3_scale(
+        vec3_add(whole.corners[0], vec3_add(whole.corners[1], whole.corners[2])), 1.0 / 3);
+    if (fabs(vec3_dot(n, above.along)) >= steep && beyond(&above, middle) < all->high - all->low) {
+      add_piece(&whole, &open);
+      continue;
+    }
+    piece front = clip(&whole, &before, 1), behind = clip(&whole, &before, -1),
+          below = clip(&front, &above, -1);
+    add_piece(&behind, &open);
+    add_piece(&below, &open);
+  }
+  scree_mesh_free(mesh);
+  *mesh = open;
+  return SCREE_OK;
 }
 
 static scree_status add_walls(const scree_world *world, const scree_render_options *o,
@@ -154,13 +227,12 @@ static scree_status add_walls(const scree_world *world, const scree_render_optio
     scree_world_get_wall(world, w, &wall);
     if (wall.kind == SCREE_WALL_PLANE) continue; /* the picture has a ground */
     status = scree_wall_mesh(world, w, &meshes[w], error);
-    while (status == SCREE_OK && meshes[w].triangle_count < FINE_WALL)
-      status = refine(&meshes[w], error);
     *item = (scree_render_item){.mesh = &meshes[w]};
     memcpy(item->position, wall.position, sizeof item->position);
     scree_world_wall_orientation(world, w, item->quaternion);
     memcpy(item->color, wall_color, sizeof item->color);
-    if (status == SCREE_OK) cut_open(&meshes[w], item, all, o);
+    if (status == SCREE_OK && hides(&meshes[w], item, world, o))
+      status = cut_open(&meshes[w], item, all, o, error);
     s->item_count += status == SCREE_OK && meshes[w].triangle_count > 0;
   }
   return status;

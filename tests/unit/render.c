@@ -1,6 +1,7 @@
 #include "base/alloc.h"
 #include "scree.h"
 #include "support/check.h"
+#include "support/scene.h"
 
 #include <unistd.h>
 
@@ -93,11 +94,56 @@ static void options_out_of_range_are_refused(void **state) {
   scree_mesh_free(&mesh);
 }
 
+/* Of a ball at rest on a plate, in a wide tube that stands on nothing. */
+static const char tube_text[] =
+    "shapes: {ball: {sphere: 0.1}}\n"
+    "geometry:\n"
+    "  plate: {box: [0.6, 0.6, 0.05], at: [0, 0, -0.025]}\n"
+    "  tube: {cylinder: {radius: 0.15, length: 0.5}, at: [0, 0, 0.05]}\n"
+    "inlets: {feed: {box: {min: [-0.051, -0.051, 0], max: [0.051, 0.051, 0.102]}, count: 1, "
+    "shapes: ball}}\n"
+    "time: 0.01\n";
+
+static size_t blue_pixels(const scree_image *image) {
+  size_t count = 0;
+  for (size_t i = 0; i < image->width * image->height; i++)
+    count += image->pixels[3 * i + 2] > 1.6 * image->pixels[3 * i];
+  return count;
+}
+
+/* From wherever one looks the tube is cut before the ball, and the plate is whole. */
+static void walls_that_hide_are_cut(void **state) {
+  (void)state;
+  scree_scene *scene = create(tube_text);
+  run_to_end(scene);
+  for (double azimuth = 0; azimuth < 360; azimuth += 50) {
+    scree_render_options options = scree_default_render_options();
+    scree_image image, alone;
+    scree_error error;
+    options.width = options.height = 200;
+    options.samples = 1;
+    options.azimuth_deg = azimuth;
+    options.focus[2] = 0.05;
+    options.focus_radius = 0.3;
+    scree_status status = scree_scene_picture(scene, &options, NULL, &image, &error);
+    if (status == SCREE_UNSUPPORTED) skip();
+    CHECK_OK(status, error);
+    CHECK_OK(scree_world_picture(scree_scene_view(scene), &options, NULL, &alone, &error), error);
+    assert_in_range(blue_pixels(&image), 0.85 * (double)blue_pixels(&alone),
+                    1.15 * (double)blue_pixels(&alone));
+    assert_true(blue_pixels(&alone) > 500);
+    scree_image_free(&image);
+    scree_image_free(&alone);
+  }
+  scree_scene_free(scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(pictures_do_not_depend_on_threads_or_place),
       cmocka_unit_test(png_is_written_whole),
       cmocka_unit_test(options_out_of_range_are_refused),
+      cmocka_unit_test(walls_that_hide_are_cut),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
