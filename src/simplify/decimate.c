@@ -15,7 +15,14 @@
  * D the deviation from the scan (cost/deviation.h): its second part weighs D against the size of
  * the triangles, the third against what is usual for the level, C the cost that a tenth of the
  * edges do not exceed and F some times the mean distance of the samples. To find D is dear; it is
- * found when the edge's turn comes, and only as far as it decides. */
+ * found when the edge's turn comes, and only as far as it decides.
+ *
+ * Garland and Heckbert 1997, "Surface simplification using quadric error metrics": greedy collapses
+ * in the order of a quadratic cost. Lindstrom and Turk 1998, "Fast and memory efficient polygonal
+ * simplification": E, and places that keep the volume (cost/volume.c). Luby 1986, "A simple
+ * parallel algorithm for the maximal independent set problem": the passes' independent edges.
+ * Klein, Liebich and Strasser 1996, "Mesh reduction with error control": samples
+ * (cost/deviation.h). Hoppe 1996, "Progressive meshes": the record. */
 #include "simplify/decimate.h"
 
 #include "base/parallel.h"

@@ -10,7 +10,7 @@ typedef struct scree_minimum_box {
   vec3 center;
 } scree_minimum_box;
 
-/* Fits a box around a hull (see the top of oriented_box.c for how near to the least it comes); axes
+/* Fits a box around a hull (see the top of minimum_box.c for how near to the least it comes); axes
  * are three more directions to try, such as the principal ones. Never larger than the axis-aligned
  * box, or the box along axes. */
 scree_status scree_minimum_box_fit(const scree_hull *hull, const mat3 *axes, scree_minimum_box *box,

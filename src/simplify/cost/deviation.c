@@ -2,6 +2,7 @@
 
 #include "base/array.h"
 #include "base/parallel.h"
+#include "mesh/measure/minimum_box.h"
 #include "simplify/morton.h"
 #include "simplify/tuning.h"
 
@@ -119,15 +120,37 @@ static void end_block(void *context, size_t begin, size_t end, size_t block, int
     p->end[v] = (int8_t)scree_extent_end(&p->extent, p->scan.vertex[v].at);
 }
 
+/* The axes of the least box, in which widths of levels are judged: of a flat body none is wide
+ * along its thickness, as it may be a degree from there. */
+static scree_status find_frame(const scree_positions *places, vec3 middle, mat3 *frame,
+                               scree_error *error) {
+  scree_principal_frame principal;
+  scree_hull hull = {0};
+  scree_minimum_box box;
+  vec3 *points = NULL;
+  scree_status status = scree_principal_frame_find(places, middle, &principal, error);
+  if (status != SCREE_OK) return status;
+  SCREE_ALLOC_OR(points, places->count, error, out_of_memory);
+  for (size_t v = 0; v < places->count; v++)
+    points[v] = vec3_sub(vec3_load(places->at + v * places->stride), middle);
+  status = scree_hull_build(points, places->count, &hull, error);
+  if (status == SCREE_OK) status = scree_minimum_box_fit(&hull, &principal.axes, &box, error);
+  if (status == SCREE_OK) *frame = box.axes;
+  scree_hull_free(&hull);
+  scree_free(points);
+  return status;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
 static scree_status measure_extent(scree_samples *p, scree_error *error) {
   const scree_halfmesh *scan = &p->scan;
   const scree_positions places = {&scan->vertex->at.x, sizeof *scan->vertex / sizeof(double),
                                   scan->vertex_count};
-  scree_principal_frame frame;
-  scree_status status =
-      scree_principal_frame_find(&places, vec3_lerp(scan->low, scan->high, 0.5), &frame, error);
+  mat3 frame;
+  scree_status status = find_frame(&places, vec3_lerp(scan->low, scan->high, 0.5), &frame, error);
   if (status != SCREE_OK) return status;
-  scree_extent_start(&p->extent, (const double(*)[3])frame.axes.m);
+  scree_extent_start(&p->extent, (const double(*)[3])frame.m);
   for (size_t v = 0; v < scan->vertex_count; v++) scree_extent_add(&p->extent, scan->vertex[v].at);
   SCREE_ALLOC_OR(p->end, scan->vertex_count, error, out_of_memory);
   scree_parallel_for(scan->vertex_count, BLOCK, end_block, p);

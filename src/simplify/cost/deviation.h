@@ -15,7 +15,7 @@
 typedef struct scree_samples {
   scree_halfmesh scan; /* the reference surface, in the same box */
   scree_surface_tree scan_tree;
-  scree_extent extent; /* of the scan, in the frame of its vertices */
+  scree_extent extent; /* of the scan, in the frame of its least box */
   int8_t *end;         /* per vertex of the scan: see scree_extent_end */
   uint32_t *of;        /* per vertex of the surface: of the scan */
   uint32_t *first;     /* per triangle of the surface: its farthest sample, the first of its list,
