@@ -375,7 +375,8 @@ fail:
  * differences of its gradient; false: it is no peak. */
 static bool find_curvature(search *q, double *factor) {
   size_t m = q->m;
-  double ahead[SCREE_GP_MOST_SETTINGS], behind[SCREE_GP_MOST_SETTINGS], s[SCREE_GP_MOST_SETTINGS];
+  double ahead[SCREE_GP_MOST_SETTINGS] = {0}, behind[SCREE_GP_MOST_SETTINGS] = {0},
+         s[SCREE_GP_MOST_SETTINGS];
   for (size_t i = 0; i < m; i++) {
     memcpy(s, q->s, sizeof s);
     s[i] = q->s[i] + difference;
