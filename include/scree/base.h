@@ -36,9 +36,6 @@ typedef enum scree_status {
       SCREE_STATUS_COUNT
 } scree_status;
 
-/* The status in words, for example "bad file". */
-SCREE_API const char *scree_status_text(scree_status status);
-
 /* What went wrong, in one sentence: file, position, value, limit as far as they apply. */
 typedef struct scree_error {
   scree_status status;
@@ -51,9 +48,6 @@ typedef struct scree_error {
 typedef void *scree_reallocate(void *context, void *block, size_t size);
 SCREE_API void scree_set_allocator(scree_reallocate *reallocate, void *context);
 
-/* The most bytes the library may hold at once; further allocations fail with SCREE_OUT_OF_MEMORY.
- * 0 (the default) means no limit. */
-SCREE_API void scree_set_memory_limit(size_t byte_count);
 /* Bytes held now, and the most held since the start or the last reset of the peak. */
 SCREE_API size_t scree_memory_used(void);
 SCREE_API size_t scree_memory_peak(void);
@@ -82,21 +76,6 @@ typedef struct scree_progress {
   void *context;
   double interval;
 } scree_progress;
-
-/* What a build may lack. */
-typedef enum scree_build_part {
-  SCREE_BUILD_PICTURES, /* figures as PNG, SVG and PDF (cairo) */
-  SCREE_BUILD_RAYS,     /* rendered pictures (Embree) */
-  SCREE_BUILD_STUDY,    /* scree_study_... (SQLite) */
-  SCREE_BUILD_IMPORT,   /* COLLADA, X3D, AMF, FBX and 3DS (assimp) */
-  SCREE_BUILD_COUNT
-} scree_build_part;
-SCREE_API bool scree_build_has(scree_build_part part);
-/* A line about it, for people; "" beyond the last. */
-SCREE_API const char *scree_build_text(scree_build_part part);
-
-/* Creates the folder and its parents; an existing folder is fine. */
-SCREE_API scree_status scree_folder_create(const char *path, scree_error *error);
 
 /* 128 bits that name a file's content: XXH3-128, as `xxhsum -H2` prints it. */
 typedef struct scree_checksum {

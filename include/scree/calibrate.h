@@ -146,16 +146,6 @@ SCREE_API void scree_calibration_result_free(scree_calibration_result *result);
 
 /* ---- Reports ---- */
 
-/* For people, on one screen. */
-SCREE_API void scree_calibration_print(const scree_calibration_result *result, FILE *stream);
-/* docs/reference/formats.md has every field. "-" is stdout. */
-SCREE_API scree_status scree_calibration_json_write(const scree_calibration_result *result,
-                                                    const char *path, bool overwrite,
-                                                    scree_error *error);
-/* The samples, a row each. */
-SCREE_API scree_status scree_calibration_csv_write(const scree_calibration_result *result,
-                                                   const char *path, bool overwrite,
-                                                   scree_error *error);
 /* calibration.json, samples.csv and the figures (corner, answers, history) into a folder; what is
  * there is overwritten. */
 SCREE_API scree_status scree_calibration_report_write(const scree_calibration_result *result,

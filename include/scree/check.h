@@ -59,7 +59,6 @@ typedef enum scree_defect {
 /* The name in JSON, what so many of it are in words, and whether it is grave. */
 SCREE_API const char *scree_defect_name(scree_defect defect);
 SCREE_API const char *scree_defect_text(scree_defect defect, size_t count);
-SCREE_API bool scree_defect_is_grave(scree_defect defect);
 
 /* A surface of which more pairs of facets meet is no surface. */
 enum { SCREE_PAIR_LIMIT = 20000000 };
@@ -248,23 +247,6 @@ SCREE_API scree_status scree_mesh_prepare(const scree_mesh *mesh,
                                           const scree_repair_options *options,
                                           const scree_progress *progress, scree_mesh *ready,
                                           scree_repair_report *report, scree_error *error);
-
-/* What became of one file, for scree_check_json_write. */
-typedef struct scree_check_entry {
-  const char *file;       /* as given */
-  const scree_scan *scan; /* NULL where it could not be read: then only `failure` is told */
-  double unit_m;          /* metres per unit of the file */
-  const scree_check *check;
-  const scree_repair_report *repair; /* NULL where none was tried */
-  const char *output;                /* the file written; NULL: none */
-  const char *failure;               /* why there is no result; NULL: there is one */
-} scree_check_entry;
-
-/* One array with an object per entry: file, checksum, counts of every defect, verdict, what was
- * done. docs/reference/formats.md has every field. command_line may be NULL; path "-" is stdout. */
-SCREE_API scree_status scree_check_json_write(const scree_check_entry *entries, size_t entry_count,
-                                              const char *command_line, const char *path,
-                                              bool overwrite, scree_error *error);
 
 #ifdef __cplusplus
 }

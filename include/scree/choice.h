@@ -72,8 +72,6 @@ SCREE_API scree_choice_options scree_default_choice_options(void);
 
 /* Point `index` of the grid: rp_min 10^(index / per_decade); index 0 is rp_min. */
 SCREE_API double scree_choice_grid_rp(const scree_choice_options *options, size_t index);
-/* How many of them lie in [rp_min, rp_max], the ends included (to 1e-9 relative). */
-SCREE_API size_t scree_choice_grid_count(const scree_choice_options *options);
 
 /* rp Nm, truncated, the count that an Rp asks for; 1e-3 of 762,000 is 762, however 1e-3 rounds. */
 SCREE_API size_t scree_choice_target(double rp, size_t triangle_count);

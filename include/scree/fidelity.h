@@ -37,35 +37,6 @@ SCREE_API const char *scree_shape_error_name(scree_shape_error which);
 /* The errors of several levels, and what the scan itself is like. */
 typedef struct scree_fidelity scree_fidelity;
 
-/* Measures the levels of a curve whose indices are given, ascending, in one sweep; level_indices
- * NULL: scree_fidelity_levels of them. scan is the mesh that the curve was built from.
- *
- * Some 10,000 points are spread over the scan, and half as many over each level; means are exact
- * to 3 per cent. The Hausdorff distance is bounded by how far points lie apart, and what could be
- * farther than the largest found is looked at closer, to 1 per cent. Walls are where a ray inward
- * from one of the points meets the surface again, facing back. Noise is what a quadric through the
- * points round each leaves over, as far as that does not depend on how many.
- *
- * The same for any number of threads. Fails with SCREE_BAD_MESH where the scan has no area,
- * SCREE_BAD_ARGUMENT where the indices do not ascend, SCREE_OUT_OF_MEMORY, SCREE_CANCELLED. Cost:
- * 0.2 to 2 times the curve's, the more the smaller the scan. */
-SCREE_API scree_status scree_fidelity_measure(const scree_curve *curve, const scree_mesh *scan,
-                                              const size_t *level_indices, size_t level_count,
-                                              const scree_progress *progress,
-                                              scree_fidelity **fidelity, scree_error *error);
-SCREE_API void scree_fidelity_free(scree_fidelity *fidelity);
-
-enum { SCREE_FIDELITY_PER_DECADE = 9, SCREE_FIDELITY_FINEST = 2500, SCREE_FIDELITY_MOST = 48 };
-/* The levels that a choice is made from: at Rp = 10^(-k / SCREE_FIDELITY_PER_DECADE), as the
- * paper's grid has them, of at most SCREE_FIDELITY_FINEST triangles; from fine to coarse. Fills
- * level_indices, at most SCREE_FIDELITY_MOST of them, and answers how many. */
-SCREE_API size_t scree_fidelity_levels(const scree_curve *curve,
-                                       size_t level_indices[SCREE_FIDELITY_MOST]);
-
-SCREE_API size_t scree_fidelity_count(const scree_fidelity *fidelity);
-/* Rows are the levels in the order asked for; row must be below the count. */
-SCREE_API size_t scree_fidelity_level_index(const scree_fidelity *fidelity, size_t row);
-SCREE_API size_t scree_fidelity_triangle_count(const scree_fidelity *fidelity, size_t row);
 /* NaN where the scan has none of it, as the thickness of a body without walls. */
 SCREE_API double scree_fidelity_error(const scree_fidelity *fidelity, size_t row,
                                       scree_shape_error which);
@@ -90,7 +61,6 @@ typedef enum scree_shape_change {
       SCREE_CHANGE_COUNT
 } scree_shape_change;
 
-SCREE_API const char *scree_shape_change_name(scree_shape_change which);
 SCREE_API double scree_fidelity_change(const scree_fidelity *fidelity, size_t row,
                                        scree_shape_change which);
 

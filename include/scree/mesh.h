@@ -76,10 +76,6 @@ SCREE_API void scree_scan_free(scree_scan *scan);
  * SCREE_OUT_OF_MEMORY. Free *scan with scree_scan_free. */
 SCREE_API scree_status scree_scan_read(const char *path, const scree_read_options *options,
                                        scree_scan *scan, scree_error *error);
-/* The same for byte_count bytes in memory; name stands for the file in errors. */
-SCREE_API scree_status scree_scan_parse(const void *bytes, size_t byte_count, const char *name,
-                                        const scree_read_options *options, scree_scan *scan,
-                                        scree_error *error);
 
 /* Makes an indexed mesh of loose triangles: triangle t has its corners at corner_positions[9t ..
  * 9t+8], finite and at most 1e30 in size, in metres.
@@ -136,8 +132,6 @@ typedef enum scree_file_format {
   SCREE_FILE_FORMAT_COUNT,
 } scree_file_format;
 
-/* The format's name as in the comments above ("auto" for SCREE_FORMAT_AUTO). */
-SCREE_API const char *scree_file_format_name(scree_file_format format);
 /* The format that a path's extension asks for, in any case of letters; SCREE_FORMAT_AUTO: none. */
 SCREE_API scree_file_format scree_file_format_of(const char *path);
 

@@ -108,12 +108,6 @@ SCREE_API double scree_scene_duration(const scree_scene *scene);
 SCREE_API const char *scree_scene_title(const scree_scene *scene);
 /* Its file with every default, as scree_scene_file_print has it. */
 SCREE_API const char *scree_scene_text(const scree_scene *scene);
-/* s: output.frames. */
-SCREE_API double scree_scene_frame_interval(const scree_scene *scene);
-/* output.bodies: whether frames have instances (scree_scene_bodies_vtp_write), not surfaces. */
-SCREE_API bool scree_scene_frames_are_instances(const scree_scene *scene);
-/* s, of the whole scene, for its worst pair of shapes; reason as of scree_world_time_step. */
-SCREE_API double scree_scene_time_step_reason(const scree_scene *scene, char reason[256]);
 /* For observing and frames, not to be changed. */
 SCREE_API scree_world *scree_scene_world(scree_scene *scene);
 SCREE_API const scree_world *scree_scene_view(const scree_scene *scene);
@@ -124,6 +118,9 @@ typedef struct scree_scene_forecast {
   double seconds;     /* on one core, of 1e-6 s a body and step, 3e-6 of meshes: to a factor of 3 */
   double frame_count; /* of output.frames */
   double frame_bytes; /* of one, at most */
+  double frame_interval;      /* s: output.frames */
+  bool frames_are_instances;  /* output.bodies: scree_scene_bodies_vtp_write, not surfaces */
+  char time_step_reason[256]; /* of its worst pair of shapes, as of scree_world_time_step */
 } scree_scene_forecast;
 SCREE_API void scree_scene_foretell(const scree_scene *scene, scree_scene_forecast *forecast);
 /* What is probably a slip, as a sentence: contacts too soft for how fast bodies will hit, a density
@@ -307,10 +304,6 @@ SCREE_API scree_scene_costs scree_scene_get_costs(const scree_scene *scene);
  */
 SCREE_API scree_status scree_scene_save(const scree_scene *scene, const char *path, bool overwrite,
                                         scree_error *error);
-/* Writes a frame: the same without the contacts, a fraction of the size; it can be measured and
- * drawn, not continued. */
-SCREE_API scree_status scree_scene_save_frame(const scree_scene *scene, const char *path,
-                                              bool overwrite, scree_error *error);
 SCREE_API bool scree_scene_is_frame(const scree_scene *scene);
 /* Reads either; every later step has the same bits as in the scene that was saved, a frame is
  * refused by scree_scene_advance with SCREE_UNSUPPORTED. SCREE_BAD_FILE with file and reason. */

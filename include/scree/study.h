@@ -21,9 +21,6 @@ typedef struct scree_summary {
   double sd_low, sd_high;     /* and of the standard deviation: chi-square */
 } scree_summary;
 
-/* confidence in (0, 1), for example 0.95: of normally distributed values. */
-SCREE_API scree_summary scree_summarise(const double *values, size_t count, double confidence);
-
 /* Two means compared: are they the same but for `margin`, are they different, or cannot this be
  * told? Equivalence is shown by two one-sided tests (Schuirmann 1987) with Welch's degrees of
  * freedom: the 1 - 2 alpha interval of the difference lies within (-margin, margin). */
@@ -51,10 +48,6 @@ typedef struct scree_power_law {
   double r2;                          /* of the logarithms */
 } scree_power_law;
 
-/* SCREE_BAD_ARGUMENT with fewer than two different x above zero. */
-SCREE_API scree_status scree_fit_power(const double *x, const double *y, size_t count,
-                                       double confidence, scree_power_law *fit, scree_error *error);
-
 enum { SCREE_POLYNOMIAL_DEGREE = 4 };
 
 /* y = sum of coefficient[k] x^k, by least squares (Householder). */
@@ -65,10 +58,6 @@ typedef struct scree_polynomial {
   double rms, r2; /* misfit in units of y, and 1 - residual / total sum of squares */
 } scree_polynomial;
 
-/* degree 0 to SCREE_POLYNOMIAL_DEGREE; SCREE_BAD_ARGUMENT with fewer than degree + 1 different x.
- */
-SCREE_API scree_status scree_fit_polynomial(const double *x, const double *y, size_t count,
-                                            int degree, scree_polynomial *fit, scree_error *error);
 SCREE_API double scree_polynomial_value(const scree_polynomial *fit, double x);
 
 /* ---- A study: points, replicates, runs ---- */
@@ -236,30 +225,6 @@ typedef struct scree_study_result {
 SCREE_API scree_status scree_study_analyse(const scree_study *study, scree_study_result *result,
                                            scree_error *error);
 SCREE_API void scree_study_result_free(scree_study_result *result);
-
-/* ---- Reports of a study ---- */
-
-/* docs/reference/formats.md has every field. "-" is stdout. */
-SCREE_API scree_status scree_study_json_write(const scree_study_result *result, const char *path,
-                                              bool overwrite, scree_error *error);
-/* One row per point. */
-SCREE_API scree_status scree_study_csv_write(const scree_study_result *result, const char *path,
-                                             bool overwrite, scree_error *error);
-/* After the paper's Figs. 5, 7 and 8, by the path's ending as scree_choice_figure_write: angle with
- * standard deviation, and coefficient of variation, against Rp; mean rotation against time;
- * processor time of a run against Rp with both fits. SCREE_UNSUPPORTED where the study has nothing
- * to draw. */
-SCREE_API scree_status scree_study_angle_figure(const scree_study_result *result, const char *path,
-                                                bool overwrite, scree_error *error);
-SCREE_API scree_status scree_study_rotation_figure(const scree_study_result *result,
-                                                   const char *path, bool overwrite,
-                                                   scree_error *error);
-SCREE_API scree_status scree_study_time_figure(const scree_study_result *result, const char *path,
-                                               bool overwrite, scree_error *error);
-/* All of these into a folder: study.json, points.csv, and angle, rotation and time as .png, .svg,
- * .pdf, .csv and .gnuplot; what is there is overwritten. */
-SCREE_API scree_status scree_study_report_write(const scree_study_result *result,
-                                                const char *folder, scree_error *error);
 
 #ifdef __cplusplus
 }

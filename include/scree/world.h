@@ -317,16 +317,6 @@ SCREE_API scree_status scree_world_save(const scree_world *world, const char *pa
  * for what is no checkpoint, is of another version, is cut short or has a bit changed anywhere. */
 SCREE_API scree_status scree_world_load(const char *path, scree_world **world, scree_error *error);
 
-/* For runs that may leave the model's range: from now on a checkpoint of the state is kept in
- * memory every step_interval steps, and where scree_world_step fails (SCREE_DIVERGED, no memory, a
- * device that is lost) the last one is written to path, replacing what is there, and named in the
- * message. Loaded, it goes on with the same bits, into the same failure where that was the world's:
- * one to look closely at what happened. path NULL: no longer.
- * Not part of checkpoints. Cost: a checkpoint's memory, and the time of making one (about 10 ms for
- * a thousand bodies) every interval. */
-SCREE_API scree_status scree_world_keep(scree_world *world, const char *path,
-                                        uint64_t step_interval, scree_error *error);
-
 #ifdef __cplusplus
 }
 #endif

@@ -43,4 +43,8 @@ size_t scree_memory_limit(void);
     }                                                                                              \
   } while (0)
 
+/* The most bytes the library may hold at once; further allocations fail with SCREE_OUT_OF_MEMORY.
+ * 0 (the default) means no limit. */
+void scree_set_memory_limit(size_t byte_count);
+
 #endif

@@ -40,4 +40,7 @@ void scree_assert_failed(const char *condition, const char *file, int line);
 #define SCREE_ASSERT(condition) ((void)sizeof(condition))
 #endif
 
+/* The status in words, for example "bad file". */
+const char *scree_status_text(scree_status status);
+
 #endif

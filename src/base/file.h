@@ -71,4 +71,7 @@ scree_status scree_text_write(const char *text, const char *path, bool overwrite
 
 scree_checksum scree_checksum_of(const void *bytes, size_t byte_count);
 
+/* Creates the folder and its parents; an existing folder is fine. */
+scree_status scree_folder_create(const char *path, scree_error *error);
+
 #endif

@@ -1,3 +1,4 @@
+#include "base/parts.h"
 #include "scree.h"
 
 static const struct {

@@ -3,6 +3,7 @@
  * choice is made from and those of the grid. */
 #include "base/alloc.h"
 #include "choice/criterion.h"
+#include "choice/fidelity.h"
 #include "choice/recommend.h"
 
 #include <stdlib.h>

@@ -13,6 +13,7 @@
  * it passes their counts. */
 #include "choice/criterion.h"
 #include "base/math.h"
+#include "choice/fidelity.h"
 
 #include "base/alloc.h"
 #include "base/number.h"

@@ -47,4 +47,7 @@ size_t scree_choice_best_level(const scree_choice *choice, scree_shape_error whi
  * "0.5*recommended"; the factor. */
 bool scree_choice_is_recommended(const char *rp, double *factor);
 
+/* How many of them lie in [rp_min, rp_max], the ends included (to 1e-9 relative). */
+size_t scree_choice_grid_count(const scree_choice_options *options);
+
 #endif

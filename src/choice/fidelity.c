@@ -1,4 +1,5 @@
 /* The sweep over the levels, from fine to coarse, and what it found. */
+#include "choice/fidelity.h"
 #include "choice/gauge.h"
 
 #include "base/alloc.h"
@@ -27,13 +28,6 @@ const char *scree_shape_error_name(scree_shape_error which) {
   static const char *const names[] = {SCREE_SHAPE_ERROR_LIST(SCREE_SHAPE_ERROR_NAME)};
 #undef SCREE_SHAPE_ERROR_NAME
   return (unsigned)which < SCREE_SHAPE_ERROR_COUNT ? names[which] : "?";
-}
-
-const char *scree_shape_change_name(scree_shape_change which) {
-#define SCREE_CHANGE_NAME(name, text) text,
-  static const char *const names[] = {SCREE_CHANGE_LIST(SCREE_CHANGE_NAME)};
-#undef SCREE_CHANGE_NAME
-  return (unsigned)which < SCREE_CHANGE_COUNT ? names[which] : "?";
 }
 
 size_t scree_fidelity_levels(const scree_curve *curve, size_t level_indices[SCREE_FIDELITY_MOST]) {

@@ -8,6 +8,7 @@
  * collapses and so on are measured with as many points until one does, and halves narrow what lies
  * between. */
 #include "choice/recommend.h"
+#include "choice/fidelity.h"
 
 #include "base/alloc.h"
 

@@ -5,6 +5,7 @@
 #include "cli/args.h"
 #include "cli/input.h"
 #include "cli/stage.h"
+#include "report/program.h"
 #include "report/provenance.h"
 
 enum { CHOOSE_NAME_BYTES = 128, CHOOSE_NOTE_BYTES = 1536, CHOOSE_PATH_BYTES = 4096 };

@@ -2,6 +2,7 @@
  * screen of 80 x 24. */
 #include "base/number.h"
 #include "cli/choose.h"
+#include "report/program.h"
 
 static void print_row(FILE *out, const choose_run *run, size_t index) {
   const scree_choice *c = &run->choices[index];

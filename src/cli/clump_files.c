@@ -1,4 +1,6 @@
 #include "cli/clump_files.h"
+#include "base/parts.h"
+#include "report/program.h"
 
 #include "base/file.h"
 #include "cli/output.h"

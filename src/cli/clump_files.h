@@ -3,6 +3,7 @@
 #define SCREE_CLI_CLUMP_FILES_H
 
 #include "cli/clump_surface.h"
+#include "report/program.h"
 #include "report/provenance.h"
 
 typedef struct clump_arguments {

@@ -1,3 +1,5 @@
+#include "base/alloc.h"
+#include "base/parts.h"
 #include "base/platform.h"
 #include "cli/input.h"
 #include "cli/options.h"

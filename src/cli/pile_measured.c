@@ -1,4 +1,5 @@
 #include "cli/pile_measured.h"
+#include "report/program.h"
 
 #include "base/file.h"
 #include "cli/output.h"

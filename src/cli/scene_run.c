@@ -1,4 +1,5 @@
 #include "cli/scene_run.h"
+#include "report/program.h"
 
 #include "base/file.h"
 #include "base/number.h"
@@ -81,7 +82,7 @@ static scree_status write_view(const cli_scene_run *r, const scree_scene *scene,
   scree_status status = path_of(r, name, path, error);
   if (status != SCREE_OK) return status;
   if (1u << kind == CLI_GEOMETRY) return scree_scene_walls_vtp_write(scene, path, true, error);
-  if (1u << kind == CLI_BODIES && scree_scene_frames_are_instances(scene))
+  if (1u << kind == CLI_BODIES && r->forecast.frames_are_instances)
     return scree_scene_bodies_vtp_write(scene, path, true, error);
   return scree_world_vtp_write(scree_scene_view(scene), views[kind], path, true, error);
 }
@@ -112,8 +113,7 @@ static scree_status on_frame(void *context, scree_scene *scene, size_t index, sc
 static scree_status write_shapes(const cli_scene_run *r, const scree_scene *scene,
                                  scree_error *error) {
   scree_status status = SCREE_OK;
-  if (!r->output || !(scree_scene_frame_interval(scene) > 0) ||
-      !scree_scene_frames_are_instances(scene))
+  if (!r->output || !(r->forecast.frame_interval > 0) || !r->forecast.frames_are_instances)
     return SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && scree_scene_shape_name(scene, i); i++) {
     char name[32], path[PATH_BYTES];
@@ -161,9 +161,7 @@ static void print_walls(const scree_scene *scene) {
     }
 }
 
-static void print_forecast(const scree_scene *scene) {
-  scree_scene_forecast f;
-  scree_scene_foretell(scene, &f);
+static void print_forecast(scree_scene_forecast f) {
   printf("  %.0f steps of up to %.0f bodies: ", f.step_count, f.body_count);
   if (f.seconds < 60)
     printf("seconds");
@@ -179,11 +177,12 @@ static void print_forecast(const scree_scene *scene) {
 
 static scree_status on_begin(void *context, scree_scene *scene, bool resumed, scree_error *error) {
   cli_scene_run *r = context;
-  char reason[256], path[PATH_BYTES];
+  char path[PATH_BYTES];
   scree_status status = SCREE_OK;
+  scree_scene_foretell(scene, &r->forecast);
   if (resumed)
-    status = cli_frames_recall(&r->frames, scree_scene_frame_interval(scene),
-                               scree_scene_view(scene), error);
+    status =
+        cli_frames_recall(&r->frames, r->forecast.frame_interval, scree_scene_view(scene), error);
   r->scene = scene;
   if (status == SCREE_OK && r->output) {
     status = path_of(r, "scene.yaml", path, error);
@@ -209,8 +208,8 @@ static scree_status on_begin(void *context, scree_scene *scene, bool resumed, sc
            *source ? "  " : "", cli_printable(source, shown));
   }
   print_walls(scene);
-  printf("  time step %s\n", (scree_scene_time_step_reason(scene, reason), reason));
-  print_forecast(scene);
+  printf("  time step %s\n", r->forecast.time_step_reason);
+  print_forecast(r->forecast);
   if (resumed) printf("  goes on at %.6g s\n", scree_world_time(scree_scene_view(scene)));
   cli_flush();
   return SCREE_OK;

@@ -25,6 +25,7 @@ typedef struct cli_scene_run {
   bool common_page; /* one of several, which get one report together */
   const char *name; /* of this one among several; NULL: it is the only one */
   scree_scene *scene;
+  scree_scene_forecast forecast;
   cli_frames frames;
 } cli_scene_run;
 

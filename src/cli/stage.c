@@ -1,4 +1,5 @@
 #include "cli/stage.h"
+#include "base/file.h"
 #include "base/platform.h"
 #include "cli/output.h"
 

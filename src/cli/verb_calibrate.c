@@ -1,6 +1,7 @@
 /* scree calibrate: parameters from measurements. scree optimise differs in its words only. */
 #include "cli/calibrate.h"
 #include "cli/terminal.h"
+#include "report/program.h"
 
 #include <string.h>
 

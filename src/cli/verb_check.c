@@ -2,6 +2,7 @@
 #include "cli/input.h"
 #include "cli/surface.h"
 #include "cli/terminal.h"
+#include "report/program.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,6 +2,7 @@
 #include "cli/grid.h"
 #include "cli/surface.h"
 #include "cli/terminal.h"
+#include "report/program.h"
 #include "report/provenance.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 /* scree clump: spheres for a scan, and how many. */
 #include "cli/clump_files.h"
 #include "cli/terminal.h"
+#include "report/program.h"
 #include "report/provenance.h"
 
 #include <math.h>

@@ -4,6 +4,7 @@
 #include "cli/input.h"
 #include "cli/surface.h"
 #include "cli/terminal.h"
+#include "report/program.h"
 
 #include <math.h>
 #include <stdlib.h>

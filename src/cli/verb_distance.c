@@ -1,6 +1,7 @@
 /* scree distance: how far two surfaces are apart. */
 #include "cli/input.h"
 #include "cli/terminal.h"
+#include "report/program.h"
 
 #include <stdio.h>
 

@@ -4,6 +4,7 @@
 #include "cli/clump_surface.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
+#include "report/program.h"
 
 #include <math.h>
 #include <stdlib.h>

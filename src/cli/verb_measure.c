@@ -2,6 +2,7 @@
 #include "cli/input.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
+#include "report/program.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,6 +3,7 @@
 #include "cli/output.h"
 #include "cli/pile_measured.h"
 #include "cli/scene_run.h"
+#include "report/program.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,6 +3,7 @@
 #include "cli/output.h"
 #include "cli/surface.h"
 #include "cli/terminal.h"
+#include "report/program.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* scree study: many runs. */
 #include "cli/study.h"
 #include "cli/terminal.h"
+#include "report/program.h"
 
 #include <stdlib.h>
 #include <string.h>

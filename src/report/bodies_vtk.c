@@ -2,6 +2,7 @@
  * and each shape once, for glyphs. */
 #include "base/alloc.h"
 #include "base/vec.h"
+#include "report/program.h"
 #include "report/shapes.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
 #include "base/arena.h"
 #include "base/file.h"
 #include "report/plot.h"
+#include "report/program.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* Checks and repairs as JSON. */
 #include "base/file.h"
 #include "report/json.h"
+#include "report/program.h"
 
 static void json_check(scree_json *json, const char *key, const scree_check *check) {
   scree_json_object(json, key);

@@ -5,6 +5,7 @@
 #include "base/number.h"
 #include "report/choice.h"
 #include "report/plot.h"
+#include "report/program.h"
 
 #include "base/alloc.h"
 

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "report/csv.h"
 #include "report/json.h"
+#include "report/program.h"
 
 #include <math.h>
 
@@ -45,11 +46,13 @@ static void json_sentences(scree_json *json, const char *key, const scree_choice
 }
 
 static void json_changes(scree_json *json, const scree_fidelity *fidelity, size_t row) {
+#define NAME(name, text) text,
+  static const char *const names[] = {SCREE_CHANGE_LIST(NAME)};
+#undef NAME
   scree_json_row_object(json, "changes");
   for (int k = 0; k < SCREE_CHANGE_COUNT; k++) {
     double change = scree_fidelity_change(fidelity, row, (scree_shape_change)k);
-    if (isfinite(change))
-      scree_json_number(json, scree_shape_change_name((scree_shape_change)k), change);
+    if (isfinite(change)) scree_json_number(json, names[k], change);
   }
   scree_json_end(json);
 }

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "report/choice.h"
+#include "report/program.h"
 
 #include <math.h>
 #include <stdarg.h>

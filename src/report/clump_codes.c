@@ -7,6 +7,7 @@
  * writes as gsp_config.csv. */
 #include "base/file.h"
 #include "base/vec.h"
+#include "report/program.h"
 
 #include <string.h>
 

@@ -2,6 +2,7 @@
  * stands at the recommended count. */
 #include "base/alloc.h"
 #include "report/plot.h"
+#include "report/program.h"
 
 enum { NOTE_BYTES = 256 };
 

@@ -2,6 +2,7 @@
 #include "base/file.h"
 #include "report/csv.h"
 #include "report/json.h"
+#include "report/program.h"
 
 #include <math.h>
 

@@ -1,6 +1,7 @@
 /* Heaps as JSON: those of scenes, and those that were measured (docs/reference/formats.md). */
 #include "base/file.h"
 #include "report/json.h"
+#include "report/program.h"
 
 static void put_way(scree_json *json, const char *key, double deg, double sd_deg, size_t count) {
   scree_json_row_object(json, key);

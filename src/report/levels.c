@@ -7,6 +7,7 @@
  * What fits is found by trying: the levels get their share first, the scan what is left of
  * byte_limit, and where the scan needs more, the first level of the curve that does not. */
 #include "report/levels.h"
+#include "report/program.h"
 
 #include "base/alloc.h"
 #include "base/file.h"

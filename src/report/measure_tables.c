@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "report/csv.h"
 #include "report/json.h"
+#include "report/program.h"
 
 typedef enum kind { REAL, COUNT, SIGNED, FLAG, CLASS } kind;
 /* What a field needs to exist. */

@@ -13,6 +13,7 @@
 #include "report/json.h"
 #include "report/json_check.h"
 #include "report/page_parts.h"
+#include "report/program.h"
 #include "report/shapes.h"
 
 #include <stdlib.h>

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "report/csv.h"
 #include "report/json.h"
+#include "report/program.h"
 #include "report/shapes.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 /* Figures of a study, in the manner of the paper's Figs. 5, 7 and 8. */
 #include "base/arena.h"
 #include "report/plot.h"
+#include "report/program.h"
 
 #include <math.h>
 #include <string.h>

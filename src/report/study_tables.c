@@ -3,6 +3,7 @@
 #include "base/number.h"
 #include "report/csv.h"
 #include "report/json.h"
+#include "report/program.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* Pictures of worlds and heaps: the bodies as items of the ray tracer. */
 #include "base/alloc.h"
 #include "base/vec.h"
+#include "report/program.h"
 #include "report/shapes.h"
 
 #include <math.h>

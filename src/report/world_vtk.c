@@ -2,6 +2,7 @@
  * first, then filled into one block per array, then written. */
 #include "base/array.h"
 #include "base/vec.h"
+#include "report/program.h"
 #include "report/shapes.h"
 
 #include <math.h>

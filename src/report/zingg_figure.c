@@ -1,6 +1,7 @@
 /* Zingg's plot: a point a body, the lines at 2/3 between his four classes. */
 #include "base/alloc.h"
 #include "report/plot.h"
+#include "report/program.h"
 
 static void gather(const scree_measure_entry *entries, size_t entry_count, double *x, double *y,
                    size_t *count) {

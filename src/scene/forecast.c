@@ -191,6 +191,9 @@ void scree_scene_foretell(const scree_scene *scene, scree_scene_forecast *foreca
   scree_scene_forecast f = {0};
   double time = duration_of(scene), seconds = 0, triangles = 0;
   f.step_count = ceil(time / scene->time_step);
+  f.frame_interval = scene->plan.output->frames;
+  f.frames_are_instances = scene->plan.output->bodies == 0;
+  (void)scree_world_time_step(scene->gallery, f.time_step_reason);
   f.body_count = (double)scene->shape_of.count; /* from a table, or before it goes on */
   for (size_t i = 0; i < scene->plan.inlets.count; i++) {
     f.body_count -= (double)scene->inlets[i].entered;

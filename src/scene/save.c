@@ -5,6 +5,7 @@
  * contacts is kept as a number. */
 #include "scene/grid.h"
 #include "scene/impacts.h"
+#include "scene/scene.h"
 #include "world/checkpoint.h"
 
 #include "base/alloc.h"

@@ -588,15 +588,6 @@ const char *scree_scene_title(const scree_scene *scene) {
 const char *scree_scene_text(const scree_scene *scene) {
   return scene->text;
 }
-double scree_scene_frame_interval(const scree_scene *scene) {
-  return scene->plan.output->frames;
-}
-bool scree_scene_frames_are_instances(const scree_scene *scene) {
-  return scene->plan.output->bodies == 0;
-}
-double scree_scene_time_step_reason(const scree_scene *scene, char reason[256]) {
-  return scree_world_time_step(scene->gallery, reason);
-}
 scree_world *scree_scene_world(scree_scene *scene) {
   return scene->world;
 }

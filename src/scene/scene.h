@@ -459,4 +459,9 @@ static inline quat scree_body_turn(const scree_body *body) {
                 body->orientation[3]};
 }
 
+/* Writes a frame: the same without the contacts, a fraction of the size; it can be measured and
+ * drawn, not continued. */
+scree_status scree_scene_save_frame(const scree_scene *scene, const char *path, bool overwrite,
+                                    scree_error *error);
+
 #endif

@@ -3,6 +3,7 @@
 #include "base/array.h"
 #include "base/number.h"
 #include "study/database.h"
+#include "study/study.h"
 
 #include <math.h>
 #include <sqlite3.h>

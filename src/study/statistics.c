@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/sum.h"
 #include "study/special.h"
+#include "study/study.h"
 
 #include <float.h>
 

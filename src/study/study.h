@@ -168,4 +168,14 @@ scree_status scree_study_command_word(const scree_study *study, size_t run, size
 char *scree_study_path(const scree_study *study, const char *kind, const char *name,
                        const char *ending);
 
+/* confidence in (0, 1), for example 0.95: of normally distributed values. */
+scree_summary scree_summarise(const double *values, size_t count, double confidence);
+/* SCREE_BAD_ARGUMENT with fewer than two different x above zero. */
+scree_status scree_fit_power(const double *x, const double *y, size_t count, double confidence,
+                             scree_power_law *fit, scree_error *error);
+/* degree 0 to SCREE_POLYNOMIAL_DEGREE; SCREE_BAD_ARGUMENT with fewer than degree + 1 different x.
+ */
+scree_status scree_fit_polynomial(const double *x, const double *y, size_t count, int degree,
+                                  scree_polynomial *fit, scree_error *error);
+
 #endif

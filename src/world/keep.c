@@ -3,6 +3,7 @@
  * older than the failure, since the failing step has already changed the contacts' memory; being
  * exact, it leads there again. */
 #include "world/checkpoint.h"
+#include "world/world.h"
 
 #include "base/alloc.h"
 #include "base/seal.h"

@@ -526,4 +526,14 @@ static inline bool scree_pair_stays_awake(const scree_pair *p) {
   return p->active.count > 0 || p->depth > 0 || p->depenetrating || p->substeps > 1 || p->touching;
 }
 
+/* For runs that may leave the model's range: from now on a checkpoint of the state is kept in
+ * memory every step_interval steps, and where scree_world_step fails (SCREE_DIVERGED, no memory, a
+ * device that is lost) the last one is written to path, replacing what is there, and named in the
+ * message. Loaded, it goes on with the same bits, into the same failure where that was the world's:
+ * one to look closely at what happened. path NULL: no longer.
+ * Not part of checkpoints. Cost: a checkpoint's memory, and the time of making one (about 10 ms for
+ * a thousand bodies) every interval. */
+scree_status scree_world_keep(scree_world *world, const char *path, uint64_t step_interval,
+                              scree_error *error);
+
 #endif

@@ -1,6 +1,7 @@
 /* Reading of what calls itself glTF, and of whatever stands as the model of a 3MF: the archive is
  * made here, so that its CRC-32 fits. */
 #include "fuzz/reading.h"
+#include "mesh/io/read.h"
 
 enum { MOST_BYTES = 1 << 16 };
 static const char name[] = "3D/3dmodel.model";

@@ -3,6 +3,7 @@
 #define SCREE_FUZZ_READING_H
 
 #include "fuzz/fuzz.h"
+#include "mesh/io/read.h"
 #include "scree.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 /* Writes seeds for the targets whose files only the present program can write, so that a change of
  * their format does not leave the targets with files that all are refused at the first bytes:
  * FOLDER/checkpoint and FOLDER/scene, which must be there. */
+#include "scene/scene.h"
 #include "support/shapes.h"
 
 #include <stdio.h>

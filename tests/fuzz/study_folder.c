@@ -3,6 +3,7 @@
  * its tables. Opened, looked at, analysed and reported, or refused in a sentence. */
 #define _GNU_SOURCE /* memfd_create, nftw */
 #include "fuzz/folder.h"
+#include "report/program.h"
 #include "study/database.h"
 #include "study/lease.h"
 

@@ -1,4 +1,5 @@
 #include "support/alloc_fail.h"
+#include "base/error.h"
 
 #include "support/check.h"
 

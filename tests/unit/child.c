@@ -1,6 +1,7 @@
 /* Work in a child process: its answer, and every way in which it can fail. */
 #define _DEFAULT_SOURCE
 #include "base/child.h"
+#include "base/error.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 

@@ -1,6 +1,7 @@
 /* Greedy methods, and what clumps are written to: tables, figures, particles, other codes. */
 #include "base/rng.h"
 #include "base/vec.h"
+#include "report/program.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/folder.h"

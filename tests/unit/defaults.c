@@ -1,5 +1,7 @@
 /* What the header promises of every call: NULL for its options is the defaults, nobody need watch
  * or be told. */
+#include "choice/criterion.h"
+#include "mesh/io/read.h"
 #include "scree.h"
 #include "support/check.h"
 #include "support/folder.h"

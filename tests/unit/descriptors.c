@@ -1,5 +1,6 @@
 /* Shape descriptors against closed forms: spheres, boxes, ellipsoids. */
 #include "base/vec.h"
+#include "report/program.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/folder.h"

@@ -1,6 +1,7 @@
 /* Errors of levels against scree_mesh_distance with dense samples, and against closed forms; the
  * recommended level keeps every tolerance by a measurement that shares no code with the choice's
  * own. */
+#include "choice/fidelity.h"
 #include "choice/recommend.h"
 #include "choice/spread.h"
 #include "mesh/index/ray.h"

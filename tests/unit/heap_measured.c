@@ -2,6 +2,7 @@
  * size; their outlines; silhouettes painted at a tilt with specks; and what is none of these. */
 #include "base/alloc.h"
 #include "base/vec.h"
+#include "report/program.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/folder.h"

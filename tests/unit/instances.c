@@ -1,5 +1,6 @@
 /* Frames of instances: what a reader finds at the offsets that the file names, against the world;
  * the force and the stress of a ball at rest; the size of a file. */
+#include "report/program.h"
 #include "support/folder.h"
 #include "support/scene.h"
 

@@ -3,6 +3,7 @@
  * is lost. */
 #include "support/check.h"
 #include "support/mixed.h"
+#include "world/world.h"
 
 #include <dlfcn.h>
 #include <unistd.h>

@@ -1,6 +1,7 @@
 /* The report's file of levels: read back by a plain decoder here, every level from it is the
  * curve's own to half a step of the grid; limits hold; damage and failing memory are told. */
 #include "report/page_parts.h"
+#include "report/program.h"
 
 #include "base/alloc.h"
 #include "base/codec.h"

@@ -4,6 +4,7 @@
 #define _XOPEN_SOURCE 700 /* setenv */
 #include "base/alloc.h"
 #include "base/file.h"
+#include "report/program.h"
 #include "support/check.h"
 #include "support/folder.h"
 #include "support/shapes.h"

@@ -1,5 +1,6 @@
 /* Memory running out in a calibration: every public call refuses with a sentence and leaks nothing.
  */
+#include "report/program.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/folder.h"

@@ -1,5 +1,7 @@
 /* Memory running out in meshes, curves, the choice and reports: every public call refuses with a
  * sentence, leaks nothing and leaves no file half-written. tests/allocations.sh keeps the list. */
+#include "choice/fidelity.h"
+#include "report/program.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/folder.h"

@@ -2,6 +2,7 @@
  * refuses with a sentence, leaks nothing and leaves no file half-written. tests/allocations.sh
  * keeps the list. */
 #include "base/file.h"
+#include "report/program.h"
 #include "report/provenance.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"

@@ -1,5 +1,7 @@
 /* Memory running out in scenes of templates and studies: every public call refuses with a
  * sentence and leaks nothing; a study goes on afterwards. tests/allocations.sh keeps the list. */
+#include "report/program.h"
+#include "scene/scene.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/folder.h"

@@ -1,8 +1,10 @@
 /* Memory running out in particles, worlds, checkpoints and runs: every public call refuses with a
  * sentence, leaks nothing and leaves no file half-written. tests/allocations.sh keeps the list. */
+#include "study/study.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/shapes.h"
+#include "world/world.h"
 
 #include <unistd.h>
 

@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "mesh/io/polygon.h"
+#include "mesh/io/read.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 

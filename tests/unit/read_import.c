@@ -1,6 +1,8 @@
 /* 3MF, glTF and the rest: small files made here, their units and placements, and what hostile ones
  * cost. In a build without assimp the rest is refused by name. */
+#include "base/error.h"
 #include "base/rng.h"
+#include "mesh/io/read.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/folder.h"

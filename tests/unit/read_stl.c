@@ -1,5 +1,6 @@
 /* STL: every trap of the format, and the sentences for what is no STL. */
 #include "base/alloc.h"
+#include "mesh/io/read.h"
 #include "support/check.h"
 
 typedef struct buffer {

@@ -8,6 +8,7 @@
 #include "report/csv.h"
 #include "report/json.h"
 #include "report/plot.h"
+#include "report/program.h"
 #include "support/check.h"
 #include "support/folder.h"
 

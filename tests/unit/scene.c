@@ -3,6 +3,7 @@
  * shares and rates; what is killed leaves a checkpoint that goes on. */
 #include "base/file.h"
 #include "base/platform.h"
+#include "report/program.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/folder.h"

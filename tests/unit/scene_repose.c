@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/rng.h"
 #include "base/yaml.h"
+#include "scene/scene.h"
 #include "support/check.h"
 #include "support/folder.h"
 #include "support/pot.h"

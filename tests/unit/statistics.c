@@ -1,6 +1,7 @@
 #include "base/rng.h"
 #include "scree.h"
 #include "study/special.h"
+#include "study/study.h"
 #include "support/check.h"
 
 #define RELATIVE(got, expected, tolerance) CHECK_NEAR(got, expected, (tolerance)*fabs(expected))

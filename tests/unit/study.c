@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/rng.h"
 #include "base/yaml.h"
+#include "report/program.h"
 #include "scene/scene.h"
 #include "study/design.h"
 #include "study/lease.h"

@@ -1,5 +1,6 @@
 /* What a study says of runs whose answer is known: records are written as by workers, gathered into
  * the database, analysed and drawn. */
+#include "report/program.h"
 #include "study/record.h"
 #include "study/special.h"
 #include "study/study.h"

@@ -1,6 +1,7 @@
 /* Wear is the work of sliding, whatever lay in the memory of the program before: bricks so soft
  * that the box parts from some of them, by an allocator that hands out large numbers. Files of the
  * walls are written in between, and change nothing. */
+#include "report/program.h"
 #include "scree.h"
 #include "support/check.h"
 #include "support/folder.h"

@@ -1,4 +1,5 @@
 /* What is written and read again is the same mesh, in every format. */
+#include "mesh/io/write.h"
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "support/alloc_fail.h"

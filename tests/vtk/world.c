@@ -1,6 +1,8 @@
 /* Makes a small world of boxes, a sphere and a clump on walls of every kind, writes every view of
  * it into the folder named, and its state as JSON to stdout, told by the public calls one by one.
  */
+#include "report/program.h"
+#include "scene/scene.h"
 #include "scree.h"
 
 #include <math.h>

@@ -5,6 +5,7 @@
  * to the program, which is in the same module. */
 #include "cli/surface.h"
 #include "report/page_parts.h"
+#include "report/program.h"
 #include "report/provenance.h"
 
 #include <emscripten.h>

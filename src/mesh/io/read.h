@@ -68,4 +68,9 @@ scree_status scree_reading_weld(scree_reading *r, const double *corner_positions
 scree_status scree_reading_weld_faces(scree_reading *r, const double *positions,
                                       size_t position_count, scree_face_list *faces);
 
+/* The same for byte_count bytes in memory; name stands for the file in errors. */
+scree_status scree_scan_parse(const void *bytes, size_t byte_count, const char *name,
+                              const scree_read_options *options, scree_scan *scan,
+                              scree_error *error);
+
 #endif

@@ -37,4 +37,7 @@ const char *scree_3mf_unit(double *unit_m);
 /* The whole file, its unit one of these; errors are the stream's. */
 void scree_write_3mf(const scree_writing *w);
 
+/* The format's name as in the comments above ("auto" for SCREE_FORMAT_AUTO). */
+const char *scree_file_format_name(scree_file_format format);
+
 #endif

@@ -7,4 +7,6 @@
 /* A coordinate is not finite, or beyond what exact predicates bear. */
 bool scree_vertex_is_bad(const double *position);
 
+bool scree_defect_is_grave(scree_defect defect);
+
 #endif
