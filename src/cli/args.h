@@ -36,6 +36,9 @@ typedef struct cli_option {
   double minimum, maximum; /* of a number; both 0: any value not below 0 */
   const char *words;       /* CLI_CHOICE, CLI_COUNT; else NULL */
 } cli_option;
+/* A row of a table that a macro holds. */
+#define CLI_ROW(...)                                                                               \
+  { __VA_ARGS__ }
 
 struct cli_call;
 

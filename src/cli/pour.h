@@ -65,8 +65,7 @@ typedef struct cli_pour_arguments {
     "none|surfaces|points|contacts|walls|all")                                                     \
   X("json", CLI_FLAG, json, NULL, "Print result.json instead of text.", 0, 0, NULL)                \
   X("no-picture", CLI_FLAG, no_picture, NULL, "Do not write scene.png.", 0, 0, NULL)               \
-  X("rays", CLI_COUNT, rays, "N", "Rays a pixel of scene.png. Default: 24.", 1, 65536, NULL)       \
-  X("unit", CLI_UNIT, source.unit, "UNIT", "The files' unit of length. Default: mm.", 0, 0, NULL)
+  X("rays", CLI_COUNT, rays, "N", "Rays a pixel of scene.png. Default: 24.", 1, 65536, NULL)
 #define CLI_POUR_PARTNERS                                                                          \
   "method:rp resolution:sample:|samples noise:sample:|samples sample-seed:sample:|samples "        \
   "rp::|samples count::|samples clump::|samples spheres::|samples no-repair::|samples "            \

@@ -25,20 +25,12 @@ typedef struct cli_soundness {
 
 /* Their rows in the option table of a verb whose struct `type` has the member `soundness`. */
 #define CLI_SOUNDNESS_OPTIONS(type)                                                                \
-  {"no-repair",                                                                                    \
-   CLI_FLAG,                                                                                       \
-   offsetof(type, soundness.no_repair),                                                            \
-   NULL,                                                                                           \
-   "Refuse a scan that is no closed surface instead of repairing it.",                             \
-   0,                                                                                              \
-   0,                                                                                              \
-   NULL},                                                                                          \
-  {                                                                                                \
-    "unchecked", CLI_FLAG, offsetof(type, soundness.unchecked), NULL,                              \
-        "Take the scan as it is, neither checked nor repaired: an open surface stays open, and "   \
-        "what meets itself may go on doing so.",                                                   \
-        0, 0, NULL                                                                                 \
-  }
+  CLI_ROW("no-repair", CLI_FLAG, offsetof(type, soundness.no_repair), NULL,                        \
+          "Refuse a scan that is no closed surface instead of repairing it.", 0, 0, NULL),         \
+      CLI_ROW("unchecked", CLI_FLAG, offsetof(type, soundness.unchecked), NULL,                    \
+              "Take the scan as it is, neither checked nor repaired: an open surface stays open, " \
+              "and what meets itself may go on doing so.",                                         \
+              0, 0, NULL)
 
 /* The call's first input as the options ask, as cli_load_closed gives it; repairs are said on
  * stderr, unless it is quiet. */

@@ -13,11 +13,9 @@ typedef struct check_arguments {
 } check_arguments;
 
 static const cli_option options[] = {
-    {"unit", CLI_UNIT, offsetof(check_arguments, source.unit), "UNIT",
-     "The files' unit of length. Default: mm.", 0, 0, NULL},
     {"fast", CLI_FLAG, offsetof(check_arguments, fast), NULL, "Do not look for self-intersections.",
      0, 0, NULL},
-    CLI_SAMPLE_OPTIONS(check_arguments, source),
+    CLI_SOURCE_OPTIONS(check_arguments),
     {"json", CLI_FLAG, offsetof(check_arguments, json), NULL, "Print JSON instead of text.", 0, 0,
      NULL},
 };
@@ -118,10 +116,7 @@ const cli_verb cli_verb_check = {
         "Exit code 0 where every file can serve, 1 where one cannot or could not be read.",
     .examples = "scree check scan.stl\n"
                 "scree check --json -u m *.ply\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof(check_arguments),
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 1,
     .input_maximum = SIZE_MAX,
     .partners = CLI_SAMPLE_PARTNERS,

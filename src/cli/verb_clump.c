@@ -37,11 +37,9 @@ static const cli_option options[] = {
      "Fit to the surface decimated to so many triangles: spheres show no finer detail. Default: "
      "2000; all with --inside and --outside.",
      100, 1000000, NULL},
-    {"unit", CLI_UNIT, AT(source.unit), "UNIT",
-     "The files' unit of length, which clumps are written in, too. Default: mm.", 0, 0, NULL},
     {"no-repair", CLI_FLAG, AT(no_repair), NULL,
      "Refuse scans that are no closed surface instead of repairing them.", 0, 0, NULL},
-    CLI_SAMPLE_OPTIONS(clump_arguments, source),
+    CLI_SOURCE_OPTIONS(clump_arguments),
     {"json", CLI_FLAG, AT(json), NULL, "Print JSON instead of text, with every clump.", 0, 0, NULL},
     {"csv", CLI_FLAG, AT(csv), NULL, "Print CSV instead of text: a row per number of spheres.", 0,
      0, NULL},

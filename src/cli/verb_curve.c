@@ -36,10 +36,8 @@ static const cli_option options[] = {
      "Comma-separated values in SI units, full digits.", 0, 0, NULL},
     {"json", CLI_FLAG, offsetof(curve_arguments, json), NULL,
      "JSON in SI units: one object with the levels in an array.", 0, 0, NULL},
-    {"unit", CLI_UNIT, offsetof(curve_arguments, source.unit), "UNIT",
-     "Unit of the coordinates in the file: m, cm, mm, um, inch, ft, km. Default: mm.", 0, 0, NULL},
     CLI_SOUNDNESS_OPTIONS(curve_arguments),
-    CLI_SAMPLE_OPTIONS(curve_arguments, source),
+    CLI_SOURCE_OPTIONS(curve_arguments),
 };
 
 static const curve_arguments defaults = {.source = CLI_SOURCE_DEFAULTS, .grid = CLI_GRID_DEFAULT};

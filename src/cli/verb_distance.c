@@ -15,8 +15,6 @@ typedef struct distance_arguments {
 static const distance_arguments defaults = {.source = CLI_SOURCE_DEFAULTS, .gap = 0.01};
 
 static const cli_option options[] = {
-    {"unit", CLI_UNIT, offsetof(distance_arguments, source.unit), "UNIT",
-     "The files' unit of length, which the text is given in, too. Default: mm.", 0, 0, NULL},
     {"points", CLI_COUNT, offsetof(distance_arguments, points), "N",
      "Parts that each surface is cut in, every facet at least one. Default: the greater vertex "
      "count, at least 10,000, and more until the means are exact to 1 %.",
@@ -27,7 +25,7 @@ static const cli_option options[] = {
      0, 1e6, NULL},
     {"one-way", CLI_FLAG, offsetof(distance_arguments, one_way), NULL,
      "Only from A to B, not back.", 0, 0, NULL},
-    CLI_SAMPLE_OPTIONS(distance_arguments, source),
+    CLI_SOURCE_OPTIONS(distance_arguments),
     {"json", CLI_FLAG, offsetof(distance_arguments, json), NULL, "JSON: one object, in metres.", 0,
      0, NULL},
 };
@@ -92,8 +90,7 @@ const cli_verb cli_verb_distance = {
         "Measures how far the points of A lie from the surface of B, and back: mean and root mean "
         "square over the area, the largest found, and a bound that no point exceeds. As Metro "
         "does, but nothing is random: the same files give the same digits. sample:NAME stands for "
-        "a "
-        "built-in sample.",
+        "a built-in sample. Text is in the files' unit.",
     .examples = "scree distance scan.stl simplified.stl\n"
                 "scree distance --gap 0.001 --json scan.stl simplified.stl\n",
     CLI_OPTIONS(options, defaults),

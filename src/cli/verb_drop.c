@@ -60,7 +60,7 @@ static const cli_option options[] = {
     {"particles", CLI_COUNT, CLI_POUR_AT(each), "COUNT",
      "Particles of a shape without =COUNT. Default: 30.", 1, 10000000, NULL},
     CLI_POUR_OPTIONS(CLI_POUR_OPTION) SETTINGS(CLI_SETTING_OPTION)
-        CLI_SAMPLE_OPTIONS(cli_pour_arguments, source)};
+        CLI_SOURCE_OPTIONS(cli_pour_arguments)};
 
 static int run(const cli_call *call) {
   const cli_pour_arguments *a = call->options;

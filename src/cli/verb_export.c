@@ -59,9 +59,7 @@ static const cli_option options[] = {
      "For .vtp of a checkpoint: surfaces (every triangle in its place), points (one per body, with "
      "quaternion and velocities), contacts (lines with forces) or walls. Default: surfaces.",
      0, 0, "surfaces|points|contacts|walls"},
-    {"unit", CLI_UNIT, AT(source.unit), "UNIT", "The input's unit of length. Default: mm.", 0, 0,
-     NULL},
-    CLI_SAMPLE_OPTIONS(export_arguments, source),
+    CLI_SOURCE_OPTIONS(export_arguments),
     {"force", CLI_FLAG, AT(overwrite), NULL, "Overwrite existing files.", 0, 0, NULL},
 };
 

@@ -18,13 +18,11 @@ typedef struct measure_arguments {
 static const measure_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};
 
 static const cli_option options[] = {
-    {"unit", CLI_UNIT, offsetof(measure_arguments, source.unit), "UNIT",
-     "The files' unit of length, which the text is given in, too. Default: mm.", 0, 0, NULL},
     {"weld", CLI_SHARE, offsetof(measure_arguments, weld), "SHARE",
      "Unite vertices closer than this share of the bounding box diagonal. Default: 0, only equal "
      "ones.",
      0, 0.1, NULL},
-    CLI_SAMPLE_OPTIONS(measure_arguments, source),
+    CLI_SOURCE_OPTIONS(measure_arguments),
     {"json", CLI_FLAG, offsetof(measure_arguments, json), NULL,
      "JSON: one array, an object per file, in SI units.", 0, 0, NULL},
     {"csv", CLI_FLAG, offsetof(measure_arguments, csv), NULL, "CSV: one row per file, in SI units.",

@@ -56,9 +56,7 @@ static const cli_option options[] = {
     {"no-ground", CLI_FLAG, AT(no_ground), NULL, "No floor and no shadow on it.", 0, 0, NULL},
     {"no-captions", CLI_FLAG, AT(no_captions), NULL,
      "No file name and triangle count below each view.", 0, 0, NULL},
-    {"unit", CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0, 0,
-     NULL},
-    CLI_SAMPLE_OPTIONS(render_arguments, source),
+    CLI_SOURCE_OPTIONS(render_arguments),
     {"force", CLI_FLAG, AT(overwrite), NULL, "Overwrite an existing file.", 0, 0, NULL},
 };
 

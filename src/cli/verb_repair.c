@@ -23,8 +23,6 @@ typedef struct repair_arguments {
 static const cli_option options[] = {
     {"output", CLI_TEXT, AT(output), "FILE",
      "Where the repaired surface goes: .stl, .ply, .obj, .off or .3mf.", 0, 0, NULL},
-    {"unit", CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0, 0,
-     NULL},
     {"seam", CLI_SHARE, AT(seam_tolerance), "SHARE",
      "Boundary vertices no farther apart than this share of the bounding box diagonal may be "
      "united to close a seam. Default: 1e-4.",
@@ -72,7 +70,7 @@ static const cli_option options[] = {
      0, 1, NULL},
     {"fast", CLI_FLAG, AT(fast), NULL,
      "Do not look for self-intersections: the result may have some.", 0, 0, NULL},
-    CLI_SAMPLE_OPTIONS(repair_arguments, source),
+    CLI_SOURCE_OPTIONS(repair_arguments),
     {"json", CLI_FLAG, AT(json), NULL, "Print JSON instead of text.", 0, 0, NULL},
     {"force", CLI_FLAG, AT(force), NULL, "Overwrite an existing file.", 0, 0, NULL},
 };
@@ -218,10 +216,7 @@ const cli_verb cli_verb_repair = {
     .examples = "scree repair scan.stl -o closed.stl\n"
                 "scree repair scan.ply -o closed.ply --large-holes --largest\n"
                 "scree repair rock-on-table.obj --cut-plane auto -o rock.ply\n",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .defaults = &defaults,
-    .options_size = sizeof(repair_arguments),
+    CLI_OPTIONS(options, defaults),
     .input_minimum = 1,
     .input_maximum = 1,
     .partners = "flat:large-holes " CLI_SAMPLE_PARTNERS,

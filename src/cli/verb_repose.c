@@ -70,7 +70,7 @@ static const cli_option options[] = {
      "scene.png and report.html; with several runs, a folder in it for each, and one report.html.",
      0, 0, NULL},
     CLI_POUR_OPTIONS(CLI_POUR_OPTION) SETTINGS(CLI_SETTING_OPTION)
-        CLI_SAMPLE_OPTIONS(cli_pour_arguments, source)};
+        CLI_SOURCE_OPTIONS(cli_pour_arguments)};
 
 static int run(const cli_call *call) {
   const cli_pour_kind kind = {"repose", settings, SETTING_COUNT, true};

@@ -51,10 +51,8 @@ static const cli_option options[] = {
      "Also write mass, centre of mass and inertia of the result at this density in kg/m3 into a "
      ".json of the same name, as export does. The surface must be closed.",
      1e-6, 1e6, NULL},
-    {"unit", CLI_UNIT, offsetof(simplify_arguments, source.unit), "UNIT",
-     "Unit of the coordinates in the files: m, cm, mm, um, inch, ft, km. Default: mm.", 0, 0, NULL},
     CLI_SOUNDNESS_OPTIONS(simplify_arguments),
-    CLI_SAMPLE_OPTIONS(simplify_arguments, source),
+    CLI_SOURCE_OPTIONS(simplify_arguments),
     {"force", CLI_FLAG, offsetof(simplify_arguments, force), NULL, "Overwrite an existing file.", 0,
      0, NULL},
 };

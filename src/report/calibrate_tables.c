@@ -163,12 +163,6 @@ void scree_calibration_print(const scree_calibration_result *result, FILE *strea
 
 /* ---- JSON ---- */
 
-static void put_numbers(scree_json *json, const char *key, const double *values, size_t count) {
-  scree_json_row_array(json, key);
-  for (size_t i = 0; i < count; i++) scree_json_number(json, NULL, values[i]);
-  scree_json_end(json);
-}
-
 static void put_parameters(scree_json *json, const scree_calibration_result *r) {
   scree_json_array(json, "parameters");
   for (size_t k = 0; k < r->parameter_count; k++) {
@@ -203,8 +197,8 @@ static void put_trades(scree_json *json, const scree_calibration_result *r) {
     scree_json_text(json, "b", r->parameters[t->b].name);
     scree_json_number(json, "correlation", t->correlation);
     scree_json_number(json, "share", t->share);
-    put_numbers(json, "one_end", t->ends[0], 2);
-    put_numbers(json, "other_end", t->ends[1], 2);
+    scree_json_numbers(json, "one_end", t->ends[0], 2);
+    scree_json_numbers(json, "other_end", t->ends[1], 2);
     scree_json_end(json);
   }
   scree_json_end(json);
@@ -237,11 +231,11 @@ static void put_answer(scree_json *json, const scree_answer_result *a) {
   scree_json_number(json, "high", a->check_high);
   scree_json_end(json);
   if (a->point_count) {
-    put_numbers(json, "x", a->x, a->point_count);
-    put_numbers(json, "y", a->y, a->point_count);
-    put_numbers(json, "curve_mean", a->curve_mean, a->point_count);
-    put_numbers(json, "curve_low", a->curve_low, a->point_count);
-    put_numbers(json, "curve_high", a->curve_high, a->point_count);
+    scree_json_numbers(json, "x", a->x, a->point_count);
+    scree_json_numbers(json, "y", a->y, a->point_count);
+    scree_json_numbers(json, "curve_mean", a->curve_mean, a->point_count);
+    scree_json_numbers(json, "curve_low", a->curve_low, a->point_count);
+    scree_json_numbers(json, "curve_high", a->curve_high, a->point_count);
     scree_json_number(json, "unexplained", a->unexplained);
   }
   scree_json_end(json);
@@ -253,7 +247,7 @@ static void put_advice(scree_json *json, const scree_calibration_result *r) {
     scree_json_object(json, NULL);
     scree_json_text(json, "name", r->advice[i].name);
     scree_json_count(json, "repeats", r->advice[i].repeat_count);
-    put_numbers(json, "narrowed", r->advice[i].narrowed, r->parameter_count);
+    scree_json_numbers(json, "narrowed", r->advice[i].narrowed, r->parameter_count);
     scree_json_count(json, "identified", r->advice[i].identified);
     scree_json_end(json);
   }
@@ -266,8 +260,8 @@ static void put_samples(scree_json *json, const scree_calibration_result *r) {
   size_t count = r->sample_count < MOST_ROWS ? r->sample_count : MOST_ROWS;
   scree_json_array(json, "samples");
   for (size_t i = 0; i < count; i++)
-    put_numbers(json, NULL, r->samples + i * r->sample_count / count * r->parameter_count,
-                r->parameter_count);
+    scree_json_numbers(json, NULL, r->samples + i * r->sample_count / count * r->parameter_count,
+                       r->parameter_count);
   scree_json_end(json);
 }
 
@@ -278,7 +272,7 @@ static void put_settings(scree_json *json, const scree_calibration_result *r) {
   for (size_t i = 0; i < r->setting_count; i++) {
     const scree_setting *c = &r->settings[i];
     scree_json_object(json, NULL);
-    put_numbers(json, "values", c->values, r->parameter_count);
+    scree_json_numbers(json, "values", c->values, r->parameter_count);
     scree_json_number(json, "mean", c->mean);
     scree_json_number(json, "low", c->low);
     scree_json_number(json, "high", c->high);
@@ -317,7 +311,7 @@ static void put_result(scree_json *json, const scree_calibration_result *r) {
   }
   scree_json_array(json, "history");
   for (size_t i = 0; i < r->history_count; i++)
-    put_numbers(json, NULL, r->history + i * width, width);
+    scree_json_numbers(json, NULL, r->history + i * width, width);
   scree_json_end(json);
   scree_json_array(json, "failures");
   for (size_t i = 0; i < r->failure_count; i++) scree_json_text(json, NULL, r->failures[i]);

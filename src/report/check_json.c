@@ -10,9 +10,7 @@ static void json_check(scree_json *json, const char *key, const scree_check *che
   scree_json_count(json, "triangle_count", check->triangle_count);
   scree_json_count(json, "vertex_count", check->vertex_count);
   scree_json_count(json, "shell_count", check->shell_count);
-  scree_json_row_array(json, "size");
-  for (int k = 0; k < 3; k++) scree_json_number(json, NULL, check->size[k]);
-  scree_json_end(json);
+  scree_json_numbers(json, "size", check->size, 3);
   if (check->volume_known)
     scree_json_number(json, "volume", check->volume);
   else

@@ -74,9 +74,7 @@ static void json_recommended(scree_json *json, const scree_choice_report *report
   scree_json_number(json, "level_eps_s", c->recommended.level_eps_s);
   json_errors(json, errors);
   json_changes(json, f, c->recommended_row);
-  scree_json_row_array(json, "farthest");
-  for (int k = 0; k < 3; k++) scree_json_number(json, NULL, at[k]);
-  scree_json_end(json);
+  scree_json_numbers(json, "farthest", at, 3);
   scree_json_text(json, "limited_by", scree_shape_error_name(c->limited_by));
   scree_json_number(json, "largest_over_tolerance", c->recommended.ip);
   json_sentences(json, "warnings", report, entry, scree_choice_warnings);

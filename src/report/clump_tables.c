@@ -58,12 +58,6 @@ static const column columns[] = {
 };
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
 
-static void json_reals(scree_json *json, const char *key, const double *values, int count) {
-  scree_json_row_array(json, key);
-  for (int i = 0; i < count; i++) scree_json_number(json, NULL, values[i]);
-  scree_json_end(json);
-}
-
 /* To a millionth of the size: shorter, and finer than any scan. */
 static double shortened(double value, double size) {
   double exponent = floor(log10(size)) - 6, unit = pow(10, -exponent);
@@ -102,11 +96,9 @@ static void json_body(scree_json *json, const scree_clumps *clumps) {
   const scree_measures *m = &clumps->measures;
   scree_json_number(json, "volume", m->volume);
   scree_json_number(json, "size", clumps->size);
-  json_reals(json, "centroid", m->centroid, 3);
-  json_reals(json, "principal_moments", m->principal_moments, 3);
-  scree_json_row_array(json, "principal_axes");
-  for (int k = 0; k < 3; k++) json_reals(json, NULL, m->principal_axes[k], 3);
-  scree_json_end(json);
+  scree_json_numbers(json, "centroid", m->centroid, 3);
+  scree_json_numbers(json, "principal_moments", m->principal_moments, 3);
+  scree_json_matrix(json, "principal_axes", m->principal_axes);
   scree_json_number(json, "thickness", clumps->thickness);
   scree_json_number(json, "wall_cells", clumps->wall_cells);
 }

@@ -34,9 +34,7 @@ void scree_json_repose(scree_json *json, const scree_repose *h) {
 
 static void put_ground(scree_json *json, const scree_ground *g) {
   scree_json_object(json, "ground");
-  scree_json_row_array(json, "up");
-  for (int k = 0; k < 3; k++) scree_json_number(json, NULL, g->up[k]);
-  scree_json_end(json);
+  scree_json_numbers(json, "up", g->up, 3);
   scree_json_number(json, "offset", g->offset);
   scree_json_number(json, "share", g->share);
   scree_json_number(json, "rms", g->rms);

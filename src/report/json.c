@@ -104,6 +104,18 @@ void scree_json_bool(scree_json *json, const char *key, bool value) {
   fputs(value ? "true" : "false", json->stream);
 }
 
+void scree_json_numbers(scree_json *json, const char *key, const double *values, size_t count) {
+  scree_json_row_array(json, key);
+  for (size_t i = 0; i < count; i++) scree_json_number(json, NULL, values[i]);
+  scree_json_end(json);
+}
+
+void scree_json_matrix(scree_json *json, const char *key, const double values[3][3]) {
+  scree_json_row_array(json, key);
+  for (int i = 0; i < 3; i++) scree_json_numbers(json, NULL, values[i], 3);
+  scree_json_end(json);
+}
+
 void scree_json_source(scree_json *json, const char *format, scree_checksum checksum,
                        double unit_m) {
   char text[SCREE_CHECKSUM_TEXT];

@@ -38,6 +38,9 @@ void scree_json_text(scree_json *json, const char *key, const char *text); /* NU
 void scree_json_number(scree_json *json, const char *key, double value);
 void scree_json_count(scree_json *json, const char *key, uint64_t value);
 void scree_json_bool(scree_json *json, const char *key, bool value);
+/* An array of them on one line. */
+void scree_json_numbers(scree_json *json, const char *key, const double *values, size_t count);
+void scree_json_matrix(scree_json *json, const char *key, const double values[3][3]);
 
 /* Fields that many files have. Of what: a file's format, checksum, and unit of length in metres. */
 void scree_json_source(scree_json *json, const char *format, scree_checksum checksum,

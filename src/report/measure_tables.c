@@ -108,12 +108,6 @@ static const void *value_of(const scree_measure_entry *entry, const field *f) {
 
 /* ---- JSON ---- */
 
-static void json_reals(scree_json *json, const char *key, const double *values, int count) {
-  scree_json_row_array(json, key);
-  for (int i = 0; i < count; i++) scree_json_number(json, NULL, values[i]);
-  scree_json_end(json);
-}
-
 static void json_field(scree_json *json, const scree_measure_entry *entry, const field *f) {
   const void *value = value_of(entry, f);
   if (!exists(entry, f)) {
@@ -129,11 +123,9 @@ static void json_field(scree_json *json, const scree_measure_entry *entry, const
   } else if (f->count == 1) {
     scree_json_number(json, f->name, *(const double *)value);
   } else if (f->count == 3) {
-    json_reals(json, f->name, value, 3);
+    scree_json_numbers(json, f->name, value, 3);
   } else {
-    scree_json_row_array(json, f->name);
-    for (int i = 0; i < 3; i++) json_reals(json, NULL, (const double *)value + (size_t)(3 * i), 3);
-    scree_json_end(json);
+    scree_json_matrix(json, f->name, value);
   }
 }
 
@@ -172,7 +164,7 @@ static void json_deviation(scree_json *json, const char *key, const scree_deviat
   scree_json_number(json, "rms", d->rms);
   scree_json_number(json, "maximum", d->maximum);
   scree_json_number(json, "maximum_bound", d->maximum_bound);
-  json_reals(json, "at", d->at, 3);
+  scree_json_numbers(json, "at", d->at, 3);
   scree_json_count(json, "sample_count", d->sample_count);
   scree_json_end(json);
 }

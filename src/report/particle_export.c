@@ -53,19 +53,6 @@ static void weigh(const scree_mesh *mesh, double density, scree_exported *p) {
   p->bounding_radius = largest;
 }
 
-static void json_reals(scree_json *json, const char *key, const double *values, int count,
-                       double factor) {
-  scree_json_row_array(json, key);
-  for (int i = 0; i < count; i++) scree_json_number(json, NULL, factor * values[i]);
-  scree_json_end(json);
-}
-
-static void json_matrix(scree_json *json, const char *key, const double values[3][3]) {
-  scree_json_row_array(json, key);
-  for (int i = 0; i < 3; i++) json_reals(json, NULL, values[i], 3, 1);
-  scree_json_end(json);
-}
-
 void scree_export_json_provenance(scree_json *json, const scree_export_options *options) {
   char checksum[SCREE_CHECKSUM_TEXT];
   scree_json_text(json, "file", options->source);
@@ -78,6 +65,8 @@ static scree_status write_json(const scree_export_options *options, const scree_
                                scree_error *error) {
   const scree_measures *m = &p->measures;
   const char *slash = strrchr(mesh_path, '/');
+  double moments[3];
+  for (int k = 0; k < 3; k++) moments[k] = options->density * m->principal_moments[k];
   scree_output output;
   scree_status status = scree_output_open(path, options->overwrite, &output, error);
   if (status != SCREE_OK) return status;
@@ -91,17 +80,17 @@ static scree_status write_json(const scree_export_options *options, const scree_
   scree_json_number(&json, "mass", p->mass);
   scree_json_number(&json, "volume", m->volume);
   scree_json_number(&json, "area", m->area);
-  json_reals(&json, "centre_of_mass", m->centroid, 3, 1);
-  json_matrix(&json, "inertia", p->inertia);
-  json_reals(&json, "principal_moments", m->principal_moments, 3, options->density);
-  json_matrix(&json, "principal_axes", m->principal_axes);
+  scree_json_numbers(&json, "centre_of_mass", m->centroid, 3);
+  scree_json_matrix(&json, "inertia", p->inertia);
+  scree_json_numbers(&json, "principal_moments", moments, 3);
+  scree_json_matrix(&json, "principal_axes", m->principal_axes);
   scree_json_number(&json, "equivalent_diameter", m->equivalent_diameter);
   scree_json_number(&json, "bounding_radius", p->bounding_radius);
-  json_reals(&json, "box_min", m->box_min, 3, 1);
-  json_reals(&json, "box_max", m->box_max, 3, 1);
+  scree_json_numbers(&json, "box_min", m->box_min, 3);
+  scree_json_numbers(&json, "box_max", m->box_max, 3);
   scree_json_object(&json, "placement");
-  json_matrix(&json, "rotation", p->rotation);
-  json_reals(&json, "translation", p->translation, 3, 1);
+  scree_json_matrix(&json, "rotation", p->rotation);
+  scree_json_numbers(&json, "translation", p->translation, 3);
   scree_json_end(&json);
   scree_export_json_provenance(&json, options);
   scree_json_end(&json);

@@ -31,12 +31,6 @@ static void put_counts(scree_json *json, const scree_study_counts *c) {
   scree_json_end(json);
 }
 
-static void put_list(scree_json *json, const char *key, const double *values, size_t count) {
-  scree_json_row_array(json, key);
-  for (size_t i = 0; i < count; i++) scree_json_number(json, NULL, values[i]);
-  scree_json_end(json);
-}
-
 static void put_point(scree_json *json, const scree_study_result *r, const scree_point_result *p) {
   scree_json_object(json, NULL);
   scree_json_text(json, "label", p->label);
@@ -67,10 +61,10 @@ static void put_point(scree_json *json, const scree_study_result *r, const scree
   for (size_t k = 0; k < r->answer_count; k++) put_summary(json, r->answers[k], &p->answers[k]);
   scree_json_end(json);
   scree_json_object(json, "rotation");
-  put_list(json, "time", p->time, p->series_count);
-  put_list(json, "mean", p->rotation, p->series_count);
-  put_list(json, "low", p->rotation_low, p->series_count);
-  put_list(json, "high", p->rotation_high, p->series_count);
+  scree_json_numbers(json, "time", p->time, p->series_count);
+  scree_json_numbers(json, "mean", p->rotation, p->series_count);
+  scree_json_numbers(json, "low", p->rotation_low, p->series_count);
+  scree_json_numbers(json, "high", p->rotation_high, p->series_count);
   scree_json_end(json);
   scree_json_end(json);
 }
@@ -128,8 +122,8 @@ static void put_family(scree_json *json, const scree_study_result *r,
   scree_json_end(json);
   scree_json_object(json, "time_polynomial");
   scree_json_count(json, "count", f->time_curve.count);
-  put_list(json, "coefficients", f->time_curve.coefficient,
-           f->time_curve.count ? (size_t)f->time_curve.degree + 1 : 0);
+  scree_json_numbers(json, "coefficients", f->time_curve.coefficient,
+                     f->time_curve.count ? (size_t)f->time_curve.degree + 1 : 0);
   scree_json_number(json, "rms", f->time_curve.count ? f->time_curve.rms : NAN);
   scree_json_number(json, "r2", f->time_curve.count ? f->time_curve.r2 : NAN);
   scree_json_end(json);

@@ -38,19 +38,13 @@ static void wall_name(size_t index, char name[64]) {
   snprintf(name, 64, "wall-%zu.stl", index);
 }
 
-static void json_reals(scree_json *json, const char *key, const double *values, int count) {
-  scree_json_row_array(json, key);
-  for (int i = 0; i < count; i++) scree_json_number(json, NULL, values[i]);
-  scree_json_end(json);
-}
-
 static void json_spheres(scree_json *json, const scree_particle *particle, size_t count) {
   scree_json_array(json, "spheres");
   for (size_t k = 0; k < count; k++) {
     double centre[3], radius;
     scree_particle_point(particle, k, centre, &radius);
     scree_json_row_object(json, NULL);
-    json_reals(json, "centre", centre, 3);
+    scree_json_numbers(json, "centre", centre, 3);
     scree_json_number(json, "radius", radius);
     scree_json_end(json);
   }
@@ -71,7 +65,7 @@ static void json_shape(scree_json *json, const exporter *e, size_t index) {
   scree_json_text(json, "mesh_file", mesh ? name : NULL);
   scree_json_count(json, "triangle_count", m.triangle_count);
   scree_json_number(json, "volume", m.volume);
-  json_reals(json, "inertia_per_density", m.inertia, 3);
+  scree_json_numbers(json, "inertia_per_density", m.inertia, 3);
   scree_json_number(json, "size", m.size);
   scree_json_number(json, "bounding_radius", m.bounding_radius);
   json_spheres(json, particle, mesh ? 0 : m.point_count);
@@ -86,10 +80,10 @@ static void json_body(scree_json *json, const exporter *e, size_t index) {
   scree_json_count(json, "shape", e->shapes.of_body[index]);
   scree_json_count(json, "material", scree_world_body_material(e->world, index));
   scree_json_number(json, "mass", scree_world_body_mass(e->world, index));
-  json_reals(json, "position", b.position, 3);
-  json_reals(json, "orientation", b.orientation, 4);
-  json_reals(json, "velocity", b.velocity, 3);
-  json_reals(json, "angular_velocity", b.angular_velocity, 3);
+  scree_json_numbers(json, "position", b.position, 3);
+  scree_json_numbers(json, "orientation", b.orientation, 4);
+  scree_json_numbers(json, "velocity", b.velocity, 3);
+  scree_json_numbers(json, "angular_velocity", b.angular_velocity, 3);
   scree_json_end(json);
 }
 
@@ -106,13 +100,13 @@ static void json_wall(scree_json *json, const exporter *e, size_t index) {
   scree_json_text(json, "kind", kinds[wall.kind]);
   scree_json_text(json, "mesh_file", wall.kind == SCREE_WALL_MESH ? name : NULL);
   scree_json_count(json, "material", wall.material);
-  json_reals(json, "position", wall.position, 3);
-  json_reals(json, "orientation", orientation, 4);
-  json_reals(json, "axis", wall.axis, 3);
+  scree_json_numbers(json, "position", wall.position, 3);
+  scree_json_numbers(json, "orientation", orientation, 4);
+  scree_json_numbers(json, "axis", wall.axis, 3);
   scree_json_number(json, "radius", wall.radius);
   scree_json_number(json, "length", wall.length);
-  json_reals(json, "velocity", wall.velocity, 3);
-  json_reals(json, "angular_velocity", wall.angular_velocity, 3);
+  scree_json_numbers(json, "velocity", wall.velocity, 3);
+  scree_json_numbers(json, "angular_velocity", wall.angular_velocity, 3);
   scree_json_end(json);
 }
 
@@ -122,7 +116,7 @@ static void print_json(const exporter *e, FILE *stream) {
   scree_json json = scree_json_start(stream);
   scree_json_object(&json, NULL);
   scree_json_number(&json, "time", scree_world_time(e->world));
-  json_reals(&json, "gravity", world.gravity, 3);
+  scree_json_numbers(&json, "gravity", world.gravity, 3);
   scree_json_number(&json, "unit_m", e->options->unit_m);
   scree_json_array(&json, "shapes");
   for (size_t i = 0; i < e->shapes.count; i++) json_shape(&json, e, i);
