@@ -16,7 +16,6 @@
  * an earlier choice left in the folder and this one has not goes with it, before the answer is
  * moved. */
 #include "base/file.h"
-#include "base/parts.h"
 #include "base/platform.h"
 #include "cli/choose.h"
 #include "cli/output.h"

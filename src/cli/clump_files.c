@@ -1,5 +1,4 @@
 #include "cli/clump_files.h"
-#include "base/parts.h"
 #include "report/program.h"
 
 #include "base/file.h"
