@@ -381,7 +381,11 @@ static scree_status read_wall(const scree_scene *scene, const scree_scene_sensor
     scree_world_wall_force(scene->world, w, force, torque);
     double power, energy;
     scree_world_wall_power(scene->world, w, &power, &energy);
-    for (int k = 0; k < 3; k++) at[k] += force[k], at[3 + k] += torque[k];
+    const vec3 arm = vec3_sub(scree_world_wall_at(scene->world, w)->frame.position,
+                              scree_world_wall_at(scene->world, g->first_wall)->frame.position);
+    double more[3]; /* about the first of copies */
+    vec3_store(more, vec3_cross(arm, vec3_load(force)));
+    for (int k = 0; k < 3; k++) at[k] += force[k], at[3 + k] += torque[k] + more[k];
     at[6] += power, at[7] += energy;
   }
   double sums[SCREE_MAP_COUNT], highest[SCREE_MAP_COUNT];

@@ -89,7 +89,10 @@ static void add_flight(const scree_plan_screw *plan, const spiral *s, size_t sec
   for (uint32_t k = 0; k < sections; k++)
     for (uint32_t c = 0; c < 4; c++) {
       const uint32_t a = first + 4 * k + c, b = first + 4 * k + (c + 1) % 4;
-      add_quad(mesh, a, a + 4, b + 4, b);
+      if (c == 2) /* cut as the face before it: it is equally thick */
+        add_quad(mesh, b, a, a + 4, b + 4);
+      else
+        add_quad(mesh, a, a + 4, b + 4, b);
     }
   add_quad(mesh, first, first + 1, first + 2, first + 3);
   add_quad(mesh, last + 3, last + 2, last + 1, last);
