@@ -1,5 +1,5 @@
 # The templates of scenes are files, src/scene/templates/*.yaml; each becomes an array of bytes in the library.
-set(order hopper drum tilting-box drawdown hollow-cylinder conveyor vibrating-screen shear-box drum-lifters paddle-mixer tumbler hammer-mill transfer-chute belt auger bucket-elevator hole-screen repose drop drop-box)
+set(order hopper drum tilting-box drawdown hollow-cylinder conveyor vibrating-screen shear-box drum-lifters paddle-mixer tumbler hammer-mill transfer-chute belt auger hole-screen repose drop drop-box)
 set(content "#include \"scene/templates.h\"\n")
 set(table "const scree_template scree_templates[] = {")
 foreach(name ${order})

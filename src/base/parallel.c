@@ -74,6 +74,10 @@ int scree_worker_count(void) {
   return inside_loop ? 1 : scree_threads();
 }
 
+void scree_work_alone(bool alone) {
+  inside_loop = alone;
+}
+
 static void pause_briefly(void) {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();

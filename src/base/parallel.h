@@ -32,6 +32,9 @@ static inline size_t scree_block_count(size_t count, size_t block_size) {
   return count / block_size + (count % block_size != 0);
 }
 
+/* Whether loops of this thread run on it alone from now on. */
+void scree_work_alone(bool alone);
+
 /* Between these only one worker of all loops at a time: for what is rare and short. */
 void scree_enter_alone(void);
 void scree_leave_alone(void);

@@ -27,7 +27,7 @@ static const cli_option options[] = {
     {"template", CLI_TEXT, AT(template_name), "NAME",
      "Print a commented scene to start from: hopper, drum, tilting-box, drawdown, "
      "hollow-cylinder, conveyor, vibrating-screen, shear-box, drum-lifters, paddle-mixer, tumbler, "
-     "hammer-mill, transfer-chute, belt, auger, bucket-elevator or hole-screen.",
+     "hammer-mill, transfer-chute, belt, auger or hole-screen.",
      0, 0, NULL},
     {"resume", CLI_FLAG, AT(resume), NULL,
      "Go on from the checkpoint in DIR where there is one; without a file, with what is in it.", 0,

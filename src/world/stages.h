@@ -6,6 +6,9 @@
 
 #include "world/contact.h"
 
+/* step.c: of small worlds too, for tests. */
+extern bool scree_share_all_steps;
+
 enum { SCREE_PAIR_BLOCK = 128 }; /* neighbours: whole words of world->touching */
 
 /* step.c: whether neighbours k are awake or have come to their threshold. */

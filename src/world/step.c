@@ -430,9 +430,7 @@ scree_status scree_reserve_blocks(scree_world *world, scree_error *error) {
   return SCREE_OK;
 }
 
-static scree_status one_step(scree_world *world, size_t most, size_t *done) {
-  (void)most;
-  *done = 1;
+static scree_status take_step(scree_world *world) {
   scree_timings *timings = &world->timings;
   double start = scree_now();
   scree_status status = scree_broad_update(world, &world->failure);
@@ -454,6 +452,30 @@ static scree_status one_step(scree_world *world, size_t most, size_t *done) {
   timings->total += end - start;
   timings->steps++;
   timings->pair_evaluations += world->neighbours.count;
+  return status;
+}
+
+/* What a step takes less than this to do is done by one thread: to share out its loops, and to wait
+ * for the last in each, costs about as much. */
+static const double shared_from = 1e-4; /* s */
+bool scree_share_all_steps;
+enum { ASK_EVERY = 1024 }; /* steps, of which one is done alone to see what it takes */
+
+/* The same bits for any number of threads: the clock may decide. A step that the system interrupted
+ * must not, so that the estimate grows slowly. */
+static scree_status one_step(scree_world *world, size_t most, size_t *done) {
+  (void)most;
+  *done = 1;
+  double *took = &world->alone_seconds, before = world->timings.total;
+  const bool many = scree_worker_count() > 1,
+             alone = many && !scree_share_all_steps &&
+                     (world->step_count % ASK_EVERY == 0 || *took < shared_from);
+  if (alone) scree_work_alone(true);
+  scree_status status = take_step(world);
+  if (!alone) return status;
+  scree_work_alone(false);
+  const double now = world->timings.total - before;
+  *took = world->step_count % ASK_EVERY == 1 ? now : scree_min(now, 1.1 * *took);
   return status;
 }
 

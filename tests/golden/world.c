@@ -3,6 +3,7 @@
  * law tests hold, then copy the new ones from the message. */
 #include "support/check.h"
 #include "support/mixed.h"
+#include "support/threads.h"
 
 #include <inttypes.h>
 
@@ -11,14 +12,14 @@ static bool on_device = false;
 static scree_checksum run(scree_law law, size_t steps, int threads) {
   scree_error error;
   scree_observation o;
-  scree_set_threads(threads);
+  use_threads(threads);
   scree_world *world = mixed_world(law);
   CHECK_OK(scree_world_step(world, steps, &error), error);
   scree_world_observe(world, &o);
   assert_true(o.contact_count > 2); /* it is about contacts */
   scree_checksum hash = scree_world_hash(world);
   scree_world_free(world);
-  scree_set_threads(0);
+  use_threads(0);
   return hash;
 }
 

@@ -5,6 +5,7 @@
 #include "support/check.h"
 #include "support/folder.h"
 #include "support/scene.h"
+#include "support/threads.h"
 
 static const double g = 9.81, pi = 3.14159265358979;
 
@@ -119,7 +120,7 @@ static void rocking(void **state) {
 
 static scree_scene *stream(int threads, bool by_checkpoint) {
   scree_error error;
-  scree_set_threads(threads);
+  use_threads(threads);
   scree_scene *scene =
       fly("shape,x,y,z\nball,0,0,0.1\ngrit,0.004,0,0.2\nball,0.003,0,0.14\n",
           "time: 0.4\ngeometry: {floor: {plane: [0, 0, 1], material: m}}\n"
@@ -132,7 +133,7 @@ static scree_scene *stream(int threads, bool by_checkpoint) {
     CHECK_OK(scree_scene_load(in_folder("kept.scree"), &scene, &error), error);
   }
   run_to_end(scene);
-  scree_set_threads(0);
+  use_threads(0);
   return scene;
 }
 

@@ -5,6 +5,7 @@
 #include "support/folder.h"
 #include "support/plates.h"
 #include "support/scene.h"
+#include "support/threads.h"
 
 static const double g = 9.81;
 
@@ -209,9 +210,9 @@ static void resumed(void **state) {
   scree_rng rng = {.seed = 5};
   const char *motion = ", motion: [{vibrate: {along: [1, 0, 1], amplitude: 1 mm, frequency: 20}}]";
   scree_scene *whole = bed_on(300, motion), *cut = bed_on(300, motion);
-  scree_set_threads(1);
+  use_threads(1);
   run_to_end(whole);
-  scree_set_threads(3);
+  use_threads(3);
   while (!scree_scene_end(cut)) {
     const char *path = in_folder("cut.scree");
     CHECK_OK(scree_scene_advance(cut, (size_t)scree_rng_below(&rng, 3000), &error), error);
@@ -219,7 +220,7 @@ static void resumed(void **state) {
     scree_scene_free(cut);
     CHECK_OK(scree_scene_load(path, &cut, &error), error);
   }
-  scree_set_threads(0);
+  use_threads(0);
   for (int m = 0; m < SCREE_MAP_COUNT; m++) {
     size_t count;
     double *a = map_of(whole, (scree_wall_map)m, &count),

@@ -9,6 +9,7 @@
 #include "particle/closest.h"
 #include "support/shapes.h"
 #include "support/solids.h"
+#include "support/threads.h"
 #include "world/contact.h"
 #include "world/pairs.h"
 
@@ -413,7 +414,7 @@ static void threads_change_nothing(void **state) {
   scree_checksum first = {0};
   const int threads[] = {1, 2, 3, 8};
   for (int i = 0; i < 4; i++) {
-    scree_set_threads(threads[i]);
+    use_threads(threads[i]);
     scree_world *world = heap_of(shapes, 4, 36);
     law_step(world, 15000);
     scree_observation o;
@@ -425,7 +426,7 @@ static void threads_change_nothing(void **state) {
     assert_true(hash.high == first.high && hash.low == first.low);
     scree_world_free(world);
   }
-  scree_set_threads(0);
+  use_threads(0);
   for (int i = 0; i < 4; i++) scree_particle_free(shapes[i]);
 }
 

@@ -5,6 +5,7 @@
 #include "support/check.h"
 #include "support/folder.h"
 #include "support/scene.h"
+#include "support/threads.h"
 
 #include "scree.h"
 
@@ -22,16 +23,16 @@ static scree_scene *run_both(const char *text) {
   const char *path = in_folder("half.scree");
   scree_scene *whole = create_at(text, in_folder("test.yaml")),
               *cut = create_at(text, in_folder("test.yaml"));
-  scree_set_threads(1);
+  use_threads(1);
   run_to_end(whole);
-  scree_set_threads(3);
+  use_threads(3);
   size_t half = (size_t)scree_world_step_count(scree_scene_view(whole)) / 2, rows[2];
   CHECK_OK(scree_scene_advance(cut, half, &error), error);
   CHECK_OK(scree_scene_save(cut, path, true, &error), error);
   scree_scene_free(cut);
   CHECK_OK(scree_scene_load(path, &cut, &error), error);
   run_to_end(cut);
-  scree_set_threads(0);
+  use_threads(0);
   const double *a = scree_scene_series(whole, &rows[0]), *b = scree_scene_series(cut, &rows[1]);
   assert_int_equal(rows[0], rows[1]);
   assert_memory_equal(a, b, rows[0] * scree_scene_column_count(whole) * sizeof *a);

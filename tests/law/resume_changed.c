@@ -6,6 +6,7 @@
 #include "support/check.h"
 #include "support/folder.h"
 #include "support/scene.h"
+#include "support/threads.h"
 
 static void change(scree_scene **scene, const char *what) {
   scree_error error;
@@ -106,7 +107,7 @@ static void refusals(void **state) {
 /* All rows of the series after a change of nearly everything, from a file. */
 static scree_scene *go_on(int threads, bool by_checkpoint) {
   scree_error error;
-  scree_set_threads(threads);
+  use_threads(threads);
   scree_scene *scene = make();
   run_until(scene, 0.4);
   put_in_folder(
@@ -126,7 +127,7 @@ static scree_scene *go_on(int threads, bool by_checkpoint) {
     CHECK_OK(scree_scene_load(in_folder("kept.scree"), &scene, &error), error);
   }
   run_to_end(scene);
-  scree_set_threads(0);
+  use_threads(0);
   return scene;
 }
 

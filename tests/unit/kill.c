@@ -6,6 +6,7 @@
 #include "support/check.h"
 #include "support/folder.h"
 #include "support/mixed.h"
+#include "support/threads.h"
 
 #include <dirent.h>
 #include <signal.h>
@@ -57,7 +58,7 @@ static void every_moment_leaves_a_checkpoint(void **state) {
   (void)state;
   scree_error error;
   scree_checksum hashes[SAVES + 1];
-  scree_set_threads(1); /* a fork carries no threads along */
+  use_threads(1); /* a fork carries no threads along */
   scree_world *world = mixed_world(SCREE_LAW_LINEAR);
   CHECK_OK(scree_world_save(world, in_folder(".first"), true, &error), error);
   size_t kills = 0, seen[SAVES + 1] = {0};
@@ -89,7 +90,7 @@ static void every_moment_leaves_a_checkpoint(void **state) {
                 seen[2], seen[3]);
   if (kills) assert_true(seen[0] && seen[1] && seen[2] && seen[3]);
   scree_world_free(world);
-  scree_set_threads(0);
+  use_threads(0);
 }
 
 int main(void) {

@@ -4,6 +4,7 @@
 #include "base/rng.h"
 #include "support/check.h"
 #include "support/shapes.h"
+#include "support/threads.h"
 
 enum { PIECES = 4, STEPS = 1000, SHAPES = 4 };
 static const char *backend = NULL;
@@ -121,7 +122,7 @@ static void run(const scene_kind *scene, const char *where, int threads, result 
   scree_error error;
   scree_rng rng = {.seed = 5};
   CHECK_OK(scree_set_backend(where, &error), error);
-  scree_set_threads(threads);
+  use_threads(threads);
   scree_world *world = scene->make(&rng);
   for (int piece = 0; piece < PIECES; piece++) {
     result *r = &results[piece];
@@ -135,7 +136,7 @@ static void run(const scene_kind *scene, const char *where, int threads, result 
   }
   scree_world_free(world);
   free_shapes();
-  scree_set_threads(0);
+  use_threads(0);
 }
 
 static void check(const scene_kind *scene) {

@@ -5,6 +5,7 @@
 #include "support/check.h"
 #include "support/folder.h"
 #include "support/mixed.h"
+#include "support/threads.h"
 #include "world/checkpoint.h"
 
 #include <unistd.h>
@@ -60,9 +61,9 @@ static void continues(scree_law law, int rounds) {
     packed again = pack(loaded);
     assert_int_equal(p.count, again.count);
     assert_memory_equal(p.bytes, again.bytes, p.count);
-    scree_set_threads(1 + round % 2);
+    use_threads(1 + round % 2);
     step(loaded, 150);
-    scree_set_threads(0);
+    use_threads(0);
     step(world, 150);
     assert_same(world, loaded);
     scree_world_free(loaded);

@@ -7,6 +7,7 @@
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/folder.h"
+#include "support/threads.h"
 
 static scree_scene_file *parse(const char *text) {
   scree_error error;
@@ -141,10 +142,10 @@ static void mass_rate(void **state) {
 /* ---- the same bits ---- */
 
 static scree_scene *run_cut(scree_scene_file *file, size_t piece, int threads) {
-  scree_set_threads(threads);
+  use_threads(threads);
   scree_scene *scene = create(file);
   while (!scree_scene_end(scene)) advance(scene, piece);
-  scree_set_threads(0);
+  use_threads(0);
   return scene;
 }
 
@@ -164,16 +165,16 @@ static void check_resumed(scree_scene_file *file, size_t steps, size_t piece) {
   scree_error error;
   scree_scene *whole = create(file), *cut = create(file);
   const char *path = in_folder("checkpoint.scree");
-  scree_set_threads(1);
+  use_threads(1);
   advance(whole, steps);
-  scree_set_threads(3);
+  use_threads(3);
   for (size_t done = 0; done < steps; done += piece) {
     advance(cut, piece < steps - done ? piece : steps - done);
     CHECK_OK(scree_scene_save(cut, path, true, &error), error);
     scree_scene_free(cut);
     CHECK_OK(scree_scene_load(path, &cut, &error), error);
   }
-  scree_set_threads(0);
+  use_threads(0);
   assert_true(same_state(whole, cut));
   scree_scene_free(whole);
   scree_scene_free(cut);

@@ -1,0 +1,14 @@
+/* Worlds of tests are small: they share out their steps all the same. */
+#ifndef SCREE_TEST_THREADS_H
+#define SCREE_TEST_THREADS_H
+
+#include "world/stages.h"
+
+#include <scree.h>
+
+static inline void use_threads(int count) {
+  scree_share_all_steps = true;
+  scree_set_threads(count);
+}
+
+#endif
