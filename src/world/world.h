@@ -440,7 +440,7 @@ struct scree_world {
     size_t byte_count;
   } kept;
   scree_timings timings;
-  double alone_seconds; /* of the last steps by one thread (step.c) */
+  double alone_seconds;                /* of the last steps by one thread (step.c) */
   const struct scree_backend *backend; /* NULL: what scree_set_backend chose */
   int device;
   struct scree_device_world *on_device; /* cuda_state.h; NULL: it never was on one */
