@@ -242,13 +242,13 @@ static scree_wall_motion motion_of(const scree_plan_motion *plan) {
   return m;
 }
 
-static scree_wall_motion motion_round(const scree_plan_geometry *g, double speed, size_t copy) {
+static scree_wall_motion motion_round(const scree_plan_round *copies, double speed, size_t copy) {
   scree_wall_motion m = scree_default_wall_motion();
-  memcpy(m.axis, g->copies->axis, sizeof m.axis);
-  memcpy(m.through, g->copies->through, sizeof m.through);
-  memcpy(m.span, g->copies->span, sizeof m.span);
-  m.radius = g->copies->radius;
-  m.start = way_of_copy(g->copies, copy);
+  memcpy(m.axis, copies->axis, sizeof m.axis);
+  memcpy(m.through, copies->through, sizeof m.through);
+  memcpy(m.span, copies->span, sizeof m.span);
+  m.radius = copies->radius;
+  m.start = way_of_copy(copies, copy);
   m.speed = speed;
   return m;
 }
@@ -278,8 +278,10 @@ static size_t put_motions(const scree_plan_geometry *g, size_t copy, scree_wall_
     const size_t first = count;
     if (plan->path)
       count += put_path(plan->path, motions + count);
-    else
-      motions[count++] = plan->round ? motion_round(g, plan->round->speed, copy) : motion_of(plan);
+    else if (!plan->round)
+      motions[count++] = motion_of(plan);
+    else if (g->copies) /* it has them */
+      motions[count++] = motion_round(g->copies, plan->round->speed, copy);
     for (size_t k = first; k < count; k++) {
       motions[k].from = plan->from;
       if (!isnan(plan->until)) motions[k].until = plan->until;
