@@ -506,7 +506,7 @@ int cli_set_fields(const cli_call *call, scree_scene_file *file, const cli_setti
   for (size_t i = 0; i < count + set->count; i++) {
     char number[CLI_NUMBER_BYTES], other[200];
     const char *given = i < count ? values[i] : set->items[i - count],
-               *field = i < count ? settings[i].field : other, *value = given;
+               *field = i < count ? settings[i].field : other, *value;
     if (!given) continue;
     if (i < count)
       value = cli_si_text(settings[i].kind, given, number);
