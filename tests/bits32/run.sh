@@ -15,7 +15,7 @@ if ! "$compiler" -m32 try.c -o try 2>/dev/null || ! ./try >/dev/null; then
 fi
 flags="-std=gnu17 -O1 -msse2 -mfpmath=sse -ffp-contract=off -w -Wno-psabi -ffunction-sections -I $root/src -I $root/include"
 base="alloc arena eigen error math parallel platform_posix platform_unix progress radix rng"
-mesh="mesh adjacency predicates index/closest index/intersect measure/extent measure/measure"
+mesh="mesh adjacency predicates index/closest index/intersect measure/extent measure/measure measure/minimum_box"
 # build BITS: the program of that kind in BITS/curve
 build() {
   mkdir "$1"
@@ -23,7 +23,7 @@ build() {
     for name in $base; do echo "$root/src/base/$name.c"; done
     for name in $mesh; do echo "$root/src/mesh/$name.c"; done
     find "$root/src/simplify" -name '*.c'
-    echo "$root/tests/bits32/record_of_torus.c"
+    echo "$root/tests/bits32/hull_of_all.c" "$root/tests/bits32/record_of_torus.c"
   } | (cd "$1" && xargs -n 6 -P 2 "$compiler" "-m$1" $flags '-DSCREE_VERSION="0"' -c)
   "$compiler" "-m$1" -Wl,--gc-sections "$1"/*.o -lm -lpthread -o "$1/curve"
 }
