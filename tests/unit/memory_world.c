@@ -4,6 +4,7 @@
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/shapes.h"
+#include "support/threads.h"
 #include "world/world.h"
 
 #include <unistd.h>
@@ -238,6 +239,7 @@ static int remove_file(void **state) {
 /* With a backend's name: there. */
 int main(int argc, char **argv) {
   if (argc > 1) backend = argv[1];
+  use_threads(0); /* the same allocations in every run, whatever the clock says of a step */
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(particles),
       cmocka_unit_test(worlds),

@@ -234,6 +234,7 @@ static packed pack(const char *name, size_t limit) {
   for (size_t i = 0; i < WALLS; i++) {
     (void)u32(&f); /* whether it is endless */
     (void)skip_surface(&f);
+    assert_int_equal(u32(&f), 0); /* maps: no sensor looks at a wall */
   }
   assert_int_equal(u32(&f), 2);
   for (size_t i = 0; i < 2; i++) f.triangle_count[i] = skip_surface(&f);
