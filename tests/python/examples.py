@@ -7,9 +7,9 @@ import sys
 import tempfile
 
 examples, folder = pathlib.Path(sys.argv[1]), pathlib.Path(tempfile.mkdtemp())
-said = subprocess.run([sys.executable, examples / "pile.py", folder, "sample:icosphere-2", "2"], check=True,
+said = subprocess.run([sys.executable, examples / "pile.py", folder, "sample:icosphere-1", "2"], check=True,
                       stdout=subprocess.PIPE, text=True).stdout
-assert "of 320 triangles" in said and "2 particles after" in said, said
+assert "of 80 triangles" in said and "2 particles after" in said, said
 pile = json.loads((folder / "pile/pile.json").read_text())
 assert len(pile["bodies"]) == 2 and (folder / "pile/shape-0.stl").exists()
 assert (folder / "pile.pvd").exists() and (folder / "contacts-0005.vtp").exists()

@@ -182,7 +182,8 @@ static void small_particles_fall_less_far(void **state) {
   }
 }
 
-/* By `mass_from: scan` every level weighs as the scan does. */
+/* By `mass_from: scan` every level weighs as the scan does, also of a method that does not keep the
+ * volume. */
 static void a_scan_gives_its_levels_their_mass(void **state) {
   (void)state;
   const scree_poured device = {"device", "sample", "dc-1", 1};
@@ -192,6 +193,7 @@ static void a_scan_gives_its_levels_their_mass(void **state) {
     scree_error error;
     CHECK_OK(scree_scene_file_pour(file, &device, 1, &error), error);
     set_field(file, "shapes.device.resolution", "2.5e-3");
+    set_field(file, "shapes.device.method", "qecd");
     set_field(file, "mass_from", scan ? "scan" : "mesh");
     set_field(file, "rp", "0.02");
     scree_scene *scene = pot_scene(file);
@@ -212,7 +214,7 @@ static void a_scan_gives_its_levels_their_mass(void **state) {
   CHECK_OK(scree_sample_make("dc-1", &o, NULL, &whole, &error), error);
   CHECK_OK(scree_mesh_area_volume(&whole, NULL, &volume, &error), error);
   CHECK_NEAR(masses[1], 2000 * volume, 1e-9 * masses[1]);
-  assert_true(masses[0] != masses[1]);
+  assert_true(fabs(masses[0] - masses[1]) > 1e-4 * masses[1]);
   scree_mesh_free(&whole);
 }
 
