@@ -121,20 +121,20 @@ static vec3 turning_momentum(const mover *from, quat to, double dt) {
 uint32_t scree_substep_count(const scree_world *world, const scree_pair *pair,
                              const scree_frame *relative, const scree_scratch *scratch) {
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
-  const double longest = longest_way * pair->law.reach;
-  if (!(pair->list.travel > longest)) return 1; /* than which none moves farther */
+  const double reach = pair->law.reach;
+  if (!(pair->list.travel > followed_way * reach)) return 1; /* than which none moves farther */
   if (!a->face_count || !b || !scree_has_features(b) || pair->depenetrating)
     return 1; /* nothing is blended */
   if (pair->wall && scree_wall_is_belt(&world->walls.items[pair->b])) return 1;
-  double parts = 0;
+  double farthest = 0;
   for (size_t i = 0; i < scratch->contacts.count; i++) {
     const scree_contact_point *contact = &scratch->contacts.items[i];
     vec3 v = vec3_add(relative->velocity, vec3_cross(relative->spin, contact->at));
     double way = vec3_norm(v) * world->time_step;
-    if (contact->overlap + way > blended_depth * pair->law.reach)
-      parts = scree_max(parts, way / longest);
+    if (contact->overlap + way > blended_depth * reach) farthest = scree_max(farthest, way);
   }
-  if (!(parts > 1)) return 1;
+  if (!(farthest > followed_way * reach)) return 1;
+  const double parts = farthest / (longest_way * reach);
   return parts < SCREE_MOST_SUBSTEPS ? 1 + (uint32_t)parts : SCREE_MOST_SUBSTEPS;
 }
 
