@@ -134,7 +134,7 @@ def turns():
 
 def speed():
     """The drum carries the powder up on the left: its surface falls to the right."""
-    lengths, scene = drum.simulate(SimpleNamespace(rpm=45, friction=0.5, rolling=0.2, seed=1, size=9.0))
+    lengths, scene = drum.simulate(SimpleNamespace(rpm=45, friction=0.5, rolling=0.2, seed=1, size=9.0, solid=drum.SOLID))
     check(len(scene.world) > 30 and 20 < drum.angle(lengths) < 75, f"{len(scene.world)} spheres stand at {drum.angle(lengths)} degrees")
 
 
