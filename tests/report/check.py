@@ -276,6 +276,7 @@ def long_bodies_are_whole(browser, folder):
         browser.keys(".view + .view canvas", "0")
         check(whole_in_view(browser, 1), "0 does not turn back")
         ready(browser, os.path.join(folder, "column", "report.html"))
+        browser.wait("document.body.dataset.shownTime > 0.05")  # it plays: the third ball comes in from above
         check(whole_in_view(browser, 0), f"a pour is cut off in a window of {width}")
     browser.look()
 
