@@ -276,7 +276,7 @@ def long_bodies_are_whole(browser, folder):
         browser.keys(".view + .view canvas", "0")
         check(whole_in_view(browser, 1), "0 does not turn back")
         ready(browser, os.path.join(folder, "column", "report.html"))
-        browser.wait("document.body.dataset.shownTime > 0.05")  # it plays: the third ball comes in from above
+        browser.wait("document.body.dataset.shownTime > 0.13")  # it plays, to its end at 0.14 s
         check(whole_in_view(browser, 0), f"a pour is cut off in a window of {width}")
     browser.look()
 

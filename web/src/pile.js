@@ -107,7 +107,7 @@ export class Pile {
   }
 
   // What a scene's picture is fitted to: its walls, but for endless ones, while they have not moved off by more than
-  // their own size, and its bodies where they come in, half way and at the end.
+  // their own size, and its bodies at the start, half way and at the end.
   sceneBox() {
     const box = new Box3(), position = new Vector3(), turn = new Quaternion(), one = new Vector3(1, 1, 1), first = new Vector3();
     for (const wall of this.walls.filter(({ endless }) => !endless)) {
@@ -121,12 +121,8 @@ export class Pile {
       }
     }
     const sizes = this.shapes.map(({ mesh }) => new Vector3().setScalar(2 * Math.sqrt(mesh.points.reduce((most, _, i, p) => (i % 3 ? most : Math.max(most, p[i] ** 2 + p[i + 1] ** 2 + p[i + 2] ** 2)), 0))));
-    const { times, places } = this, last = times.length - 1;
-    for (let body = 0; body < this.bodyCount; body++) {
-      const first = times.findIndex((_, k) => places[8 * (body * times.length + k) + 3]);
-      for (const i of [Math.max(0, first), last >> 1, last]) {
-        if (this.pose(body, this.momentAt(times[i]), position, turn)) box.union(new Box3().setFromCenterAndSize(position, sizes[this.shapeOf[body]]));
-      }
+    for (const time of [0, this.times.length >> 1, this.times.length - 1].map((i) => this.times[i])) {
+      for (let i = 0; i < this.bodyCount; i++) if (this.pose(i, this.momentAt(time), position, turn)) box.union(new Box3().setFromCenterAndSize(position, sizes[this.shapeOf[i]]));
     }
     return box.isEmpty() ? box.expandByPoint(position.set(0, 0, 0)) : box;
   }
