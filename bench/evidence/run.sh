@@ -47,6 +47,7 @@ drum() {
   friction=$(awk -F, '$2 == "friction" { print $4 }' "$results/drum-fit.csv")
   rolling=$(awk -F, '$2 == "rolling" { print $4 }' "$results/drum-fit.csv")
   solid=$(awk -F, '$2 == "solid" { print $4 }' "$results/drum-fit.csv")
+  [ -n "$solid" ] || { echo "drum-fit.csv is of a fit without the powder's volume: remove it, and drum-10.csv to drum-45.csv" >&2; return 1; }
   for rpm in 10 15 30 45; do
     [ -s "$results/drum-$rpm.csv" ] || "$here/drum/drum.py" one --rpm $rpm --friction "$friction" --rolling "$rolling" \
       --solid "$solid" --size 3.5 --profile "$results/drum-$rpm.csv"

@@ -19,12 +19,17 @@ typedef struct cli_pour_arguments {
 
 #define CLI_POUR_DEFAULTS  .source = CLI_SOURCE_DEFAULTS, .rays = 24, .view = CLI_VIEW_UNSET
 #define CLI_POUR_AT(field) offsetof(cli_pour_arguments, field)
-/* Tables of settings are X(option, parameter, kind, VALUE, help), from which come an enum
- * SETTING_N, rows of cli_setting, and rows of options. */
-#define CLI_SETTING(id, option, field, kind, value, help) {option, field, kind},
+/* Tables of settings are X(id, option, parameter, kind, VALUE, help). CLI_SETTINGS makes of one
+ * SETTING_id, their count, and rows of cli_setting; CLI_SETTING_OPTION rows of options. */
+#define CLI_SETTING_ID(id, option, field, kind, value, help) SETTING_##id,
+#define CLI_SETTING(id, option, field, kind, value, help)    {option, field, kind},
 #define CLI_SETTING_OPTION(id, option, field, kind, value, help)                                   \
   {option, kind, CLI_POUR_AT(settings) + SETTING_##id * sizeof(const char *), value, help, 0,      \
    0,      NULL},
+#define CLI_SETTINGS(TABLE)                                                                        \
+  enum { TABLE(CLI_SETTING_ID) SETTING_COUNT };                                                    \
+  _Static_assert((int)SETTING_COUNT <= (int)CLI_MOST_SETTINGS, "room for all settings");           \
+  static const cli_setting settings[] = {TABLE(CLI_SETTING)};
 
 /* Options of all such verbs: X(option, kind, member, VALUE, help, least, most, words). */
 #define CLI_POUR_OPTION(option, kind, member, value, help, least, most, words)                     \

@@ -1,8 +1,7 @@
 /* scree drop: the scene of a template, shapes poured into a container until they lie still. */
 #include "cli/pour.h"
 
-/* Options and the template's parameters that they set: X(id, option, parameter, kind, VALUE, help).
- */
+/* Options and the template's parameters that they set. */
 #define SETTINGS(X)                                                                                \
   X(WIDTH, "width", "width", CLI_LENGTH_TEXT, "LENGTH",                                            \
     "Diameter of the cylinder or side of the box, inside, as in 300mm. Default: about the height " \
@@ -11,8 +10,7 @@
     "The box's other side. Default: the width.")                                                   \
   X(TIME, "time", "time", CLI_TEXT, "S",                                                           \
     "Seconds simulated after the last layer entered, at most. Default: 2; less of particles "      \
-    "under "                                                                                       \
-    "10 mm, as their falls are shorter.")                                                          \
+    "under 10 mm, as their falls are shorter.")                                                    \
   X(STILL, "still", "still", CLI_TEXT, "J",                                                        \
     "End early when the mean kinetic energy of a particle stays below this; 0: never. Default: "   \
     "1e-8 J; less of particles under 10 mm.")                                                      \
@@ -43,10 +41,7 @@
     "Default: 1.")                                                                                 \
   X(SEED, "seed", "seed", CLI_TEXT, "N", "Another seed, another pour. Default: 1.")
 
-#define PLACE(id, option, field, kind, value, help) SETTING_##id,
-enum { SETTINGS(PLACE) SETTING_COUNT };
-static const cli_setting settings[] = {SETTINGS(CLI_SETTING)};
-_Static_assert((int)SETTING_COUNT <= (int)CLI_MOST_SETTINGS, "room for all settings");
+CLI_SETTINGS(SETTINGS)
 
 static const cli_pour_arguments defaults = {CLI_POUR_DEFAULTS, .output = "drop", .each = 30};
 

@@ -1,8 +1,8 @@
 /* scree repose: the scene of the template of that name, with shapes of the call. */
 #include "cli/pour.h"
 
-/* Options and the template's parameters that they set: X(option, parameter, kind, VALUE, help).
- * What has no option is set by its field, with --set. */
+/* Options and the template's parameters that they set. What has no option is set by its field, with
+ * --set. */
 #define SETTINGS(X)                                                                                \
   X(PARTICLES, "particles", "particles", CLI_TEXT, "N",                                            \
     "How many particles, in equal shares of the shapes.")                                          \
@@ -55,10 +55,7 @@
     "The flank begins at this share of the height.")                                               \
   X(BAND_HIGH, "band-high", "measure.band_high", CLI_SHARE_TEXT, "SHARE", "And ends at this one.")
 
-#define PLACE(id, option, field, kind, value, help) SETTING_##id,
-enum { SETTINGS(PLACE) SETTING_COUNT };
-static const cli_setting settings[] = {SETTINGS(CLI_SETTING)};
-_Static_assert((int)SETTING_COUNT <= (int)CLI_MOST_SETTINGS, "room for all settings");
+CLI_SETTINGS(SETTINGS)
 
 static const cli_pour_arguments defaults = {CLI_POUR_DEFAULTS, .preset = "demo"};
 

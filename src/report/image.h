@@ -1,10 +1,13 @@
-/* What is drawn onto ray-traced pictures: captions, the scale bar of the colour map, the map
- * itself. */
+/* Where ray-traced pictures are seen from, and what is drawn onto them: captions, the scale bar of
+ * the colour map, the map itself. */
 #ifndef SCREE_REPORT_IMAGE_H
 #define SCREE_REPORT_IMAGE_H
 
 #include "base/error.h"
 #include "base/vec.h"
+
+/* Unit, towards a camera at these angles about z and above the horizontal (render.c). */
+vec3 scree_to_camera(double azimuth_deg, double elevation_deg);
 
 /* Linear RGB of the colour map at t in [0, 1]. */
 vec3 scree_viridis(double t);

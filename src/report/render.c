@@ -136,12 +136,18 @@ static scree_status build_scene(view *v, scree_error *error) {
   return status;
 }
 
+static const double degree = 0.017453292519943295;
+
+vec3 scree_to_camera(double azimuth_deg, double elevation_deg) {
+  double a = azimuth_deg * degree, e = elevation_deg * degree;
+  return (vec3){cos(e) * sin(a), -cos(e) * cos(a), sin(e)};
+}
+
 /* Moves the camera along its axis until the bounding sphere's projection of every body vertex is
  * inside: one pass over the vertices gives the distance exactly. */
 static void place_camera(view *v) {
-  const double degree = 0.017453292519943295;
-  double a = v->options->azimuth_deg * degree, e = v->options->elevation_deg * degree;
-  vec3 back = {cos(e) * sin(a), -cos(e) * cos(a), sin(e)};
+  double a = v->options->azimuth_deg * degree;
+  vec3 back = scree_to_camera(v->options->azimuth_deg, v->options->elevation_deg);
   vec3 right = {cos(a), sin(a), 0}, up = vec3_cross(back, right);
   double half_height = tan(0.5 * field_of_view);
   double half_width = half_height * (double)v->width / (double)v->height;

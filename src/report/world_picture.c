@@ -1,7 +1,9 @@
 /* Pictures of worlds and heaps: the bodies as items of the ray tracer. */
 #include "base/alloc.h"
 #include "base/vec.h"
+#include "report/image.h"
 #include "report/program.h"
+#include "report/ray.h"
 #include "report/shapes.h"
 
 #include <math.h>
@@ -134,49 +136,47 @@ typedef struct crowd {
   double middle[3], low, high;
 } crowd;
 
-/* To the camera, level or from its elevation. */
-static vec3 to_camera(const scree_render_options *o, bool level) {
-  const double degree = 0.017453292519943295;
-  double a = o->azimuth_deg * degree, e = level ? 0 : o->elevation_deg * degree;
-  return (vec3){cos(e) * sin(a), -cos(e) * cos(a), sin(e)};
-}
-
-/* Whether a ray from the point meets the triangle: by the signs of three volumes. */
-static bool meets(vec3 from, vec3 along, const vec3 corners[3]) {
-  vec3 a = vec3_sub(corners[0], from), b = vec3_sub(corners[1], from),
-       c = vec3_sub(corners[2], from);
-  double u = vec3_dot(along, vec3_cross(a, b)), v = vec3_dot(along, vec3_cross(b, c)),
-         w = vec3_dot(along, vec3_cross(c, a)), facing = u + v + w;
-  bool inside = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
-  return inside && facing != 0 && vec3_dot(a, vec3_cross(b, c)) / facing > 0;
+/* For rays in the mesh's own frame. */
+static scree_status make_rays(const scree_mesh *mesh, scree_ray_scene **rays, scree_error *error) {
+  size_t count = 3 * mesh->vertex_count;
+  float *positions = scree_alloc(count, sizeof *positions);
+  if (!positions) return scree_fail_memory(error, count * sizeof *positions, "a wall's vertices");
+  for (size_t i = 0; i < count; i++) positions[i] = (float)mesh->positions[i];
+  scree_status status = scree_ray_scene_create(rays, error);
+  if (status == SCREE_OK)
+    status = scree_ray_scene_add(*rays, positions, mesh->vertex_count, mesh->triangles,
+                                 mesh->triangle_count, error);
+  if (status == SCREE_OK) status = scree_ray_scene_commit(*rays, error);
+  scree_free(positions);
+  return status;
 }
 
 /* Whether the wall stands before more than a few of the bodies, of which many are asked. */
-static bool hides(const scree_mesh *mesh, const scree_render_item *item, const scree_world *world,
-                  const scree_render_options *o) {
+static scree_status find_hiding(const scree_mesh *mesh, const scree_render_item *item,
+                                const scree_world *world, const scree_render_options *o,
+                                bool *hides, scree_error *error) {
   enum { ASKED = 200 };
   static const double few = 0.25;
   const double *q = item->quaternion;
-  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]}), back = mat3_transpose(&turn);
-  vec3 along = mat3_mul_vec(&back, to_camera(o, false));
+  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  vec3 along = mat3_tmul_vec(&turn, scree_to_camera(o->azimuth_deg, o->elevation_deg));
+  const float direction[3] = {(float)along.x, (float)along.y, (float)along.z};
   size_t bodies = scree_world_body_count(world), stride = bodies / ASKED + 1;
   size_t asked = 0, hidden = 0;
-  for (size_t i = 0; i < bodies; i += stride) {
+  scree_ray_scene *rays = NULL;
+  scree_status status = make_rays(mesh, &rays, error);
+  for (size_t i = 0; status == SCREE_OK && i < bodies; i += stride) {
     scree_body body;
     if (scree_world_body_removed(world, i)) continue;
     scree_world_get_body(world, i, &body);
-    vec3 from = mat3_mul_vec(&back, vec3_sub(vec3_load(body.position), vec3_load(item->position)));
-    bool met = false;
-    for (size_t t = 0; !met && t < mesh->triangle_count; t++) {
-      vec3 corners[3];
-      for (size_t k = 0; k < 3; k++)
-        corners[k] = vec3_load(mesh->positions + 3 * (size_t)mesh->triangles[3 * t + k]);
-      met = meets(from, along, corners);
-    }
+    vec3 p = mat3_tmul_vec(&turn, vec3_sub(vec3_load(body.position), vec3_load(item->position)));
+    hidden += scree_ray_blocked(rays, (const float[3]){(float)p.x, (float)p.y, (float)p.z},
+                                direction, INFINITY);
     asked++;
-    hidden += met;
   }
-  return (double)hidden > few * (double)asked;
+  scree_ray_scene_free(rays);
+  *hides = (double)hidden > few * (double)asked;
+  return status;
 }
 
 /* Cuts away what stands between the viewer and the middle, but not what lies below all bodies, nor
@@ -184,12 +184,12 @@ static bool hides(const scree_mesh *mesh, const scree_render_item *item, const s
 static scree_status cut_open(scree_mesh *mesh, const scree_render_item *item, const crowd *all,
                              const scree_render_options *o, scree_error *error) {
   enum { MOST_PIECES = 2 + 3 }; /* triangles of what lies behind, and of what lies below before */
-  vec3 viewer = to_camera(o, true), position = vec3_load(item->position);
+  vec3 viewer = scree_to_camera(o->azimuth_deg, 0), position = vec3_load(item->position);
   const double *q = item->quaternion;
-  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]}), back = mat3_transpose(&turn);
-  half before = {mat3_mul_vec(&back, viewer),
+  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  half before = {mat3_tmul_vec(&turn, viewer),
                  vec3_dot(vec3_sub(vec3_load(all->middle), position), viewer)};
-  half above = {mat3_mul_vec(&back, (vec3){0, 0, 1}), all->low - position.z};
+  half above = {mat3_tmul_vec(&turn, (vec3){0, 0, 1}), all->low - position.z};
   size_t most = MOST_PIECES * mesh->triangle_count;
   scree_mesh open = {.positions = scree_alloc(most, 9 * sizeof *open.positions),
                      .triangles = scree_alloc(most, 3 * sizeof *open.triangles)};
@@ -232,8 +232,9 @@ static scree_status add_walls(const scree_world *world, const scree_render_optio
     memcpy(item->position, wall.position, sizeof item->position);
     scree_world_wall_orientation(world, w, item->quaternion);
     memcpy(item->color, wall_color, sizeof item->color);
-    if (status == SCREE_OK && hides(&meshes[w], item, world, o))
-      status = cut_open(&meshes[w], item, all, o, error);
+    bool hides = false;
+    if (status == SCREE_OK) status = find_hiding(&meshes[w], item, world, o, &hides, error);
+    if (status == SCREE_OK && hides) status = cut_open(&meshes[w], item, all, o, error);
     s->item_count += status == SCREE_OK && meshes[w].triangle_count > 0;
   }
   return status;
