@@ -2,9 +2,13 @@
 // JavaScript and of what follows up to the data, in page_script.inc of the script. With --check: fails where a
 // committed file differs.
 import { readFileSync, writeFileSync } from 'node:fs';
+import { resolve } from 'node:path';
 import { bundle, hash, licences, names } from './bundle.mjs';
 
 const { script, style } = await bundle('src/main.js');
+// The page in the browser takes what both share from this script (app.mjs): a name that it does not export ends here.
+const taken = { name: 'taken', setup: (build) => build.onResolve({ filter: /^\.\.\/src\/\w+\.js$/ }, () => ({ path: resolve('src/main.js') })) };
+await bundle('app/main.js', { plugins: [taken] });
 const page = readFileSync('page.html', 'utf8')
   .replace('@SCRIPT@', hash(script)).replace('@STYLE@', hash(style)).replace('@CSS@', () => style)
   .replace('@LICENCES@', licences);

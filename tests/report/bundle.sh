@@ -10,7 +10,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 mkdir -p "$folder/src/report" "$folder/web"
 cp "$root"/src/report/page*.inc "$folder/src/report"
-(cd "$root/web" && cp -r build.mjs bundle.mjs licences package.json package-lock.json page.html src "$folder/web")
+(cd "$root/web" && cp -r app build.mjs bundle.mjs licences package.json package-lock.json page.html src "$folder/web")
 cd "$folder/web"
 if ! npm ci --ignore-scripts --no-audit --no-fund >"$folder/log" 2>&1; then
   if grep -qE 'ENOTFOUND|EAI_AGAIN|ECONNREFUSED|ECONNRESET|ETIMEDOUT|ENETUNREACH|E40[134]|E5[0-9][0-9]' "$folder/log"; then

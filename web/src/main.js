@@ -16,6 +16,7 @@ export * from './levels.js';
 export * from './packed.js';
 export * from './pile.js';
 export * from './text.js';
+export { swatch } from './view.js';
 
 async function fill(data) {
   const page = document.getElementById('page');
