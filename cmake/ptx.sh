@@ -12,11 +12,10 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$root"
-sources=(src/world/device/{kernels,broad_kernels,observe_kernels}.c src/base/math.c)
+sources=(src/world/device/{kernels,broad_kernels,observe_kernels}.c src/base/math.c src/particle/closest.c)
 for name in contact narrow spheres edges law candidates substep watch seam depth wall motion loop grids lists time_step pair pool step integrate sums; do
   [ ! -e src/world/$name.c ] || sources+=(src/world/$name.c)
 done
-for name in closest tree; do sources+=(src/particle/$name.c); done
 flags=(-std=c17 -target nvptx64-nvidia-cuda -Xclang -target-cpu -Xclang sm_70 -O2 -Xclang -disable-llvm-passes
   -ffp-contract=off -fno-math-errno -nostdinc -isystem "$("$clang" -print-resource-dir)/include"
   -isystem src/world/device/include -Isrc -Iinclude -DNDEBUG -w -emit-llvm -c)

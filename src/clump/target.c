@@ -149,7 +149,7 @@ scree_target_point scree_target_nearest(const scree_target *body, vec3 p, double
   scree_bvh_hit hit = {.distance2 = INFINITY};
   scree_bvh_closest(&body->tree, p, &hit);
   *distance = sqrt(hit.distance2);
-  return (scree_target_point){hit.point, unit_normal(body, body->tree.order[hit.index])};
+  return (scree_target_point){hit.point, unit_normal(body, body->tree.tree.order[hit.index])};
 }
 
 double scree_target_tangent_radius(const scree_target *body, scree_target_point point) {

@@ -2,8 +2,8 @@
 #ifndef SCREE_MESH_MESH_H
 #define SCREE_MESH_MESH_H
 
+#include "base/box.h"
 #include "base/error.h"
-#include "base/vec.h"
 
 /* SCREE_BAD_MESH where an index is out of range or a coordinate is not finite, SCREE_LIMIT where
  * corners cannot be numbered in 32 bits. O(N), parallel. */
@@ -33,6 +33,17 @@ bool scree_facet_is_flat(const scree_mesh *mesh, size_t triangle);
 /* Corner k (0, 1, 2) of a triangle. */
 static inline vec3 scree_mesh_corner(const scree_mesh *mesh, size_t triangle, int k) {
   return vec3_load(mesh->positions + 3 * (size_t)mesh->triangles[3 * triangle + (size_t)k]);
+}
+
+static inline scree_box scree_facet_box(const scree_mesh *mesh, size_t triangle) {
+  vec3 p = scree_mesh_corner(mesh, triangle, 0), q = scree_mesh_corner(mesh, triangle, 1),
+       r = scree_mesh_corner(mesh, triangle, 2);
+  return scree_box_join(scree_box_of(p, q), (scree_box){r, r});
+}
+
+/* The same as the trees ask for it (base/tree.h). */
+static inline scree_box scree_box_of_facet(const void *mesh, size_t triangle) {
+  return scree_facet_box(mesh, triangle);
 }
 
 #endif

@@ -55,88 +55,49 @@ static double near_bound(const scree_near *near, double reach, double slack) {
   return scree_smaller(bound, near->next);
 }
 
-typedef struct tree_entry {
-  uint32_t node;
-  double distance2;
-} tree_entry;
-
 void scree_closest_faces(const scree_particle *particle, vec3 p, double reach, double slack,
                          scree_near *near) {
   near->count = 0;
   near->next = INFINITY;
-  const scree_tree_node *nodes = particle->face_tree.nodes;
-  tree_entry stack[SCREE_TREE_STACK];
-  int depth = 0;
-  stack[depth++] = (tree_entry){0, scree_box_distance2(&nodes[0].box, p)};
-  double pruned2 = INFINITY;
-  while (depth > 0) {
-    tree_entry entry = stack[--depth];
+  const scree_tree *tree = &particle->face_tree;
+  scree_tree_search search;
+  scree_tree_search_below(&search, tree, 0, p);
+  for (;;) {
     double bound = near_bound(near, reach, slack);
-    if (entry.distance2 > bound * bound) {
-      pruned2 = scree_smaller(pruned2, entry.distance2);
-      continue;
-    }
-    const scree_tree_node *node = &nodes[entry.node];
-    if (node->count == 0) {
-      uint32_t left = node->first, right = left + 1;
-      double dl = scree_box_distance2(&nodes[left].box, p),
-             dr = scree_box_distance2(&nodes[right].box, p);
-      bool left_first = dl <= dr;
-      stack[depth++] = left_first ? (tree_entry){right, dr} : (tree_entry){left, dl};
-      stack[depth++] = left_first ? (tree_entry){left, dl} : (tree_entry){right, dr};
-      continue;
-    }
-    const uint32_t *faces = &particle->face_tree.order[node->first];
-    for (uint32_t k = 0; k < node->count; k++)
+    const scree_tree_node *leaf = scree_tree_nearer(&search, bound * bound);
+    if (!leaf) break;
+    const uint32_t *faces = &tree->order[leaf->first];
+    for (uint32_t k = 0; k < leaf->count; k++)
       scree_prefetch(&particle->faces[faces[k]], sizeof(scree_face));
-    for (uint32_t k = 0; k < node->count; k++) {
-      uint32_t face = faces[k];
+    for (uint32_t k = 0; k < leaf->count; k++) {
       int region;
-      vec3 c = scree_closest_on_face(&particle->faces[face], p, &region);
-      insert_near(near, face, vec3_distance(p, c));
+      vec3 c = scree_closest_on_face(&particle->faces[faces[k]], p, &region);
+      insert_near(near, faces[k], vec3_distance(p, c));
     }
   }
   double bound = near->count ? scree_smaller(reach, near->distance[0] + slack) : reach;
-  near->next = scree_smaller(near->next, sqrt(pruned2));
+  near->next = scree_smaller(near->next, sqrt(search.passed2));
   while (near->count > 0 && near->distance[near->count - 1] > bound)
     near->next = scree_smaller(near->next, near->distance[--near->count]);
 }
 
-/* Below one node, nearer child first: distance and face of what is nearer than *best2; or of the
- * first that is nearer than `enough2`. */
+/* Below one node: distance and face of what is nearer than *best2; or of the first that is nearer
+ * than `enough2`. */
 static void nearest_below(const scree_particle *particle, uint32_t start, vec3 p, double enough2,
                           double *best2, uint32_t *face) {
   const scree_tree *tree = &particle->face_tree;
-  const scree_tree_node *nodes = tree->nodes;
-  tree_entry stack[SCREE_TREE_STACK];
-  int depth = 0;
-  tree_entry entry = {start, scree_box_distance2(&nodes[start].box, p)};
-  for (;;) {
-    if (entry.distance2 < *best2) {
-      const scree_tree_node *node = &nodes[entry.node];
-      if (node->count == 0) { /* on with the nearer child */
-        uint32_t left = node->first;
-        double dl = scree_box_distance2(&nodes[left].box, p),
-               dr = scree_box_distance2(&nodes[left + 1].box, p);
-        bool left_first = dl <= dr;
-        double nearer = left_first ? dl : dr, farther = left_first ? dr : dl;
-        if (farther < *best2) stack[depth++] = (tree_entry){left + left_first, farther};
-        entry = (tree_entry){left + !left_first, nearer};
-        continue;
-      }
-      for (uint32_t k = 0; k < node->count; k++) {
-        uint32_t f = tree->order[node->first + k];
-        int region;
-        double d2 = vec3_norm2(vec3_sub(p, scree_closest_on_face(&particle->faces[f], p, &region)));
-        if (d2 >= *best2) continue;
-        *best2 = d2;
-        *face = f;
-        if (d2 < enough2) return;
-      }
+  scree_tree_search search;
+  scree_tree_search_below(&search, tree, start, p);
+  for (const scree_tree_node *leaf; (leaf = scree_tree_nearer(&search, *best2));)
+    for (uint32_t k = 0; k < leaf->count; k++) {
+      uint32_t f = tree->order[leaf->first + k];
+      int region;
+      double d2 = vec3_norm2(vec3_sub(p, scree_closest_on_face(&particle->faces[f], p, &region)));
+      if (d2 >= *best2) continue;
+      *best2 = d2;
+      *face = f;
+      if (d2 < enough2) return;
     }
-    if (depth == 0) return;
-    entry = stack[--depth];
-  }
 }
 
 double scree_nearest_face(const scree_particle *particle, const uint32_t *nodes, int node_count,
@@ -210,17 +171,13 @@ bool scree_is_inside(const scree_particle *particle, vec3 p) {
   if (scree_box_distance2(whole, p) > 0) return particle->hollow;
   vec3 extent = vec3_sub(whole->high, whole->low);
   double slack = 1e-12 * (extent.x + extent.y + extent.z + vec3_norm(whole->low));
-  uint32_t stack[SCREE_TREE_STACK];
-  int depth = 0, turns = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const scree_tree_node *node = &tree->nodes[stack[--depth]];
-    if (!meets_ray(&node->box, p, slack)) continue;
+  int turns = 0;
+  scree_tree_walk walk;
+  scree_tree_start(&walk, tree);
+  for (const scree_tree_node *node; (node = scree_tree_next(&walk));) {
+    if (!meets_ray(&node->box, p, slack) || scree_tree_enter(&walk, node)) continue;
     for (uint32_t k = 0; k < node->count; k++)
       turns += passage(particle, tree->order[node->first + k], p);
-    if (node->count) continue;
-    stack[depth++] = node->first + 1;
-    stack[depth++] = node->first;
   }
   return turns + particle->hollow > 0;
 }
@@ -241,14 +198,13 @@ double scree_next_passage(const scree_particle *particle, const scree_ray_interv
                           double least, size_t skip, uint32_t *face) {
   const scree_tree *tree = &particle->face_tree;
   double next = INFINITY, slack = 1e-12 * particle->measures.bounding_radius;
-  uint32_t stack[SCREE_TREE_STACK];
-  int depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const scree_tree_node *node = &tree->nodes[stack[--depth]];
+  scree_tree_walk walk;
+  scree_tree_start(&walk, tree);
+  for (const scree_tree_node *node; (node = scree_tree_next(&walk));) {
     const scree_box box = scree_box_grown(node->box, slack);
     double from = way->after, to = scree_smaller(way->before, next);
-    if (!scree_box_cut(&box, way->start, way->along, &from, &to)) continue;
+    if (!scree_box_cut(&box, way->start, way->along, &from, &to) || scree_tree_enter(&walk, node))
+      continue;
     for (uint32_t k = 0; k < node->count; k++) {
       uint32_t f = tree->order[node->first + k];
       double slope = vec3_dot(particle->faces[f].normal, way->along);
@@ -258,9 +214,6 @@ double scree_next_passage(const scree_particle *particle, const scree_ray_interv
       next = s;
       *face = f;
     }
-    if (node->count) continue;
-    stack[depth++] = node->first + 1;
-    stack[depth++] = node->first;
   }
   return next;
 }

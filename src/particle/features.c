@@ -20,6 +20,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { LEAF = 2 }; /* features of a leaf of their trees */
+
 static const double flat_angle = 2e-5;             /* rad; sagitta 0.05 um over 10 mm; above the
                                                       noise of single-precision coordinates */
 static const double sharp_angle = 0.5 * 0.0174533; /* rad; design value, see above */
@@ -361,19 +363,20 @@ done:
   return status;
 }
 
-static void box_items(const scree_particle *p, int what, scree_box *boxes) {
-  if (what == 0)
-    for (size_t f = 0; f < p->face_count; f++) {
-      const scree_face *face = &p->faces[f];
-      vec3 b = vec3_add(face->corner, face->along1), c = vec3_add(face->corner, face->along2);
-      boxes[f] = scree_box_join(scree_box_of(face->corner, b), (scree_box){c, c});
-    }
-  else if (what == 1)
-    for (size_t e = 0; e < p->edge_count; e++)
-      boxes[e] = scree_box_of(p->edges[e].start, p->edges[e].end);
-  else
-    for (size_t i = 0; i < p->point_count; i++)
-      boxes[i] = scree_box_grown((scree_box){p->points[i], p->points[i]}, p->point_radii[i]);
+static scree_box box_of_face(const void *particle, size_t i) {
+  const scree_face *face = &((const scree_particle *)particle)->faces[i];
+  vec3 b = vec3_add(face->corner, face->along1), c = vec3_add(face->corner, face->along2);
+  return scree_box_join(scree_box_of(face->corner, b), (scree_box){c, c});
+}
+
+static scree_box box_of_edge(const void *particle, size_t i) {
+  const scree_edge *edge = &((const scree_particle *)particle)->edges[i];
+  return scree_box_of(edge->start, edge->end);
+}
+
+static scree_box box_of_point(const void *particle, size_t i) {
+  const scree_particle *p = particle;
+  return scree_box_grown((scree_box){p->points[i], p->points[i]}, p->point_radii[i]);
 }
 
 static scree_status add_edge_cones(scree_particle *p, scree_error *error) {
@@ -386,24 +389,19 @@ static scree_status add_edge_cones(scree_particle *p, scree_error *error) {
 }
 
 scree_status scree_particle_build_trees(scree_particle *p, scree_error *error) {
-  size_t most = p->face_count > p->edge_count ? p->face_count : p->edge_count;
-  if (p->point_count > most) most = p->point_count;
-  scree_box *boxes = scree_alloc(most, sizeof *boxes);
-  if (!boxes) return scree_fail_memory(error, most * sizeof *boxes, "boxes of contact features");
-  const size_t counts[3] = {p->face_count, p->edge_count, p->point_count};
+  const scree_boxed items[3] = {
+      {p->face_count, box_of_face, p, LEAF, SCREE_SPLIT_HALVES},
+      {p->edge_count, box_of_edge, p, LEAF, SCREE_SPLIT_HALVES},
+      {p->point_count, box_of_point, p, LEAF, SCREE_SPLIT_HALVES},
+  };
   scree_tree *trees[3] = {&p->face_tree, &p->edge_tree, &p->point_tree};
-  scree_status status = SCREE_OK;
-  bool any = false;
-  for (int what = 0; what < 3 && status == SCREE_OK; what++) {
-    if (counts[what] == 0) continue;
-    box_items(p, what, boxes);
-    status = scree_tree_build(boxes, counts[what], trees[what], error);
-    if (status) break;
+  p->box = scree_box_empty();
+  for (int what = 0; what < 3; what++) {
+    scree_status status = scree_tree_build(&items[what], trees[what], error);
+    if (status) return status;
+    if (items[what].count == 0) continue;
     scree_box box = trees[what]->nodes[0].box;
-    if (what == 0) box = scree_box_grown(box, p->radius);
-    p->box = any ? scree_box_join(p->box, box) : box;
-    any = true;
+    p->box = scree_box_join(p->box, what == 0 ? scree_box_grown(box, p->radius) : box);
   }
-  scree_free(boxes);
-  return status ? status : add_edge_cones(p, error);
+  return add_edge_cones(p, error);
 }

@@ -2,8 +2,8 @@
 #ifndef SCREE_PARTICLE_PARTICLE_H
 #define SCREE_PARTICLE_PARTICLE_H
 
+#include "base/tree.h"
 #include "particle/mass.h"
-#include "particle/tree.h"
 
 #include <stdatomic.h>
 

@@ -4,7 +4,7 @@
  * cylinders have no end along themselves, and layers none upwards. */
 #include "scene/scene.h"
 
-#include "particle/tree.h"
+#include "base/tree.h"
 #include "world/backend.h"
 
 #include <string.h>

@@ -403,14 +403,10 @@ static bool box_clear_of_faces(const scree_oriented_box *box, const scree_partic
   const scree_tree *tree = &surface->face_tree;
   const scree_box own = {vec3_neg(box->half), box->half};
   const scree_box around = scree_box_moved(&own, &box->axes, box->centre);
-  uint32_t stack[SCREE_TREE_STACK] = {0};
-  for (int depth = 1; depth > 0;) {
-    const scree_tree_node *node = &tree->nodes[stack[--depth]];
-    if (!scree_box_meets(&node->box, &around)) continue;
-    if (node->count == 0) {
-      stack[depth++] = node->first;
-      stack[depth++] = node->first + 1;
-    }
+  scree_tree_walk walk;
+  scree_tree_start(&walk, tree);
+  for (const scree_tree_node *node; (node = scree_tree_next(&walk));) {
+    if (!scree_box_meets(&node->box, &around) || scree_tree_enter(&walk, node)) continue;
     for (uint32_t i = 0; i < node->count; i++)
       if (!box_clear_of_face(box, &surface->faces[tree->order[node->first + i]])) return false;
   }

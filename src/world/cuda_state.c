@@ -132,10 +132,8 @@ static void lead(packer *p, void *pointer, size_t count, size_t size) {
 }
 
 static void pack_tree(packer *p, scree_tree *tree) {
-  size_t nodes = tree->item_count ? 1 : 0; /* children come in twos, after their parent */
-  for (size_t i = 0; i < nodes; i++) nodes += tree->nodes[i].count ? 0 : 2;
-  lead(p, &tree->nodes, nodes, sizeof *tree->nodes);
-  lead(p, &tree->cones, nodes, sizeof *tree->cones);
+  lead(p, &tree->nodes, tree->node_count, sizeof *tree->nodes);
+  lead(p, &tree->cones, tree->node_count, sizeof *tree->cones);
   lead(p, &tree->order, tree->item_count, sizeof *tree->order);
 }
 

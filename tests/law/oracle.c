@@ -650,9 +650,7 @@ static void cones_hold_the_edges_below(void **state) {
     const scree_tree *tree = &shapes[k]->edge_tree;
     uint32_t above[SCREE_TREE_STACK] = {0};
     /* every node, from the root down; then every edge below it */
-    size_t node_count = 1;
-    for (size_t i = 0; i < node_count; i++) node_count += tree->nodes[i].count ? 0 : 2;
-    for (uint32_t i = 0; i < node_count; i++) {
+    for (uint32_t i = 0; i < tree->node_count; i++) {
       int depth = 0;
       above[depth++] = i;
       while (depth > 0) {

@@ -194,68 +194,12 @@ static void test_closest_points(void **state) {
   }
 }
 
-/* ---- The tree itself ---- */
-
-static void test_structure(void **state) {
-  (void)state;
-  scree_rng rng = {.seed = 22};
-  for (int i = 0; i < 40; i++) {
-    scree_mesh mesh = i < 35 ? random_surface(&rng, i % 5) : shape_icosphere(1, 5);
-    scree_bvh bvh = build(&mesh);
-    bool *seen = calloc(mesh.triangle_count + 1, sizeof *seen);
-    size_t in_leaves = 0;
-    for (size_t n = 0; n < bvh.node_count; n++) {
-      const scree_bvh_node *node = &bvh.nodes[n];
-      if (node->count) assert_in_range(node->count, 1, 4);
-      in_leaves += node->count;
-      for (uint32_t k = 0; k < node->count; k++) {
-        uint32_t t = bvh.order[node->first + k];
-        assert_false(seen[t]);
-        seen[t] = true;
-        for (int c = 0; c < 9; c++) {
-          double x = bvh.corners[9 * (node->first + k) + (uint32_t)c];
-          assert_true(
-              x == mesh.positions[3 * mesh.triangles[3 * t + (uint32_t)c / 3] + (uint32_t)c % 3]);
-          assert_true(x >= node->low[c % 3] && x <= node->high[c % 3]);
-        }
-      }
-      for (uint32_t side = 0; side < 2 && !node->count; side++)
-        for (int k = 0; k < 3; k++)
-          assert_true(bvh.nodes[node->first + side].low[k] >= node->low[k] &&
-                      bvh.nodes[node->first + side].high[k] <= node->high[k]);
-    }
-    assert_int_equal(in_leaves, mesh.triangle_count);
-    free(seen);
-    scree_bvh_free(&bvh);
-    scree_mesh_free(&mesh);
-  }
-}
-
-static void test_threads(void **state) {
-  (void)state;
-  scree_mesh mesh = shape_torus(2, 1, 300, 100);
-  scree_set_threads(1);
-  scree_bvh one = build(&mesh);
-  for (int threads = 2; threads <= 4; threads++) {
-    scree_set_threads(threads);
-    scree_bvh more = build(&mesh);
-    assert_int_equal(more.node_count, one.node_count);
-    assert_memory_equal(more.nodes, one.nodes, one.node_count * sizeof *one.nodes);
-    assert_memory_equal(more.order, one.order, mesh.triangle_count * sizeof *one.order);
-    scree_bvh_free(&more);
-  }
-  scree_set_threads(1);
-  scree_bvh_free(&one);
-  scree_mesh_free(&mesh);
-}
-
-/* ---- Overlaps ---- */
-
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_triangle), cmocka_unit_test(test_side_by_side),
-      cmocka_unit_test(test_closest),  cmocka_unit_test(test_structure),
-      cmocka_unit_test(test_threads),  cmocka_unit_test(test_closest_points),
+      cmocka_unit_test(test_triangle),
+      cmocka_unit_test(test_side_by_side),
+      cmocka_unit_test(test_closest),
+      cmocka_unit_test(test_closest_points),
   };
   scree_set_threads(
       1); /* thousands of tiny trees: waking threads would take longer than the work */

@@ -67,20 +67,13 @@ static double size_of(vec3 v) {
   return fabs(v.x) + fabs(v.y) + fabs(v.z);
 }
 
-static void facet_box(const scree_mesh *mesh, size_t t, vec3 *low, vec3 *high) {
-  vec3 p = scree_mesh_corner(mesh, t, 0), q = scree_mesh_corner(mesh, t, 1),
-       r = scree_mesh_corner(mesh, t, 2);
-  *low = vec3_min(p, vec3_min(q, r));
-  *high = vec3_max(p, vec3_max(q, r));
-}
-
 static uint32_t along(double x, double low, double per_length, uint32_t size) {
   double c = (x - low) * per_length;
   return !(c > 0) ? 0 : c >= (double)size ? size - 1 : (uint32_t)c;
 }
 
-static span span_of(const prover *p, vec3 low, vec3 high) {
-  const double l[3] = {low.x, low.y, low.z}, h[3] = {high.x, high.y, high.z};
+static span span_of(const prover *p, const scree_box *box) {
+  const double *l = &box->low.x, *h = &box->high.x;
   const double from[3] = {p->low.x, p->low.y, p->low.z};
   span s;
   for (int k = 0; k < 3; k++) {
@@ -118,7 +111,7 @@ static facet_cells cells_of(const prover *p, const span *s) {
 /* False: a surface without extent. */
 static bool shape(prover *p, size_t *cell_count) {
   const scree_mesh *mesh = p->mesh;
-  vec3 high = p->low = vec3_load(mesh->positions), a, b;
+  vec3 high = p->low = vec3_load(mesh->positions);
   for (size_t v = 1; v < mesh->vertex_count; v++) {
     p->low = vec3_min(p->low, vec3_load(mesh->positions + 3 * v));
     high = vec3_max(high, vec3_load(mesh->positions + 3 * v));
@@ -126,8 +119,9 @@ static bool shape(prover *p, size_t *cell_count) {
   double sum = 0;
   size_t samples = 0;
   for (size_t t = 0; t < mesh->triangle_count; t += SAMPLE_STEP, samples++) {
-    facet_box(mesh, t, &a, &b);
-    sum += fmax(b.x - a.x, fmax(b.y - a.y, b.z - a.z));
+    const scree_box box = scree_facet_box(mesh, t);
+    vec3 size = vec3_sub(box.high, box.low);
+    sum += fmax(size.x, fmax(size.y, size.z));
   }
   vec3 extent = vec3_sub(high, p->low);
   double cell = SIZES_PER_CELL * sum / (double)samples, n;
@@ -148,10 +142,9 @@ static bool shape(prover *p, size_t *cell_count) {
 static void count_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   prover *p = context;
-  vec3 low, high;
   for (size_t t = begin; t < end; t++) {
-    facet_box(p->mesh, t, &low, &high);
-    span s = span_of(p, low, high);
+    const scree_box box = scree_facet_box(p->mesh, t);
+    span s = span_of(p, &box);
     size_t cells = 1;
     for (int k = 0; k < 3; k++) cells *= (size_t)(s.high[k] - s.low[k]) + 1;
     if (cells > CELLS_MAX) {

@@ -4,22 +4,12 @@
 #ifndef SCREE_MESH_INDEX_BVH_H
 #define SCREE_MESH_INDEX_BVH_H
 
-#include "base/error.h"
+#include "base/tree.h"
 #include "mesh/index/closest.h"
 
-/* Children of an inner node (count 0) are nodes first and first + 1; a leaf holds the triangles
- * first to first + count - 1 in tree order. */
-typedef struct scree_bvh_node {
-  double low[3], high[3];
-  uint32_t first, count;
-} scree_bvh_node;
-
 typedef struct scree_bvh {
-  scree_bvh_node *nodes; /* nodes[0] is the root; none for an empty mesh */
-  size_t node_count;
+  scree_tree tree; /* of the triangles */
   double *corners; /* 9 per triangle, in tree order */
-  uint32_t *order; /* tree order -> triangle of the mesh; neighbours in it are near in space */
-  size_t triangle_count;
 } scree_bvh;
 
 /* Copies the mesh's corners, so the mesh may go. Needs a verified mesh. O(N log N), parallel; about
@@ -30,7 +20,7 @@ void scree_bvh_free(scree_bvh *bvh);
 typedef struct scree_bvh_hit {
   double distance2;
   vec3 point;
-  uint32_t index; /* in tree order; order[index] is the triangle of the mesh */
+  uint32_t index; /* in tree order; tree.order[index] is the triangle of the mesh */
 } scree_bvh_hit;
 
 /* The point of the surface nearest to p, if nearer than hit->distance2, which the caller sets

@@ -199,27 +199,18 @@ double scree_point_block_farthest(const scree_point_block *q) {
   return farthest;
 }
 
-/* How far x is outside [low, high]; not by fmax, which is a call. */
-SCREE_LANES_INLINE double outside(double low, double high, double x) {
-  double below = low - x, above = x - high;
-  double more = choose(below > above, below, above);
-  return choose(more > 0, more, 0);
-}
-
-SCREE_LANES static uint64_t near_lanes(const scree_point_block *q, int count, const double low[3],
-                                       const double high[3]) {
+SCREE_LANES static uint64_t near_lanes(const scree_point_block *q, int count, const scree_box *of) {
+  const scree_box box = *of; /* that q cannot be part of */
   uint64_t near[SCREE_EIGHT] = {0}, any = 0;
   for (int begin = 0; begin < count; begin += SCREE_EIGHT)
     for (int i = 0; i < SCREE_EIGHT; i++) {
-      double x = outside(low[0], high[0], q->at[0][begin + i]),
-             y = outside(low[1], high[1], q->at[1][begin + i]),
-             z = outside(low[2], high[2], q->at[2][begin + i]);
-      near[i] |= (uint64_t)(x * x + y * y + z * z < q->distance2[begin + i]);
+      vec3 p = {q->at[0][begin + i], q->at[1][begin + i], q->at[2][begin + i]};
+      near[i] |= (uint64_t)(scree_box_distance2(&box, p) < q->distance2[begin + i]);
     }
   for (int i = 0; i < SCREE_EIGHT; i++) any |= near[i];
   return any;
 }
 
-bool scree_point_block_near(const scree_point_block *q, const double low[3], const double high[3]) {
-  return near_lanes(q, whole_eights(q->count), low, high) != 0;
+bool scree_point_block_near(const scree_point_block *q, const scree_box *box) {
+  return near_lanes(q, whole_eights(q->count), box) != 0;
 }

@@ -3,7 +3,7 @@
 #ifndef SCREE_MESH_INDEX_CLOSEST_H
 #define SCREE_MESH_INDEX_CLOSEST_H
 
-#include "base/vec.h"
+#include "base/box.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -30,7 +30,6 @@ void scree_point_block_closest(scree_point_block *points, const double corners[9
 /* The largest of the distances, squared; whether a point is nearer to the box than to what was
  * found. */
 double scree_point_block_farthest(const scree_point_block *points);
-bool scree_point_block_near(const scree_point_block *points, const double low[3],
-                            const double high[3]);
+bool scree_point_block_near(const scree_point_block *points, const scree_box *box);
 
 #endif

@@ -1,5 +1,4 @@
-/* A tree of boxes over facets, cut at the middle of the facets' middles, or near their median where
- * that is lopsided.
+/* A tree of boxes over facets (base/tree.h), with a second kind of bounds.
  *
  * A tree follows the facets wherever they crowd; a grid's one cell size fails where sizes differ by
  * orders of magnitude. Axis-aligned boxes alone fail too where many long thin facets lie side by
@@ -11,28 +10,21 @@
  * it: where a plane through the vertex keeps two such cones strictly apart, no two of their facets
  * meet elsewhere.
  *
- * Bounds of the second kind are rounded generously outwards, so rounding costs time only. The tree
- * depends on the mesh alone: it is cut from the root on into parts, all of one depth at a time;
- * threads build these, and they are put in the order in which one thread would have built all. */
+ * Bounds of the second kind are rounded generously outwards, so rounding costs time only. */
 #include "mesh/index/facet_tree.h"
 
-#include "base/array.h"
+#include "base/alloc.h"
 #include "base/parallel.h"
 
 #include <float.h>
-#include <string.h>
 
 enum {
-  PART_FACETS = 1 << 12, /* smaller nodes are built by one thread; not below the next */
-  FRAME_FACETS = 2048,   /* larger nodes get no second box: there are too few of them to matter */
-  LOPSIDED = 8,          /* a split leaving less than 1/8 on a side is replaced by the median */
+  FRAME_FACETS = 2048, /* larger nodes get no second box: there are too few of them to matter */
+  NODE_BLOCK = 256,
   NO_VERTEX = UINT32_MAX,
   NO_FRAME = UINT32_MAX,
-  NO_CONE = UINT32_MAX,
 };
 
-/* Room for nodes, per facet: scans have .62 to .66. */
-#define NODE_SHARE 0.7
 /* A second box is worth its test where it holds less than this share of the first. */
 #define FRAME_SHARE 0.3
 /* A node's longest edge against its diagonal from which a second box is tried. */
@@ -44,114 +36,40 @@ typedef struct scree_facet_frame {
   vec3 axis[3];   /* orthonormal */
   vec3 center;    /* of the slanted box */
   double half[3]; /* its half sides */
-  uint32_t cone;  /* or NO_CONE */
+  uint32_t hub;   /* the vertex that all facets have, or NO_VERTEX */
+  vec3 low, high; /* unit directions from it to the opposite edges' ends */
 } scree_facet_frame;
 
-typedef struct scree_facet_cone {
-  uint32_t hub;   /* the vertex that all facets have */
-  vec3 low, high; /* unit directions from it to the opposite edges' ends */
-} scree_facet_cone;
-
-/* ---- Building ---- */
-
-scree_box scree_facet_box(const scree_mesh *mesh, uint32_t t) {
-  vec3 p = scree_mesh_corner(mesh, t, 0), q = scree_mesh_corner(mesh, t, 1),
-       r = scree_mesh_corner(mesh, t, 2);
-  return scree_box_join(scree_box_of(p, q), (scree_box){r, r});
-}
-
-static double along(const scree_facet_tree *t, uint32_t facet, int axis) {
-  return vec3_along(t->middle[facet], axis);
-}
-
-/* Moves facets whose middle lies below `at` to the front; returns how many. */
-static size_t partition(scree_facet_tree *t, size_t begin, size_t end, int axis, double at) {
-  size_t write = begin;
-  for (size_t i = begin; i < end; i++) {
-    uint32_t facet = t->order[i];
-    if (along(t, facet, axis) >= at) continue;
-    t->order[i] = t->order[write];
-    t->order[write++] = facet;
-  }
-  return write - begin;
-}
-
-/* A pivot near the median: the median of up to 1023 middles taken at even steps. */
-static double middle_value(const scree_facet_tree *t, size_t begin, size_t end, int axis) {
-  double sample[1023] = {0};
-  size_t count = end - begin < 1023 ? end - begin : 1023;
-  for (size_t i = 0; i < count; i++) {
-    double value = along(t, t->order[begin + (end - begin) * i / count], axis);
-    size_t j = i;
-    if (count <= 64) {
-      for (; j > 0 && sample[j - 1] > value; j--) sample[j] = sample[j - 1];
-    }
-    sample[j] = value;
-  }
-  if (count <= 64) return sample[count / 2];
-  /* quickselect */
-  size_t low = 0, high = count - 1, want = count / 2;
-  while (low < high) {
-    double pivot = sample[low + (high - low) / 2];
-    size_t i = low, j = high;
-    for (;; i++, j--) {
-      while (sample[i] < pivot) i++;
-      while (sample[j] > pivot) j--;
-      if (i >= j) break;
-      double keep = sample[i];
-      sample[i] = sample[j];
-      sample[j] = keep;
-    }
-    if (want <= j)
-      high = j;
-    else
-      low = j + 1;
-  }
-  return sample[want];
-}
-
-/* Cuts [begin, end) in two; returns the size of the first part, neither part empty. */
-static size_t cut(scree_facet_tree *t, size_t begin, size_t end) {
-  vec3 low = t->middle[t->order[begin]], high = low;
-  for (size_t i = begin + 1; i < end; i++) {
-    low = vec3_min(low, t->middle[t->order[i]]);
-    high = vec3_max(high, t->middle[t->order[i]]);
-  }
-  vec3 size = vec3_sub(high, low);
-  int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  double from = axis == 0 ? low.x : axis == 1 ? low.y : low.z;
-  double length = axis == 0 ? size.x : axis == 1 ? size.y : size.z;
-  size_t count = end - begin, first = partition(t, begin, end, axis, from + 0.5 * length);
-  if (first >= count / LOPSIDED && count - first >= count / LOPSIDED && first && first < count)
-    return first;
-  first = partition(t, begin, end, axis, middle_value(t, begin, end, axis));
-  if (first >= count / LOPSIDED && count - first >= count / LOPSIDED && first && first < count)
-    return first;
-  return count / 2; /* middles coincide: any halves will do */
-}
-
-/* ---- Second boxes ---- */
+/* The facets of a node, order[begin ...], and the longest of their edges, the first in that order.
+ */
+typedef struct run {
+  uint32_t begin, count;
+  uint32_t facet; /* that has the edge */
+  vec3 edge;
+  double length2;
+} run;
 
 static vec3 load(const scree_facet_tree *t, uint32_t facet, int k) {
   return scree_mesh_corner(t->mesh, facet, k % 3);
 }
 
-/* The longest edge of some facets, and which of them has it: the first. */
-typedef struct longest {
-  double length2;
-  uint32_t facet;
-  vec3 edge;
-} longest;
-
-static longest longest_in_leaf(const scree_facet_tree *t, const scree_facet_node *n) {
-  longest l = {.facet = t->order[n->begin]};
-  for (uint32_t i = n->begin; i < n->begin + n->count; i++)
+static run run_of_leaf(const scree_facet_tree *t, const scree_tree_node *leaf) {
+  const uint32_t *order = t->tree.order;
+  run r = {.begin = leaf->first, .count = leaf->count, .facet = order[leaf->first]};
+  for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++)
     for (int k = 0; k < 3; k++) {
-      vec3 edge = vec3_sub(load(t, t->order[i], k + 1), load(t, t->order[i], k));
+      vec3 edge = vec3_sub(load(t, order[i], k + 1), load(t, order[i], k));
       double length2 = vec3_norm2(edge);
-      if (length2 > l.length2) l = (longest){length2, t->order[i], edge};
+      if (length2 > r.length2) r.length2 = length2, r.facet = order[i], r.edge = edge;
     }
-  return l;
+  return r;
+}
+
+static run run_of_both(const run *left, const run *right) {
+  run r = right->length2 > left->length2 ? *right : *left;
+  r.begin = left->begin;
+  r.count = left->count + right->count;
+  return r;
 }
 
 /* Axes along the edge, along the facet's normal, and across both; false where the facet has no
@@ -165,13 +83,12 @@ static bool frame_axes(const scree_facet_tree *t, uint32_t facet, vec3 edge, scr
   return fabs(vec3_norm2(f->axis[2]) - 1) < 1e-9;
 }
 
-static double frame_box(const scree_facet_tree *t, const scree_facet_node *n,
-                        scree_facet_frame *f) {
+static double frame_box(const scree_facet_tree *t, const run *n, scree_facet_frame *f) {
   double low[3] = {DBL_MAX, DBL_MAX, DBL_MAX}, high[3] = {-DBL_MAX, -DBL_MAX, -DBL_MAX};
-  vec3 origin = load(t, t->order[n->begin], 0);
+  vec3 origin = load(t, t->tree.order[n->begin], 0);
   for (uint32_t i = n->begin; i < n->begin + n->count; i++)
     for (int k = 0; k < 3; k++) {
-      vec3 p = vec3_sub(load(t, t->order[i], k), origin);
+      vec3 p = vec3_sub(load(t, t->tree.order[i], k), origin);
       for (int a = 0; a < 3; a++) {
         double d = vec3_dot(p, f->axis[a]);
         low[a] = d < low[a] ? d : low[a];
@@ -189,12 +106,12 @@ static double frame_box(const scree_facet_tree *t, const scree_facet_node *n,
 }
 
 /* The vertex that all facets of the node have, if any. */
-static uint32_t common_vertex(const scree_facet_tree *t, const scree_facet_node *n) {
-  const uint32_t *first = t->mesh->triangles + 3 * (size_t)t->order[n->begin];
+static uint32_t common_vertex(const scree_facet_tree *t, const run *n) {
+  const uint32_t *first = t->mesh->triangles + 3 * (size_t)t->tree.order[n->begin];
   for (int k = 0; k < 3; k++) {
     uint32_t i = n->begin;
     for (; i < n->begin + n->count; i++) {
-      const uint32_t *c = t->mesh->triangles + 3 * (size_t)t->order[i];
+      const uint32_t *c = t->mesh->triangles + 3 * (size_t)t->tree.order[i];
       if (c[0] != first[k] && c[1] != first[k] && c[2] != first[k]) break;
     }
     if (i == n->begin + n->count) return first[k];
@@ -202,37 +119,34 @@ static uint32_t common_vertex(const scree_facet_tree *t, const scree_facet_node 
   return NO_VERTEX;
 }
 
-static scree_facet_cone cone_of(const scree_facet_tree *t, const scree_facet_node *n,
-                                uint32_t hub) {
+static void add_cone(const scree_facet_tree *t, const run *n, uint32_t hub, scree_facet_frame *f) {
   vec3 at = vec3_load(t->mesh->positions + 3 * (size_t)hub);
-  scree_facet_cone c = {hub, {2, 2, 2}, {-2, -2, -2}};
+  f->hub = hub;
+  f->low = (vec3){2, 2, 2};
+  f->high = (vec3){-2, -2, -2};
   for (uint32_t i = n->begin; i < n->begin + n->count; i++)
     for (int k = 0; k < 3; k++) {
-      if (t->mesh->triangles[3 * (size_t)t->order[i] + (size_t)k] == hub) continue;
-      vec3 d = vec3_unit(vec3_sub(load(t, t->order[i], k), at));
-      c.low = vec3_min(c.low, d);
-      c.high = vec3_max(c.high, d);
+      if (t->mesh->triangles[3 * (size_t)t->tree.order[i] + (size_t)k] == hub) continue;
+      vec3 d = vec3_unit(vec3_sub(load(t, t->tree.order[i], k), at));
+      f->low = vec3_min(f->low, d);
+      f->high = vec3_max(f->high, d);
     }
-  return c;
 }
 
-/* Gives the node a second box where that is much the smaller one, or a cone. */
-static bool add_frame(scree_facet_tree *t, scree_facet_node *n, const longest *l) {
-  vec3 sides = vec3_sub(n->bounds.high, n->bounds.low);
+/* A second box for the node where that is much the smaller one, or a cone; false: neither helps. */
+static bool make_frame(const scree_facet_tree *t, const run *n, const scree_box *bounds,
+                       scree_facet_frame *f) {
+  vec3 sides = vec3_sub(bounds->high, bounds->low);
   double volume = sides.x * sides.y * sides.z;
-  scree_facet_frame f = {.cone = NO_CONE};
-  if (sqrt(l->length2) < FRAME_LENGTH * vec3_norm(sides)) return true;
+  if (n->count > FRAME_FACETS || n->length2 < FRAME_LENGTH * FRAME_LENGTH * vec3_norm2(sides))
+    return false;
+  *f = (scree_facet_frame){.hub = NO_VERTEX};
   uint32_t hub = n->count > 1 ? common_vertex(t, n) : NO_VERTEX;
-  bool useful = hub != NO_VERTEX && n->count > SCREE_LEAF_FACETS / 2;
-  if (!frame_axes(t, l->facet, l->edge, &f)) return true;
-  if (frame_box(t, n, &f) < FRAME_SHARE * volume) useful = true;
-  if (!useful) return true;
-  if (hub != NO_VERTEX) {
-    f.cone = (uint32_t)t->cones.count;
-    if (!SCREE_PUSH(&t->cones, cone_of(t, n, hub))) return false;
-  }
-  n->frame = (uint32_t)t->frames.count;
-  return SCREE_PUSH(&t->frames, f);
+  if (!frame_axes(t, n->facet, n->edge, f)) return false;
+  bool smaller = frame_box(t, n, f) < FRAME_SHARE * volume;
+  if (!smaller && (hub == NO_VERTEX || n->count <= SCREE_LEAF_FACETS / 2)) return false;
+  if (hub != NO_VERTEX) add_cone(t, n, hub, f);
+  return true;
 }
 
 /* Whether one of the three face directions of `a` keeps the slanted boxes apart. */
@@ -247,239 +161,97 @@ static bool frames_apart_along(const scree_facet_frame *a, const scree_facet_fra
 }
 
 /* The least value of d . x for x in the cone's box of directions. */
-static double cone_least(const scree_facet_cone *c, vec3 d) {
+static double cone_least(const scree_facet_frame *c, vec3 d) {
   return d.x * (d.x > 0 ? c->low.x : c->high.x) + d.y * (d.y > 0 ? c->low.y : c->high.y) +
          d.z * (d.z > 0 ? c->low.z : c->high.z);
 }
 
 /* A plane through a common hub with the cones strictly on either side. */
-static bool cones_apart(const scree_facet_cone *a, const scree_facet_cone *b) {
-  if (a->hub != b->hub) return false;
+static bool cones_apart(const scree_facet_frame *a, const scree_facet_frame *b) {
+  if (a->hub == NO_VERTEX || a->hub != b->hub) return false;
   vec3 middle_a = vec3_unit(vec3_add(a->low, a->high));
   vec3 middle_b = vec3_unit(vec3_add(b->low, b->high));
   vec3 d = vec3_sub(middle_a, middle_b);
   return cone_least(a, d) > 1e-9 && cone_least(b, vec3_neg(d)) > 1e-9;
 }
 
-bool scree_facet_nodes_apart(const scree_facet_tree *t, const scree_facet_node *a,
-                             const scree_facet_node *b) {
-  if (!scree_box_meets(&a->bounds, &b->bounds)) return true;
-  if (a->frame == NO_FRAME || b->frame == NO_FRAME) return false;
-  const scree_facet_frame *f = &t->frames.items[a->frame], *g = &t->frames.items[b->frame];
-  if (frames_apart_along(f, g) || frames_apart_along(g, f)) return true;
-  return f->cone != NO_CONE && g->cone != NO_CONE &&
-         cones_apart(&t->cones.items[f->cone], &t->cones.items[g->cone]);
+bool scree_facet_nodes_apart(const scree_facet_tree *t, uint32_t a, uint32_t b) {
+  if (!scree_box_meets(&t->tree.nodes[a].box, &t->tree.nodes[b].box)) return true;
+  if (t->frame_of[a] == NO_FRAME || t->frame_of[b] == NO_FRAME) return false;
+  const scree_facet_frame *f = &t->frames[t->frame_of[a]], *g = &t->frames[t->frame_of[b]];
+  return frames_apart_along(f, g) || frames_apart_along(g, f) || cones_apart(f, g);
 }
 
-static void leaf_bounds(const scree_facet_tree *t, scree_facet_node *n) {
-  n->bounds = scree_facet_box(t->mesh, t->order[n->begin]);
-  for (uint32_t i = n->begin + 1; i < n->begin + n->count; i++)
-    n->bounds = scree_box_join(n->bounds, scree_facet_box(t->mesh, t->order[i]));
-}
+/* ---- Building ---- */
 
-/* Builds the node of [begin, end) and all below it; tells its longest edge. */
-static bool build(scree_facet_tree *t, uint32_t begin, uint32_t end, longest *l) {
-  scree_facet_node n = {.begin = begin, .count = end - begin, .frame = NO_FRAME};
-  uint32_t index = (uint32_t)t->nodes.count;
-  if (!SCREE_PUSH(&t->nodes, n)) return false;
-  if (n.count <= SCREE_LEAF_FACETS) {
-    leaf_bounds(t, &n);
-    *l = longest_in_leaf(t, &n);
-  } else {
-    longest r;
-    uint32_t split = begin + (uint32_t)cut(t, begin, end);
-    if (!build(t, begin, split, l)) return false;
-    n.right = (uint32_t)t->nodes.count;
-    if (!build(t, split, end, &r)) return false;
-    if (r.length2 > l->length2) *l = r;
-    n.bounds = scree_box_join(t->nodes.items[index + 1].bounds, t->nodes.items[n.right].bounds);
-  }
-  if (n.count <= FRAME_FACETS && !add_frame(t, &n, l)) return false;
-  t->nodes.items[index] = n;
-  return true;
-}
-
-static void middle_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block;
-  (void)worker;
-  scree_facet_tree *t = context;
-  for (size_t i = begin; i < end; i++) {
-    scree_box b = scree_facet_box(t->mesh, (uint32_t)i);
-    t->order[i] = (uint32_t)i;
-    t->middle[i] = vec3_lerp(b.low, b.high, 0.5);
-  }
-}
-
-/* ---- Building in parallel ---- */
-
-/* A node near the root, or a part: what one thread builds with all below it. */
-typedef struct top {
-  uint32_t begin, end; /* of order[] */
-  uint32_t left;       /* its children are tops[left] and tops[left + 1]; 0: it is a part */
-  bool failed;
-  scree_facet_tree part;    /* its nodes, frames and cones, numbered from 0 */
-  size_t node, frame, cone; /* where they go in the whole tree */
-} top;
-
-typedef struct tops {
+typedef struct framing {
   scree_facet_tree *tree;
-  struct {
-    top *items;
-    size_t count, capacity;
-  } list;
-  size_t level; /* the first of the tops that are being cut */
-} tops;
+  run *runs; /* by node */
+} framing;
 
-static void cut_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+static void list_runs(const framing *f) {
+  const scree_tree *tree = &f->tree->tree;
+  for (size_t i = tree->node_count; i-- > 0;) { /* children come after their parent */
+    const scree_tree_node *n = &tree->nodes[i];
+    f->runs[i] = n->count ? run_of_leaf(f->tree, n)
+                          : run_of_both(&f->runs[n->first], &f->runs[n->first + 1]);
+  }
+}
+
+/* Which nodes get a frame. */
+static void try_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
-  tops *p = context;
-  for (size_t i = begin; i < end; i++) {
-    top *t = &p->list.items[p->level + i];
-    t->left = t->end - t->begin > PART_FACETS ? (uint32_t)cut(p->tree, t->begin, t->end) : 0;
-  }
+  const framing *f = context;
+  scree_facet_tree *t = f->tree;
+  scree_facet_frame made;
+  for (size_t i = begin; i < end; i++)
+    t->frame_of[i] = make_frame(t, &f->runs[i], &t->tree.nodes[i].box, &made) ? 0 : NO_FRAME;
 }
 
-/* Cuts what is larger than a part, all of one depth at a time. */
-static bool cut_tops(tops *p) {
-  if (!SCREE_PUSH(&p->list, (top){.end = (uint32_t)p->tree->mesh->triangle_count})) return false;
-  for (size_t end = p->list.count; p->level < end; end = p->list.count) {
-    scree_parallel_for(end - p->level, 1, cut_block, p);
-    for (; p->level < end; p->level++) {
-      top *t = &p->list.items[p->level];
-      uint32_t begin = t->begin, split = begin + t->left, stop = t->end;
-      if (!t->left) continue;
-      t->left = (uint32_t)p->list.count;
-      if (!SCREE_PUSH(&p->list, (top){.begin = begin, .end = split}) ||
-          !SCREE_PUSH(&p->list, (top){.begin = split, .end = stop}))
-        return false;
-    }
-  }
-  return true;
-}
-
-static void build_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+static void make_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
-  tops *p = context;
-  for (size_t i = begin; i < end; i++) {
-    top *t = &p->list.items[i];
-    if (t->left) continue;
-    t->part = (scree_facet_tree){
-        .mesh = p->tree->mesh, .order = p->tree->order, .middle = p->tree->middle};
-    size_t room = (size_t)(NODE_SHARE * (double)(t->end - t->begin)) + 1;
-    longest l;
-    t->failed = !SCREE_RESERVE(&t->part.nodes, room) || !build(&t->part, t->begin, t->end, &l);
-  }
+  const framing *f = context;
+  scree_facet_tree *t = f->tree;
+  for (size_t i = begin; i < end; i++)
+    if (t->frame_of[i] != NO_FRAME)
+      make_frame(t, &f->runs[i], &t->tree.nodes[i].box, &t->frames[t->frame_of[i]]);
 }
 
-/* Numbers the nodes of tops[index] and all below it, depth first, from where the tree ends. */
-static bool place_top(tops *p, size_t index) {
-  scree_facet_tree *tree = p->tree;
-  top *t = &p->list.items[index];
-  t->node = tree->nodes.count;
-  t->frame = tree->frames.count;
-  t->cone = tree->cones.count;
-  tree->nodes.count += t->left ? 1 : t->part.nodes.count;
-  tree->frames.count += t->part.frames.count;
-  tree->cones.count += t->part.cones.count;
-  if (!t->left) return !t->failed;
-  uint32_t left = t->left;
-  return place_top(p, left) && place_top(p, left + 1);
-}
-
-/* Room for what was counted, and no more. */
-static bool make_room(scree_facet_tree *t) {
-  return SCREE_RESERVE(&t->nodes, t->nodes.count) && SCREE_RESERVE(&t->frames, t->frames.count) &&
-         SCREE_RESERVE(&t->cones, t->cones.count);
-}
-
-static void free_part(scree_facet_tree *part) {
-  scree_free(part->nodes.items);
-  scree_free(part->frames.items);
-  scree_free(part->cones.items);
-  *part = (scree_facet_tree){0};
-}
-
-static void copy_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
-  tops *p = context;
-  for (size_t i = begin; i < end; i++) {
-    top *t = &p->list.items[i];
-    const scree_facet_tree *part = &t->part;
-    for (size_t k = 0; k < part->nodes.count; k++) {
-      scree_facet_node n = part->nodes.items[k];
-      if (n.right) n.right += (uint32_t)t->node;
-      if (n.frame != NO_FRAME) n.frame += (uint32_t)t->frame;
-      p->tree->nodes.items[t->node + k] = n;
-    }
-    for (size_t k = 0; k < part->frames.count; k++) {
-      scree_facet_frame f = part->frames.items[k];
-      if (f.cone != NO_CONE) f.cone += (uint32_t)t->cone;
-      p->tree->frames.items[t->frame + k] = f;
-    }
-    if (part->cones.count > 0)
-      memcpy(p->tree->cones.items + t->cone, part->cones.items,
-             part->cones.count * sizeof *part->cones.items);
-    free_part(&t->part); /* not all are held twice */
-  }
-}
-
-/* The nodes above the parts; children come after them. */
-static void join_tops(const tops *p) {
-  scree_facet_node *nodes = p->tree->nodes.items;
-  for (size_t i = p->list.count; i-- > 0;) {
-    const top *t = &p->list.items[i];
-    if (!t->left) continue;
-    scree_facet_node n = {.begin = t->begin,
-                          .count = t->end - t->begin,
-                          .right = (uint32_t)p->list.items[t->left + 1].node,
-                          .frame = NO_FRAME};
-    n.bounds = scree_box_join(nodes[t->node + 1].bounds, nodes[n.right].bounds);
-    nodes[t->node] = n;
-  }
-}
-
-/* The whole of it, of facets whose middles are known. */
-static bool build_all(scree_facet_tree *tree) {
-  tops p = {.tree = tree};
-  bool built = cut_tops(&p);
-  if (built) {
-    scree_parallel_for(p.list.count, 1, build_block, &p);
-    built = place_top(&p, 0) && make_room(tree);
-  }
-  if (built) {
-    scree_parallel_for(p.list.count, 1, copy_block, &p);
-    join_tops(&p);
-  }
-  for (size_t i = 0; i < p.list.count; i++) free_part(&p.list.items[i].part);
-  scree_free(p.list.items);
-  return built;
+static scree_status add_frames(scree_facet_tree *t, scree_error *error) {
+  framing f = {.tree = t};
+  size_t nodes = t->tree.node_count;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(f.runs, nodes, error, done);
+  SCREE_ALLOC_OR(t->frame_of, nodes, error, done);
+  list_runs(&f);
+  scree_parallel_for(nodes, NODE_BLOCK, try_block, &f);
+  for (size_t i = 0; i < nodes; i++)
+    if (t->frame_of[i] != NO_FRAME) t->frame_of[i] = (uint32_t)t->frame_count++;
+  SCREE_ALLOC_OR(t->frames, t->frame_count, error, done);
+  scree_parallel_for(nodes, NODE_BLOCK, make_block, &f);
+  status = SCREE_OK;
+done:
+  scree_free(f.runs);
+  return status;
 }
 
 scree_status scree_facet_tree_build(const scree_mesh *mesh, scree_facet_tree *out,
                                     scree_error *error) {
+  const scree_boxed facets = {mesh->triangle_count, scree_box_of_facet, mesh, SCREE_LEAF_FACETS,
+                              SCREE_SPLIT_HALVES};
   scree_facet_tree t = {.mesh = mesh};
-  SCREE_ALLOC_OR(t.order, mesh->triangle_count, error, out_of_memory);
-  SCREE_ALLOC_OR(t.middle, mesh->triangle_count, error, out_of_memory);
-  scree_parallel_for(mesh->triangle_count, 1 << 14, middle_block, &t);
-  bool built = build_all(&t);
-  scree_free(t.middle);
-  t.middle = NULL;
-  if (!built) {
-    scree_fail_memory(error, t.nodes.count * sizeof(scree_facet_node), "the tree of facets");
-    goto out_of_memory;
-  }
-  *out = t;
-  return SCREE_OK;
-out_of_memory:
-  scree_facet_tree_free(&t);
-  return SCREE_OUT_OF_MEMORY;
+  scree_status status = scree_tree_build(&facets, &t.tree, error);
+  if (status == SCREE_OK) status = add_frames(&t, error);
+  if (status == SCREE_OK)
+    *out = t;
+  else
+    scree_facet_tree_free(&t);
+  return status;
 }
 
 void scree_facet_tree_free(scree_facet_tree *tree) {
-  scree_free(tree->order);
-  scree_free(tree->middle);
-  scree_free(tree->nodes.items);
-  scree_free(tree->frames.items);
-  scree_free(tree->cones.items);
+  scree_tree_free(&tree->tree);
+  scree_free(tree->frame_of);
+  scree_free(tree->frames);
   *tree = (scree_facet_tree){0};
 }

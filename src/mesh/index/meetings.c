@@ -52,23 +52,23 @@ typedef struct crowd {
 } crowd;
 
 /* Those of the leaf that are not apart from the box. */
-static void list_near(const scree_facet_tree *t, const scree_facet_node *leaf, const scree_box *box,
+static void list_near(const scree_facet_tree *t, const scree_tree_node *leaf, const scree_box *box,
                       crowd *near) {
   near->count = 0;
-  for (uint32_t i = leaf->begin; i < leaf->begin + leaf->count; i++) {
-    scree_box of = scree_facet_box(t->mesh, t->order[i]);
+  for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++) {
+    scree_box of = scree_facet_box(t->mesh, t->tree.order[i]);
     if (!scree_box_meets(&of, box)) continue;
     near->box[near->count] = of;
-    near->facet[near->count++] = t->order[i];
+    near->facet[near->count++] = t->tree.order[i];
   }
 }
 
-static bool test_leaves(search *s, const scree_facet_node *a, const scree_facet_node *b,
+static bool test_leaves(search *s, const scree_tree_node *a, const scree_tree_node *b,
                         scree_meetings *out) {
   crowd of_a, of_b;
-  list_near(s->tree, a, &b->bounds, &of_a);
+  list_near(s->tree, a, &b->box, &of_a);
   if (of_a.count == 0) return true;
-  list_near(s->tree, b, &a->bounds, &of_b);
+  list_near(s->tree, b, &a->box, &of_b);
   for (int i = 0; i < of_a.count; i++)
     for (int j = a == b ? i + 1 : 0; j < of_b.count; j++)
       if (scree_box_meets(&of_a.box[i], &of_b.box[j]) &&
@@ -77,40 +77,38 @@ static bool test_leaves(search *s, const scree_facet_node *a, const scree_facet_
   return true;
 }
 
+static double size2_of(const scree_tree_node *n) {
+  return vec3_norm2(vec3_sub(n->box.high, n->box.low));
+}
+
 /* The pairs of nodes that (a, b) falls into; a == b is a node against itself. */
-static int divide(const scree_facet_tree *t, item pair, item parts[3]) {
-  const scree_facet_node *a = &t->nodes.items[pair.a], *b = &t->nodes.items[pair.b];
+static int divide(const scree_tree *t, item pair, item parts[3]) {
+  const scree_tree_node *a = &t->nodes[pair.a], *b = &t->nodes[pair.b];
   if (pair.a == pair.b) {
-    parts[0] = (item){pair.a + 1, pair.a + 1};
-    parts[1] = (item){a->right, a->right};
-    parts[2] = (item){pair.a + 1, a->right};
+    parts[0] = (item){a->first, a->first};
+    parts[1] = (item){a->first + 1, a->first + 1};
+    parts[2] = (item){a->first, a->first + 1};
     return 3;
   }
-  if (scree_facet_node_is_leaf(b) || (!scree_facet_node_is_leaf(a) && a->count >= b->count)) {
-    parts[0] = (item){pair.a + 1, pair.b};
-    parts[1] = (item){a->right, pair.b};
-  } else {
-    parts[0] = (item){pair.a, pair.b + 1};
-    parts[1] = (item){pair.a, b->right};
-  }
+  bool of_a = b->count || (!a->count && size2_of(a) >= size2_of(b));
+  for (uint32_t side = 0; side < 2; side++)
+    parts[side] = of_a ? (item){a->first + side, pair.b} : (item){pair.a, b->first + side};
   return 2;
 }
 
 /* Whether nothing is to be found between the two nodes. */
 static bool apart(const search *s, item pair) {
-  const scree_facet_node *nodes = s->tree->nodes.items;
   if (s->calm && s->calm[pair.a] && s->calm[pair.b]) return true;
-  return pair.a != pair.b && scree_facet_nodes_apart(s->tree, &nodes[pair.a], &nodes[pair.b]);
+  return pair.a != pair.b && scree_facet_nodes_apart(s->tree, pair.a, pair.b);
 }
 
-static bool both_leaves(const scree_facet_tree *t, item pair) {
-  return scree_facet_node_is_leaf(&t->nodes.items[pair.a]) &&
-         scree_facet_node_is_leaf(&t->nodes.items[pair.b]);
+static bool both_leaves(const scree_tree *t, item pair) {
+  return t->nodes[pair.a].count && t->nodes[pair.b].count;
 }
 
 static bool traverse(search *s, item start, scree_meetings *out) {
-  const scree_facet_tree *t = s->tree;
-  /* each step replaces a pair by at most three of smaller nodes; depth is below 32 + 32 * 8 */
+  const scree_tree *t = &s->tree->tree;
+  /* each step replaces a pair by at most three of smaller nodes; the tree is at most 80 deep */
   item stack[2048];
   int depth = 0;
   stack[depth++] = start;
@@ -119,7 +117,7 @@ static bool traverse(search *s, item start, scree_meetings *out) {
     if (apart(s, pair)) continue;
     if (both_leaves(t, pair)) {
       if (atomic_load_explicit(&s->total, memory_order_relaxed) > s->limit) return true;
-      if (!test_leaves(s, &t->nodes.items[pair.a], &t->nodes.items[pair.b], out)) return false;
+      if (!test_leaves(s, &t->nodes[pair.a], &t->nodes[pair.b], out)) return false;
       continue;
     }
     depth += divide(t, pair, stack + depth);
@@ -143,7 +141,7 @@ static size_t work_items(const scree_facet_tree *t) {
 
 /* Divides the root's pair breadth first until there are enough pairs for the threads. */
 static size_t spread_work(const search *s, item *work, size_t most) {
-  const scree_facet_tree *t = s->tree;
+  const scree_tree *t = &s->tree->tree;
   size_t first = 0, count = 1;
   work[0] = (item){0, 0};
   /* pairs before `first` are done being divided: both leaves */
@@ -212,13 +210,12 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-/* Children come after their node. */
 static void mark_calm(search *s) {
-  for (size_t i = s->tree->nodes.count; i-- > 0;) {
-    const scree_facet_node *n = &s->tree->nodes.items[i];
-    s->calm[i] = scree_facet_node_is_leaf(n) || (s->calm[i + 1] && s->calm[n->right]);
-    for (uint32_t j = n->begin; scree_facet_node_is_leaf(n) && j < n->begin + n->count; j++)
-      s->calm[i] &= s->settled[s->tree->order[j]];
+  const scree_tree *t = &s->tree->tree;
+  for (size_t i = t->node_count; i-- > 0;) { /* children come after their parent */
+    const scree_tree_node *n = &t->nodes[i];
+    s->calm[i] = n->count || (s->calm[n->first] && s->calm[n->first + 1]);
+    for (uint32_t j = 0; j < n->count; j++) s->calm[i] &= s->settled[t->order[n->first + j]];
   }
 }
 
@@ -235,7 +232,7 @@ scree_status scree_facet_meetings_new(const scree_facet_tree *tree, const bool *
   scree_status status = SCREE_OUT_OF_MEMORY;
   size_t work_count = 0, most = work_items(tree);
   if (settled) {
-    SCREE_ALLOC_OR(s.calm, tree->nodes.count, error, done);
+    SCREE_ALLOC_OR(s.calm, tree->tree.node_count, error, done);
     mark_calm(&s);
   }
   SCREE_ALLOC_OR(s.work, most, error, done);

@@ -1,8 +1,6 @@
 /* Boxes by slabs (Kay and Kajiya 1986), triangles by Moller and Trumbore (1997). */
 #include "mesh/index/ray.h"
 
-enum { STACK = 192 };
-
 /* How far, in barycentric coordinates, a ray may pass beside a triangle and still meet it: so that
  * rounding leaves no gap between neighbours. */
 static const double RIM = 1e-9;
@@ -13,11 +11,11 @@ typedef struct ray {
 } ray;
 
 /* Whether the ray is in the box somewhere between `least` and `most`. */
-static bool meets_box(const ray *r, const scree_bvh_node *node, double least, double most) {
-  const double from[3] = {r->from.x, r->from.y, r->from.z};
+static bool meets_box(const ray *r, const scree_box *box, double least, double most) {
+  const double from[3] = {r->from.x, r->from.y, r->from.z}, *low = &box->low.x,
+               *high = &box->high.x;
   for (int k = 0; k < 3; k++) {
-    double a = (node->low[k] - from[k]) * r->inverse[k],
-           b = (node->high[k] - from[k]) * r->inverse[k];
+    double a = (low[k] - from[k]) * r->inverse[k], b = (high[k] - from[k]) * r->inverse[k];
     if (isnan(a) || isnan(b)) continue; /* along a side of the box, within it */
     least = scree_larger(least, scree_smaller(a, b));
     most = scree_smaller(most, scree_larger(a, b));
@@ -40,18 +38,11 @@ static double meet_triangle(const ray *r, const double *corners, vec3 *normal) {
 
 double scree_ray_meet(const scree_bvh *bvh, vec3 from, vec3 along, double least, double *facing) {
   const ray r = {from, along, {1 / along.x, 1 / along.y, 1 / along.z}};
-  uint32_t stack[STACK];
-  int depth = 0;
   double nearest = INFINITY;
-  if (bvh->node_count) stack[depth++] = 0;
-  while (depth > 0) {
-    const scree_bvh_node *node = &bvh->nodes[stack[--depth]];
-    if (!meets_box(&r, node, least, nearest)) continue;
-    if (!node->count) {
-      stack[depth++] = node->first;
-      stack[depth++] = node->first + 1;
-      continue;
-    }
+  scree_tree_walk walk;
+  scree_tree_start(&walk, &bvh->tree);
+  for (const scree_tree_node *node; (node = scree_tree_next(&walk));) {
+    if (!meets_box(&r, &node->box, least, nearest) || scree_tree_enter(&walk, node)) continue;
     for (uint32_t i = node->first; i < node->first + node->count; i++) {
       vec3 normal = {0, 0, 0};
       double t = meet_triangle(&r, bvh->corners + 9 * (size_t)i, &normal);

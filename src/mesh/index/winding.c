@@ -8,13 +8,11 @@
 
 #include <math.h>
 
-enum { STACK = 256 };
-
 /* Heights that differ by less than this share of the largest coordinate may be in either order. */
 #define HEIGHT_ROUNDING 1e-13
 
 double scree_winding_rounding(const scree_facet_tree *tree) {
-  const scree_box *box = &tree->nodes.items[0].bounds;
+  const scree_box *box = &tree->tree.nodes[0].box;
   vec3 reach = vec3_max(vec3_neg(box->low), box->high);
   double largest = fmax(0, fmax(reach.x, fmax(reach.y, reach.z)));
   return HEIGHT_ROUNDING * largest;
@@ -106,25 +104,23 @@ static int order_at(const scree_winding *w, const scree_view *f, const scree_vie
   return side ? side * f->side : -scree_view_side_of(g, f) * g_side;
 }
 
+/* Whether the line through p along f's axis meets the box. */
+static bool is_over(const scree_box *box, const scree_view *f, scree_seen p) {
+  const double *low = &box->low.x, *high = &box->high.x;
+  return low[f->u] <= p.x && high[f->u] >= p.x && low[f->v] <= p.y && high[f->v] >= p.y;
+}
+
 bool scree_winding_look(const scree_winding *w, uint32_t facet, const scree_view *f, scree_seen p,
                         scree_sides *found) {
-  uint32_t stack[STACK];
-  int depth = 0, in = 0;
+  const scree_tree *tree = &w->tree->tree;
+  int in = 0;
+  scree_tree_walk walk;
   *found = (scree_sides){.owner = true};
-  stack[depth++] = 0;
-  while (depth > 0) {
-    uint32_t index = stack[--depth];
-    const scree_facet_node *n = &w->tree->nodes.items[index];
-    if (vec3_along(n->bounds.low, f->u) > p.x || vec3_along(n->bounds.high, f->u) < p.x ||
-        vec3_along(n->bounds.low, f->v) > p.y || vec3_along(n->bounds.high, f->v) < p.y)
-      continue;
-    if (!scree_facet_node_is_leaf(n)) {
-      stack[depth++] = n->right;
-      stack[depth++] = index + 1;
-      continue;
-    }
-    for (uint32_t i = n->begin; i < n->begin + n->count; i++) {
-      uint32_t other = w->tree->order[i];
+  scree_tree_start(&walk, tree);
+  for (const scree_tree_node *n; (n = scree_tree_next(&walk));) {
+    if (!is_over(&n->box, f, p) || scree_tree_enter(&walk, n)) continue;
+    for (uint32_t i = n->first; i < n->first + n->count; i++) {
+      uint32_t other = tree->order[i];
       int side = covers(f, w->tree->mesh, other, p);
       if (side == 2) return false;
       if (!side) continue;

@@ -59,7 +59,7 @@ static void set_size(scree_surface *s) {
     s->largest_facet = fmax(s->largest_facet, vec3_norm(normal) / 2);
   }
   s->area = scree_sum_value(area);
-  s->size = vec3_distance(vec3_load(s->bvh.nodes[0].low), vec3_load(s->bvh.nodes[0].high));
+  s->size = vec3_distance(s->bvh.tree.nodes[0].box.low, s->bvh.tree.nodes[0].box.high);
 }
 
 static scree_status order_vertices(scree_surface *s, scree_error *error) {
@@ -69,7 +69,7 @@ static scree_status order_vertices(scree_surface *s, scree_error *error) {
   memset(seen, 0, s->mesh.vertex_count * sizeof *seen);
   for (size_t i = 0; i < s->mesh.triangle_count; i++)
     for (size_t k = 0; k < 3; k++) {
-      uint32_t v = s->mesh.triangles[3 * (size_t)s->bvh.order[i] + k];
+      uint32_t v = s->mesh.triangles[3 * (size_t)s->bvh.tree.order[i] + k];
       if (!seen[v]) s->vertices[s->used_count++] = v;
       seen[v] = true;
     }
@@ -350,7 +350,7 @@ static void sweep_facets(void *context, size_t begin, size_t end, size_t block, 
   tally t = {.maximum = -1};
   for (size_t i = s->first + begin; i < s->first + end; i++) {
     const double *c = s->from->bvh.corners + 9 * i;
-    const uint32_t *corners = s->from->mesh.triangles + 3 * (size_t)s->from->bvh.order[i];
+    const uint32_t *corners = s->from->mesh.triangles + 3 * (size_t)s->from->bvh.tree.order[i];
     part facet = {{vec3_load(c), vec3_load(c + 3), vec3_load(c + 6)}};
     double area =
         vec3_norm(vec3_triangle_normal(facet.corner[0], facet.corner[1], facet.corner[2])) / 2;
@@ -437,7 +437,7 @@ static void sweep_bounds(void *context, size_t begin, size_t end, size_t block, 
                .tally = {.maximum = -1}};
   for (size_t i = s->first + begin; i < s->first + end; i++) {
     const double *p = s->from->bvh.corners + 9 * i;
-    uint32_t corner = s->from->mesh.triangles[3 * (size_t)s->from->bvh.order[i]];
+    uint32_t corner = s->from->mesh.triangles[3 * (size_t)s->from->bvh.tree.order[i]];
     keep_part(&c, &(queued){.part = {{vec3_load(p), vec3_load(p + 3), vec3_load(p + 6)}},
                             .bound = s->facet_bound[i],
                             .near = s->vertex_near[corner]});

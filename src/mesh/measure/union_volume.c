@@ -371,7 +371,7 @@ done:
 scree_status scree_union_volume(const scree_facet_tree *tree, const scree_adjacency *adjacency,
                                 const scree_meetings *found, double *volume, bool *known,
                                 scree_error *error) {
-  const scree_box *box = &tree->nodes.items[0].bounds;
+  const scree_box *box = &tree->tree.nodes[0].box;
   work w = {.tree = tree, .mesh = tree->mesh, .origin = vec3_lerp(box->low, box->high, 0.5)};
   scree_sum sum = {0};
   scree_status status = list_partners(&w, found, error);

@@ -171,8 +171,6 @@ int scree_sites_find(const scree_site_facet *t, const scree_site_facet *u, doubl
 
 /* ---- Facets near each other ---- */
 
-enum { STACK = 256 };
-
 /* Whether all corners of u that are none of t's lie beyond the plane of t, on one side. */
 static bool is_beyond(const scree_mesh *mesh, uint32_t t, uint32_t u, double tolerance) {
   const uint32_t *v = mesh->triangles + 3 * (size_t)t, *w = mesh->triangles + 3 * (size_t)u;
@@ -212,10 +210,10 @@ static bool is_beside(const scree_mesh *mesh, uint32_t t, uint32_t u, double tol
   return false;
 }
 
-static bool list_leaf(const scree_facet_tree *tree, const scree_facet_node *n, uint32_t t,
+static bool list_leaf(const scree_facet_tree *tree, const scree_tree_node *n, uint32_t t,
                       const scree_box *box, double tolerance, scree_facet_pairs *pairs) {
-  for (uint32_t i = n->begin; i < n->begin + n->count; i++) {
-    uint32_t u = tree->order[i];
+  for (uint32_t i = n->first; i < n->first + n->count; i++) {
+    uint32_t u = tree->tree.order[i];
     if (u <= t) continue;
     scree_box other = scree_facet_box(tree->mesh, u);
     if (!scree_box_meets(box, &other) || is_beyond(tree->mesh, t, u, tolerance) ||
@@ -237,19 +235,11 @@ bool scree_near_pairs(const scree_facet_tree *tree, double tolerance, scree_face
   size_t first = pairs->count;
   for (uint32_t t = 0; t < tree->mesh->triangle_count; t++) {
     scree_box grown = scree_box_grown(scree_facet_box(tree->mesh, t), tolerance);
-    uint32_t stack[STACK];
-    int depth = 0;
-    stack[depth++] = 0;
-    while (depth > 0) {
-      uint32_t index = stack[--depth];
-      const scree_facet_node *n = &tree->nodes.items[index];
-      if (!scree_box_meets(&grown, &n->bounds)) continue;
-      if (scree_facet_node_is_leaf(n)) {
-        if (!list_leaf(tree, n, t, &grown, tolerance, pairs)) return false;
-      } else {
-        stack[depth++] = n->right;
-        stack[depth++] = index + 1;
-      }
+    scree_tree_walk walk;
+    scree_tree_start(&walk, &tree->tree);
+    for (const scree_tree_node *n; (n = scree_tree_next(&walk));) {
+      if (!scree_box_meets(&grown, &n->box) || scree_tree_enter(&walk, n)) continue;
+      if (!list_leaf(tree, n, t, &grown, tolerance, pairs)) return false;
     }
   }
   if (pairs->count > first)

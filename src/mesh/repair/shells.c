@@ -234,23 +234,15 @@ static bool shoot(const scree_shells *shells, const scree_facet_tree *tree, uint
                   uint32_t start, hits *found) {
   const scree_mesh *mesh = tree->mesh;
   const double *p = mesh->positions + 3 * (size_t)start;
-  uint32_t stack[256]; /* deeper than any tree */
-  int depth = 0;
+  scree_tree_walk walk;
   found->count = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    uint32_t index = stack[--depth];
-    const scree_facet_node *n = &tree->nodes.items[index];
-    if (ray_misses(&n->bounds, p)) continue;
-    if (!scree_facet_node_is_leaf(n)) {
-      stack[depth++] = n->right;
-      stack[depth++] = index + 1;
-      continue;
-    }
-    for (uint32_t i = n->begin; i < n->begin + n->count; i++) {
-      uint32_t label = shells->label[tree->order[i]];
+  scree_tree_start(&walk, &tree->tree);
+  for (const scree_tree_node *n; (n = scree_tree_next(&walk));) {
+    if (ray_misses(&n->box, p) || scree_tree_enter(&walk, n)) continue;
+    for (uint32_t i = n->first; i < n->first + n->count; i++) {
+      uint32_t facet = tree->tree.order[i], label = shells->label[facet];
       if (label == SCREE_NO_SHELL || label == own || !shells->items[label].closed) continue;
-      int side = crossing(mesh, tree->order[i], p);
+      int side = crossing(mesh, facet, p);
       if (side && !SCREE_PUSH(found, (hit){label, side})) return false;
     }
   }

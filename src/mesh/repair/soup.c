@@ -31,7 +31,6 @@ enum {
   MOST_AT_EDGE = 64, /* facets: of more, none are joined */
   ROUNDS = 4,        /* of dropping what lies on others */
   SAMPLES = 7,       /* places of a facet, of which all must lie on others */
-  STACK = 256,       /* of the tree, which is 160 deep at most */
   UNSEEN = 2,
 };
 
@@ -214,21 +213,13 @@ typedef struct cover {
 } cover;
 
 static bool lies_on(const cover *c, uint32_t facet, vec3 p) {
-  uint32_t stack[STACK];
-  int depth = 0;
   const scree_box near = scree_box_grown((scree_box){p, p}, c->tolerance);
-  stack[depth++] = 0;
-  while (depth > 0) {
-    uint32_t at = stack[--depth];
-    const scree_facet_node *node = &c->tree->nodes.items[at];
-    if (!scree_box_meets(&node->bounds, &near)) continue;
-    if (!scree_facet_node_is_leaf(node)) {
-      stack[depth++] = node->right;
-      stack[depth++] = at + 1;
-      continue;
-    }
-    for (uint32_t i = node->begin; i < node->begin + node->count; i++) {
-      uint32_t other = c->tree->order[i];
+  scree_tree_walk walk;
+  scree_tree_start(&walk, &c->tree->tree);
+  for (const scree_tree_node *node; (node = scree_tree_next(&walk));) {
+    if (!scree_box_meets(&node->box, &near) || scree_tree_enter(&walk, node)) continue;
+    for (uint32_t i = node->first; i < node->first + node->count; i++) {
+      uint32_t other = c->tree->tree.order[i];
       double corners[9];
       vec3 closest;
       if (other == facet || c->gone[other] || !c->loose[other]) continue;
