@@ -2,7 +2,9 @@
 particles into a tube, and writes the pile for ParaView and as a folder that examples/pile_to_lammps.py,
 pile_to_liggghts.py and pile_to_yade.py read.
 
-    python3 examples/pile.py FOLDER [SCAN] [COUNT]      SCAN: a file in mm, or sample:NAME"""
+    python3 examples/pile.py FOLDER [SCAN] [COUNT] [TRIANGLES]
+
+SCAN: a file in mm, or sample:NAME. TRIANGLES: in place of the chosen count, for programs that take fewer (LAMMPS: 150)."""
 import pathlib
 import random
 import sys
@@ -16,13 +18,13 @@ def random_orientation(rng):
     return [x / norm for x in q]
 
 
-def main(folder, scan_name="sample:fp-3", count="6"):
+def main(folder, scan_name="sample:fp-3", count="6", triangles=None):
     folder, rng = pathlib.Path(folder), random.Random(1)
     folder.mkdir(parents=True, exist_ok=True)
     options = {"resolution": 2e-3, "noise": 0.2e-3} if scan_name.startswith("sample:") else {}
     scan = scree.load(scan_name, **options)
     choice = scan.choose()
-    mesh = choice.mesh()
+    mesh = scan.simplify(int(triangles)) if triangles else choice.mesh()
     print(f"{scan_name}: {choice.recommended.triangle_count} of {scan.triangle_count} triangles, "
           f"mean distance {choice.errors['mean_distance']:.2%} of its size")
 

@@ -58,7 +58,8 @@ def body_lines(number, pile, body):
     lines = [f"{number} 3 {sum(map(len, values))}", f"{len(corners)} {len(edges)} {len(shape['triangles'])}"]
     lines += packed([x for row in values for x in row])
     if len(lines) - 2 > 31:
-        sys.exit(f"shape {body['shape']} has {len(edges) * 2 // 3} triangles, more than LAMMPS reads of one body")
+        sys.exit(f"shape {body['shape']} has {len(edges) * 2 // 3} triangles, more than LAMMPS reads of one body: "
+                 "make the pile from a level of at most 150")
     return lines
 
 

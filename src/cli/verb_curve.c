@@ -25,8 +25,8 @@ static const cli_option options[] = {
      0, 0, "volume|qecd"},
     CLI_GRID_OPTION(curve_arguments, grid),
     {"distance", CLI_FLAG, offsetof(curve_arguments, distance), NULL,
-     "Add mean and greatest distance to the scan, both ways: mean and maximum from the scan to the "
-     "level, the same back, and the Hausdorff distance.",
+     "Mean and maximum distance from the scan to the level and back, in the table in place of S, V "
+     "and Q; the Hausdorff distance is the greater maximum.",
      0, 0, NULL},
     {"points", CLI_COUNT, offsetof(curve_arguments, points), "N",
      "Points per surface for --distance; every vertex is one besides. Default: the scan's vertex "
@@ -71,27 +71,38 @@ static void print_header(const table *t) {
            distance ? ",forward_mean,forward_max,backward_mean,backward_max,hausdorff" : "");
     return;
   }
-  printf("%9s %9s %9s %9s %9s %9s %9s %8s%s\n", "triangles", "Rp", "S (cm2)", "V (cm3)", "eps_s",
-         "eps_v", "Ip", "Q (mm)",
-         distance ? "  mean (mm)  max (mm) mean back  max back Hausdorff" : "");
+  if (distance)
+    printf("%9s %8s %8s %7s %8s %8s %8s %8s %8s\n", "triangles", "Rp", "eps_s", "eps_v", "Ip",
+           "mean", "max", "back", "back max");
+  else
+    printf("%9s %9s %9s %9s %9s %9s %9s %8s\n", "triangles", "Rp", "S (cm2)", "V (cm3)", "eps_s",
+           "eps_v", "Ip", "Q (mm)");
+}
+
+static void print_csv_row(const table *t, const scree_curve_row *row) {
+  const scree_level *level = &row->level;
+  const scree_distance *d = &row->distance;
+  printf("%zu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g", level->triangle_count, level->rp,
+         level->area, level->volume, row->eps_s, row->eps_v, row->ip, level->quadric_error);
+  if (t->arguments->distance)
+    printf(",%.17g,%.17g,%.17g,%.17g,%.17g", d->forward.mean, d->forward.maximum, d->backward.mean,
+           d->backward.maximum, d->hausdorff);
 }
 
 static void print_row(const table *t, const scree_curve_row *row) {
   const scree_level *level = &row->level;
   const scree_distance *d = &row->distance;
-  bool csv = t->arguments->csv;
   cli_terminal_end();
-  printf(csv ? "%zu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g"
-             : "%9zu %9.3g %9.4g %9.4g %9.3g %9.2g %9.4g %8.3g",
-         level->triangle_count, level->rp, level->area * (csv ? 1 : 1e4),
-         level->volume * (csv ? 1 : 1e6), row->eps_s, row->eps_v, row->ip,
-         level->quadric_error * (csv ? 1 : 1e3));
-  if (t->arguments->distance) {
-    double scale = csv ? 1 : 1e3;
-    printf(csv ? ",%.17g,%.17g,%.17g,%.17g,%.17g" : "  %9.4g %9.4g %9.4g %9.4g %9.4g",
-           d->forward.mean * scale, d->forward.maximum * scale, d->backward.mean * scale,
-           d->backward.maximum * scale, d->hausdorff * scale);
-  }
+  if (t->arguments->csv)
+    print_csv_row(t, row);
+  else if (t->arguments->distance)
+    printf("%9zu %8.3g %8.3g %7.2g %8.4g %8.3g %8.3g %8.3g %8.3g", level->triangle_count, level->rp,
+           row->eps_s, row->eps_v, row->ip, d->forward.mean * 1e3, d->forward.maximum * 1e3,
+           d->backward.mean * 1e3, d->backward.maximum * 1e3);
+  else
+    printf("%9zu %9.3g %9.4g %9.4g %9.3g %9.2g %9.4g %8.3g", level->triangle_count, level->rp,
+           level->area * 1e4, level->volume * 1e6, row->eps_s, row->eps_v, row->ip,
+           level->quadric_error * 1e3);
   putchar('\n');
 }
 
@@ -163,10 +174,13 @@ static scree_status write_json(table *t, const scree_scan *scan) {
 
 static void print_legend(const table *t) {
   if (t->call->quiet || t->arguments->csv || t->arguments->json) return;
-  printf("Rp = share of the scan's triangles; S area, V volume; eps_s, eps_v their errors;\n"
-         "Ip = eps_s + Rp, the paper's criterion; Q quadric error, about the distance moved\n");
   if (t->arguments->distance)
-    printf("mean, max: distance of the scan to the level; back: of the level to the scan\n");
+    printf("Rp = share of the scan's triangles; eps_s, eps_v errors of area and volume;\n"
+           "Ip = eps_s + Rp, the paper's criterion; mean, max: distance of the scan to the\n"
+           "level, mm; back: of the level to the scan\n");
+  else
+    printf("Rp = share of the scan's triangles; S area, V volume; eps_s, eps_v their errors;\n"
+           "Ip = eps_s + Rp, the paper's criterion; Q quadric error, about the distance moved\n");
 }
 
 static void print_facts(const table *t, const scree_scan *scan) {

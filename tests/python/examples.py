@@ -7,11 +7,12 @@ import sys
 import tempfile
 
 examples, folder = pathlib.Path(sys.argv[1]), pathlib.Path(tempfile.mkdtemp())
-said = subprocess.run([sys.executable, examples / "pile.py", folder, "sample:icosphere-1", "2"], check=True,
+said = subprocess.run([sys.executable, examples / "pile.py", folder, "sample:icosphere-1", "2", "40"], check=True,
                       stdout=subprocess.PIPE, text=True).stdout
 assert "of 80 triangles" in said and "2 particles after" in said, said
 pile = json.loads((folder / "pile/pile.json").read_text())
 assert len(pile["bodies"]) == 2 and (folder / "pile/shape-0.stl").exists()
+assert pile["shapes"][0]["triangle_count"] == 40, pile["shapes"]
 assert (folder / "pile.pvd").exists() and (folder / "contacts-0005.vtp").exists()
 
 # the importers' files; the programs themselves were run by hand (docs/reference/formats.md)
