@@ -239,12 +239,35 @@ scree_status scree_scene_file_shrink(const scree_scene_file *file, double larges
 
 /* ---- several, of which the first that cannot be is told ---- */
 
+/* Where a field that is none of a scene may have been meant: in the thing that its first word
+ * names, or in every thing of a kind that has it. */
+static bool find_meant(const scree_scene_file *file, const char *field, char *meant, size_t size) {
+  int length = (int)strcspn(field, ".");
+  for (size_t i = 0; i < scree_plan_record.field_count; i++) {
+    const scree_field *f = &scree_plan_record.fields[i];
+    const scree_yaml *group = scree_yaml_find(&file->root, f->key);
+    if (f->kind != SCREE_FIELD_NAMED || !group) continue;
+    for (size_t k = 0; field[length] && k < group->item_count; k++)
+      if (strlen(group->items[k].key) == (size_t)length &&
+          !strncmp(group->items[k].key, field, (size_t)length))
+        return snprintf(meant, size, "%s.%.150s", f->key, field) > 0;
+    for (size_t k = 0; !field[length] && k < f->record->field_count; k++)
+      if (!strcmp(f->record->fields[k].key, field))
+        return snprintf(meant, size, "%s.NAME.%.150s", f->key, field) > 0;
+  }
+  return false;
+}
+
 scree_status scree_scene_file_try(scree_scene_file *file, const char *field, const char *value,
                                   scree_error *error) {
-  scree_error why;
+  scree_error why, before;
+  bool sound = scree_scene_file_check(file, &before) == SCREE_OK;
   scree_status status = scree_scene_file_set(file, field, value, &why);
   if (status == SCREE_BAD_FILE) status = SCREE_BAD_ARGUMENT; /* no other field can mend it */
   if (status != SCREE_OK) return scree_fail(error, status, "%s", why.message);
+  if (!sound && scree_scene_file_check(file, &why) != SCREE_OK &&
+      !strcmp(why.message, before.message))
+    return scree_fail(error, SCREE_BAD_FILE, "%s", why.message); /* it is not of this setting */
   char *name = file->name, none[] = "";
   file->name = none; /* its errors say nothing of the file */
   status = scree_scene_file_check(file, &why);
@@ -259,9 +282,12 @@ scree_status scree_scene_file_try(scree_scene_file *file, const char *field, con
       find_item(file, "parameters", field) ? NULL : scree_nearest_name(field, names, count);
   if (nearest)
     return scree_fail(error, SCREE_BAD_FILE, "no field '%s'; did you mean '%s'?", field, nearest);
-  if (!strncmp(why.message, "no field", 8))
-    return scree_fail(error, SCREE_BAD_FILE, "%s", why.message);
-  return scree_fail(error, SCREE_BAD_FILE, "%s: %s", field, why.message);
+  if (strncmp(why.message, "no field", 8) != 0)
+    return scree_fail(error, SCREE_BAD_FILE, "%s: %s", field, why.message);
+  char meant[PATH_BYTES];
+  if (find_meant(file, field, meant, sizeof meant))
+    return scree_fail(error, SCREE_BAD_FILE, "no field '%.150s'; did you mean '%s'?", field, meant);
+  return scree_fail(error, SCREE_BAD_FILE, "%s", why.message);
 }
 
 typedef struct applier {

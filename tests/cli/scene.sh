@@ -12,6 +12,11 @@ run run hopper.yaml --set inlets 2>&1 | head -2
 run run hopper.yaml --set materials.grian.friction=0.3
 run run hopper.yaml --set outlets.chute.from=1
 run run hopper.yaml --set time=short
+# a field of a thing without its group, and a fault of the file itself, which no setting is blamed for
+run run hopper.yaml --set friction=0.3 2>&1 | head -2
+run run hopper.yaml --set grain.friction=0.3 2>&1 | head -2
+sed 's/count: [0-9]*/count: few/' hopper.yaml >few.yaml
+run run few.yaml --set time=1 2>&1 | head -2
 run run nowhere.yaml
 run run hopper.yaml --resume 2>&1 | head -2
 # another encoding, a tab, a control character: in their line
