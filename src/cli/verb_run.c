@@ -25,9 +25,10 @@ static const cli_option options[] = {
     {"print", CLI_FLAG, AT(print), NULL,
      "Print the scene as it would be run, with units and comments, and stop.", 0, 0, NULL},
     {"template", CLI_TEXT, AT(template_name), "NAME",
-     "Print a commented scene to start from: hopper, drum, tilting-box, drawdown, "
-     "hollow-cylinder, conveyor, vibrating-screen, shear-box, drum-lifters, paddle-mixer, tumbler, "
-     "hammer-mill, transfer-chute, belt, auger or hole-screen.",
+     "A built-in scene in place of a file: hopper, drum, tilting-box, drawdown, hollow-cylinder, "
+     "conveyor, vibrating-screen, shear-box, drum-lifters, paddle-mixer, tumbler, hammer-mill, "
+     "transfer-chute, belt, auger or hole-screen. Without -o, --set, --print and --json it is "
+     "printed with its comments, to start from.",
      0, 0, NULL},
     {"resume", CLI_FLAG, AT(resume), NULL,
      "Go on from the checkpoint in DIR where there is one; without a file, with what is in it.", 0,
@@ -54,27 +55,22 @@ static scree_status simulate(cli_scene_run *r, scree_error *error) {
 
 /* ---- the call ---- */
 
-static int print_template(const cli_call *call, const char *name) {
-  const char *text = scree_scene_template(name);
-  if (call->input_count) return cli_misuse(call->verb, "--template takes no file");
-  if (text) return fputs(text, stdout) < 0;
-  char list[300] = "";
-  for (size_t i = 0; scree_scene_template_name(i); i++) {
-    size_t used = strlen(list);
-    snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "",
-             scree_scene_template_name(i));
-  }
-  return cli_misuse(call->verb, "--template %s: there are %s", name, list);
+/* A template by itself is text to start from; with where to write or what to change it is run. */
+static bool prints_template(const run_arguments *a) {
+  return a->template_name && !a->output && !a->set.count && !a->print && !a->json;
 }
 
 static int check_call(const cli_call *call) {
   const run_arguments *a = call->options;
-  if (call->input_count == 0 && !(a->resume && a->output))
+  bool scene = call->input_count || a->template_name;
+  if (call->input_count && a->template_name)
+    return cli_misuse(call->verb, "--template takes no file");
+  if (!scene && !(a->resume && a->output))
     return cli_misuse(call->verb, "needs a SCENE.yaml, or --resume with -o DIR; --template NAME "
                                   "prints one to start from");
-  if (call->input_count == 0 && (a->set.count || a->print))
+  if (!scene && (a->set.count || a->print))
     return cli_misuse(call->verb, "--set and --print need a SCENE.yaml");
-  if (a->change.count && (!a->resume || call->input_count))
+  if (a->change.count && (!a->resume || scene))
     return cli_misuse(call->verb, "--change needs --resume, and no SCENE.yaml: it changes the "
                                   "scene that the folder has");
   if (a->resume && !a->output) return cli_misuse(call->verb, "--resume needs -o DIR");
@@ -96,11 +92,19 @@ static int run(const cli_call *call) {
                      .json = a->json,
                      .no_picture = a->no_picture};
   scree_error error;
-  if (a->template_name) return print_template(call, a->template_name);
   int code = check_call(call);
   if (code) return code;
   scree_status status = SCREE_OK;
-  if (call->input_count) status = scree_scene_file_read(call->inputs[0], &r.file, &error);
+  if (a->template_name)
+    status = scree_scene_file_template(a->template_name, &r.file, &error);
+  else if (call->input_count)
+    status = scree_scene_file_read(call->inputs[0], &r.file, &error);
+  if (status != SCREE_OK && a->template_name)
+    return cli_misuse(call->verb, "--template: %s", error.message);
+  if (status == SCREE_OK && prints_template(a)) {
+    scree_scene_file_free(r.file);
+    return fputs(scree_scene_template(a->template_name), stdout) < 0;
+  }
   if (status == SCREE_OK && r.file) code = cli_set_fields(call, r.file, NULL, NULL, 0, &a->set);
   if (status == SCREE_OK && r.file && code == 0) status = scree_scene_file_check(r.file, &error);
   if (code) {

@@ -4,6 +4,10 @@ run run 2>&1 | head -2
 run run --template silo 2>&1 | head -2
 "$SCREE" run --template hopper >hopper.yaml
 head -2 hopper.yaml | tail -1
+"$SCREE" run --template hopper --print --set time=0.05 | grep ^time
+run run --template hopper --set time=0.001 -o built-in -q --no-picture 2>&1 | head -2
+ls built-in | head -3
+run run --template hopper hopper.yaml 2>&1 | head -2
 "$SCREE" run hopper.yaml --print --set inlets.feed.count=20 --set time=0.05 >small.yaml
 grep -E '^time|count|sphere' small.yaml
 run run hopper.yaml --set inlets.feed.cuont=20 2>&1 | cut -c 1-120
