@@ -5,6 +5,7 @@
 #include "base/vec.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 
 typedef struct scree_box {
   vec3 low, high;
@@ -47,6 +48,15 @@ static inline bool scree_box_meets(const scree_box *a, const scree_box *b) {
          (b->low.y <= a->high.y) & (a->low.z <= b->high.z) & (b->low.z <= a->high.z);
 }
 
+/* That of some points, 3 numbers each. */
+static inline scree_box scree_box_of_points(const double *points, size_t count) {
+  scree_box b = scree_box_empty();
+  for (size_t i = 0; i < count; i++) {
+    vec3 p = vec3_load(points + 3 * i);
+    b = scree_box_join(b, (scree_box){p, p});
+  }
+  return b;
+}
 /* The box of `box` after x -> rotation x + shift. */
 static inline scree_box scree_box_moved(const scree_box *box, const mat3 *rotation, vec3 shift) {
   vec3 centre = vec3_scale(vec3_add(box->low, box->high), 0.5);

@@ -149,7 +149,7 @@ static size_t partition(const binning *bins, int split, boxed *boxes, size_t cou
 static size_t split_boxes(const builder *b, const task *t, const scree_box *centres) {
   boxed *boxes = b->boxes + t->first;
   vec3 size = vec3_sub(centres->high, centres->low);
-  binning bins = {.axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2};
+  binning bins = {.axis = vec3_greatest(size)};
   double longest = vec3_along(size, bins.axis);
   bins.low = vec3_along(centres->low, bins.axis);
   bins.scale = BINS / longest;

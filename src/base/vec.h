@@ -56,6 +56,13 @@ static inline vec3 vec3_lerp(vec3 a, vec3 b, double t) {
 static inline double vec3_along(vec3 a, int axis) {
   return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
 }
+/* The axis of the greatest component, the first of equals. */
+static inline int vec3_greatest(vec3 a) {
+  return a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+}
+static inline vec3 vec3_abs(vec3 a) {
+  return (vec3){fabs(a.x), fabs(a.y), fabs(a.z)};
+}
 static inline double vec3_dot(vec3 a, vec3 b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }

@@ -59,9 +59,7 @@ static vec3 vertex_at(const cells *c, uint32_t v) {
 static void set_normals(cells *c) {
   for (size_t v = 0; v < c->mesh->vertex_count; v++) c->normals[v] = (vec3){0, 0, 0};
   for (size_t t = 0; t < c->mesh->triangle_count; t++) {
-    vec3 n =
-        vec3_triangle_normal(scree_mesh_corner(c->mesh, t, 0), scree_mesh_corner(c->mesh, t, 1),
-                             scree_mesh_corner(c->mesh, t, 2));
+    vec3 n = scree_facet_normal(c->mesh, t);
     for (size_t k = 0; k < 3; k++) {
       vec3 *normal = &c->normals[c->mesh->triangles[3 * t + k]];
       *normal = vec3_add(*normal, n);

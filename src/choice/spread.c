@@ -29,11 +29,6 @@ static uint32_t morton(vec3 p, vec3 low, double side) {
          interleave((uint32_t)((p.z - low.z) * scale)) << 2;
 }
 
-static vec3 twice_area(const scree_mesh *mesh, size_t t) {
-  return vec3_triangle_normal(scree_mesh_corner(mesh, t, 0), scree_mesh_corner(mesh, t, 1),
-                              scree_mesh_corner(mesh, t, 2));
-}
-
 static void key_facets(const scree_mesh *mesh, scree_keyed *keys) {
   vec3 low, high;
   scree_mesh_bounds(mesh, &low, &high);
@@ -53,11 +48,11 @@ static void take_points(const scree_mesh *mesh, const scree_keyed *curve, size_t
                         uint32_t *before, scree_spread *s) {
   double area = 0, done = 0, u = 0.5, v = 0.5;
   for (size_t k = 0; k < mesh->triangle_count; k++)
-    area += vec3_norm(twice_area(mesh, curve[k].index)) / 2;
+    area += vec3_norm(scree_facet_normal(mesh, curve[k].index)) / 2;
   double share = area / (double)wanted;
   for (size_t k = 0; k < mesh->triangle_count; k++) {
     size_t t = curve[k].index;
-    vec3 normal = twice_area(mesh, t), corner = scree_mesh_corner(mesh, t, 0),
+    vec3 normal = scree_facet_normal(mesh, t), corner = scree_mesh_corner(mesh, t, 0),
          e = vec3_sub(scree_mesh_corner(mesh, t, 1), corner),
          f = vec3_sub(scree_mesh_corner(mesh, t, 2), corner);
     before[k] = (uint32_t)s->count;

@@ -54,9 +54,7 @@ static scree_status sum_areas(scree_target *b, scree_error *error) {
   if (!b->area_below)
     return scree_fail_memory(error, b->mesh.triangle_count * sizeof *b->area_below, "areas");
   for (size_t t = 0; t < b->mesh.triangle_count; t++) {
-    vec3 normal =
-        vec3_triangle_normal(scree_mesh_corner(&b->mesh, t, 0), scree_mesh_corner(&b->mesh, t, 1),
-                             scree_mesh_corner(&b->mesh, t, 2));
+    vec3 normal = scree_facet_normal(&b->mesh, t);
     b->area += vec3_norm(normal) / 2;
     b->area_below[t] = b->area;
   }
@@ -113,9 +111,7 @@ void scree_target_monomials(vec3 p, double m[SCREE_MOMENTS]) {
 }
 
 static vec3 unit_normal(const scree_target *body, size_t triangle) {
-  vec3 n = vec3_triangle_normal(scree_mesh_corner(&body->mesh, triangle, 0),
-                                scree_mesh_corner(&body->mesh, triangle, 1),
-                                scree_mesh_corner(&body->mesh, triangle, 2));
+  vec3 n = scree_facet_normal(&body->mesh, triangle);
   double length = vec3_norm(n);
   return length > 0 ? vec3_scale(n, 1 / length) : (vec3){0, 0, 1};
 }

@@ -6,6 +6,7 @@
  * The best is fitted to its points by least squares, again and again without those that lie
  * farther off than noise does. */
 #include "base/alloc.h"
+#include "base/box.h"
 #include "base/eigen.h"
 #include "base/rng.h"
 #include "scree.h"
@@ -303,20 +304,17 @@ static scree_status make_field(const scree_mesh *mesh, const plane *p, double ce
 scree_status scree_height_field_scan(const scree_mesh *scan, double cell, scree_ground *ground,
                                      scree_height_field *field, scree_error *error) {
   plane best = {{0, 0, 1}, 0};
-  vec3 low = {INFINITY, INFINITY, INFINITY}, high = vec3_neg(low), sum;
+  const scree_box box = scree_box_of_points(scan->positions, scan->vertex_count);
+  vec3 sum;
   scree_ground found = {0};
   if (!(cell >= 0))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "cells of %g m: must not be below 0", cell);
   if (scan->triangle_count == 0) return scree_fail(error, SCREE_BAD_MESH, "no facet in it");
-  for (size_t i = 0; i < scan->vertex_count; i++) {
-    low = vec3_min(low, vec3_load(scan->positions + 3 * i));
-    high = vec3_max(high, vec3_load(scan->positions + 3 * i));
-  }
   vec3 *points = scree_alloc(POINTS, sizeof *points);
   if (!points) return scree_fail_memory(error, POINTS * sizeof *points, "the points of a scan");
   scree_status status = draw_points(scan, points, &sum, error);
   if (status == SCREE_OK)
-    status = find_floor(points, sum, vec3_distance(low, high), &best, &found, error);
+    status = find_floor(points, sum, vec3_distance(box.low, box.high), &best, &found, error);
   scree_free(points);
   if (status == SCREE_OK) status = make_field(scan, &best, cell, &found, field, error);
   if (status == SCREE_OK) *ground = found;

@@ -6,6 +6,7 @@
 
 #include "base/alloc.h"
 #include "base/parallel.h"
+#include "mesh/mesh.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -42,17 +43,13 @@ static void sort_pairs(uint64_t *pairs, size_t count) {
   }
 }
 
-static bool takes_part(const uint32_t *corner) {
-  return corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0];
-}
-
 static void count_half(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)worker;
   const builder *b = context;
   uint32_t *count = block == 0 ? b->start : b->second;
   for (size_t c = 3 * begin; c < 3 * end; c += 3) {
     const uint32_t *corner = b->mesh->triangles + c;
-    if (!takes_part(corner)) continue;
+    if (scree_names_twice(corner)) continue;
     for (int k = 0; k < 3; k++) {
       uint32_t from = corner[k], to = corner[(k + 1) % 3];
       count[from < to ? from : to]++;
@@ -68,7 +65,7 @@ static void fill_half(void *context, size_t begin, size_t end, size_t block, int
   for (size_t c = 3 * end; c > 3 * begin;) {
     c -= 3;
     const uint32_t *corner = b->mesh->triangles + c;
-    bool part = takes_part(corner);
+    bool part = !scree_names_twice(corner);
     for (int k = 2; k >= 0; k--) {
       uint32_t from = corner[k], to = corner[(k + 1) % 3], h = (uint32_t)c + (uint32_t)k;
       if (!part) {
@@ -166,4 +163,15 @@ void scree_adjacency_free(scree_adjacency *adjacency) {
   scree_free(adjacency->ring);
   scree_free(adjacency->edges);
   *adjacency = (scree_adjacency){0};
+}
+
+void scree_join_over_edges(const scree_mesh *mesh, const scree_adjacency *adjacency, bool manifold,
+                           uint32_t *parent) {
+  const uint32_t *ring = adjacency->ring;
+  for (size_t t = 0; t < mesh->triangle_count; t++) parent[t] = (uint32_t)t;
+  for (size_t e = 0; e < adjacency->edge_count; e++) {
+    uint32_t first = adjacency->edges[e];
+    if (manifold && ring[ring[first]] != first) continue;
+    for (uint32_t h = ring[first]; h != first; h = ring[h]) scree_join(parent, first / 3, h / 3);
+  }
 }

@@ -25,6 +25,11 @@ scree_status scree_adjacency_build(const scree_mesh *mesh, scree_adjacency *adja
                                    scree_error *error);
 void scree_adjacency_free(scree_adjacency *adjacency);
 
+/* Whether it names three vertices. */
+static inline bool scree_takes_part(const scree_adjacency *adjacency, size_t triangle) {
+  return adjacency->ring[3 * triangle] != SCREE_NO_HALF_EDGE;
+}
+
 /* The half-edges before and after h in its triangle. */
 static inline uint32_t scree_half_edge_next(uint32_t h) {
   return h % 3 == 2 ? h - 2 : h + 1;
@@ -60,5 +65,9 @@ static inline void scree_join(uint32_t *parent, uint32_t i, uint32_t j) {
   else
     parent[i] = j;
 }
+/* The facets connected through shared edges; parent has one of each facet. `manifold`: through
+ * edges of two facets alone. */
+void scree_join_over_edges(const scree_mesh *mesh, const scree_adjacency *adjacency, bool manifold,
+                           uint32_t *parent);
 
 #endif

@@ -35,6 +35,13 @@ static inline vec3 scree_mesh_corner(const scree_mesh *mesh, size_t triangle, in
   return vec3_load(mesh->positions + 3 * (size_t)mesh->triangles[3 * triangle + (size_t)k]);
 }
 
+/* Twice the area along the outward normal. */
+static inline vec3 scree_facet_normal(const scree_mesh *mesh, size_t triangle) {
+  return vec3_triangle_normal(scree_mesh_corner(mesh, triangle, 0),
+                              scree_mesh_corner(mesh, triangle, 1),
+                              scree_mesh_corner(mesh, triangle, 2));
+}
+
 static inline scree_box scree_facet_box(const scree_mesh *mesh, size_t triangle) {
   vec3 p = scree_mesh_corner(mesh, triangle, 0), q = scree_mesh_corner(mesh, triangle, 1),
        r = scree_mesh_corner(mesh, triangle, 2);

@@ -20,15 +20,11 @@ typedef struct counter {
   scree_topology *found;
 } counter;
 
-static bool takes_part(const counter *c, size_t triangle) {
-  return c->adjacency->ring[3 * triangle] != SCREE_NO_HALF_EDGE;
-}
-
 static void count_facets(counter *c) {
   size_t facets = 0, degenerate = 0;
   for (size_t t = 0; t < c->mesh->triangle_count; t++) {
-    facets += takes_part(c, t);
-    degenerate += !takes_part(c, t) || scree_facet_is_flat(c->mesh, t);
+    facets += scree_takes_part(c->adjacency, t);
+    degenerate += !scree_takes_part(c->adjacency, t) || scree_facet_is_flat(c->mesh, t);
   }
   c->found->facet_count = facets;
   c->found->degenerate_facet_count = degenerate;
@@ -189,7 +185,7 @@ static void count_inward(counter *c, uint32_t *parent, scree_sum *volume) {
   const scree_mesh *mesh = c->mesh;
   for (size_t t = 0; t < mesh->triangle_count; t++) volume[t] = (scree_sum){0};
   for (size_t t = 0; t < mesh->triangle_count; t++) {
-    if (!takes_part(c, t)) continue;
+    if (!scree_takes_part(c->adjacency, t)) continue;
     uint32_t root = scree_find_root(parent, (uint32_t)t);
     vec3 origin = scree_mesh_corner(mesh, root, 0), p = scree_mesh_corner(mesh, t, 0);
     vec3 normal =
@@ -201,7 +197,7 @@ static void count_inward(counter *c, uint32_t *parent, scree_sum *volume) {
     if (c->adjacency->ring[h] == h) volume[scree_find_root(parent, h / 3)].sum = NAN;
   }
   for (size_t t = 0; t < mesh->triangle_count; t++)
-    if (takes_part(c, t) && parent[t] == t) {
+    if (scree_takes_part(c->adjacency, t) && parent[t] == t) {
       c->found->shell_count++;
       c->found->inward_shell_count += scree_sum_value(volume[t]) < 0;
     }
@@ -214,12 +210,7 @@ static scree_status count_shells(counter *c, scree_error *error) {
   scree_sum *volume = NULL;
   SCREE_ALLOC_OR(parent, triangle_count, error, done);
   SCREE_ALLOC_OR(volume, triangle_count, error, done);
-  for (uint32_t t = 0; t < triangle_count; t++) parent[t] = t;
-  for (size_t e = 0; e < c->adjacency->edge_count; e++) {
-    uint32_t first = c->adjacency->edges[e];
-    for (uint32_t h = c->adjacency->ring[first]; h != first; h = c->adjacency->ring[h])
-      scree_join(parent, first / 3, h / 3);
-  }
+  scree_join_over_edges(c->mesh, c->adjacency, false, parent);
   count_inward(c, parent, volume);
   status = SCREE_OK;
 done:

@@ -9,6 +9,7 @@
 #include "mesh/weld_near.h"
 
 #include "base/vec.h"
+#include "mesh/adjacency.h"
 #include "mesh/mesh.h"
 #include "mesh/weld_sort.h"
 
@@ -28,20 +29,6 @@ typedef struct cells {
   uint32_t *parent; /* union-find */
 } cells;
 
-static uint32_t find_root(uint32_t *parent, uint32_t v) {
-  while (parent[v] != v) v = parent[v] = parent[parent[v]];
-  return v;
-}
-
-static void unite(uint32_t *parent, uint32_t a, uint32_t b) {
-  a = find_root(parent, a);
-  b = find_root(parent, b);
-  if (a < b)
-    parent[b] = a;
-  else
-    parent[a] = b;
-}
-
 static vec3 scaled_position(const cells *c, uint32_t v) {
   return vec3_scale(vec3_sub(vec3_load(c->positions + 3 * (size_t)v), c->low), c->scale);
 }
@@ -58,7 +45,7 @@ static size_t head_of(const cells *c, int64_t x, int64_t y, int64_t z) {
 static size_t join_chain(cells *c, uint32_t v, vec3 p, size_t head) {
   size_t compared = 0;
   for (uint32_t other = c->heads[head]; other != NO_VERTEX; other = c->next[other], compared++) {
-    if (vec3_norm2(vec3_sub(p, scaled_position(c, other))) <= 1) unite(c->parent, v, other);
+    if (vec3_norm2(vec3_sub(p, scaled_position(c, other))) <= 1) scree_join(c->parent, v, other);
   }
   return compared;
 }
@@ -105,7 +92,7 @@ static scree_status rebuild(scree_mesh *mesh, uint32_t *parent, scree_error *err
   size_t count = 0;
   for (size_t t = 0; t < mesh->triangle_count; t++) {
     uint32_t v[3];
-    for (int k = 0; k < 3; k++) v[k] = find_root(parent, mesh->triangles[3 * t + (size_t)k]);
+    for (int k = 0; k < 3; k++) v[k] = scree_find_root(parent, mesh->triangles[3 * t + (size_t)k]);
     if (scree_names_twice(v)) continue;
     used[v[0]] = used[v[1]] = used[v[2]] = 1;
     memcpy(triangles + 3 * count++, v, sizeof v);
@@ -121,22 +108,13 @@ done:
   return SCREE_OK;
 }
 
-/* The diagonal, safe from overflow and underflow; *low is the corner. */
-static double bounding_diagonal(const scree_mesh *mesh, vec3 *low) {
-  vec3 high = *low = vec3_load(mesh->positions);
-  for (size_t v = 1; v < mesh->vertex_count; v++) {
-    vec3 p = vec3_load(mesh->positions + 3 * v);
-    *low = vec3_min(*low, p);
-    high = vec3_max(high, p);
-  }
-  vec3 size = vec3_sub(high, *low);
-  return hypot(hypot(size.x, size.y), size.z);
-}
-
 scree_status scree_weld_near(scree_mesh *mesh, double tolerance, scree_error *error) {
   if (mesh->vertex_count == 0) return SCREE_OK;
   cells c = {.positions = mesh->positions, .vertex_count = mesh->vertex_count};
-  c.scale = 1 / (tolerance * bounding_diagonal(mesh, &c.low));
+  const scree_box box = scree_box_of_points(mesh->positions, mesh->vertex_count);
+  vec3 size = vec3_sub(box.high, box.low);
+  c.low = box.low;
+  c.scale = 1 / (tolerance * hypot(hypot(size.x, size.y), size.z)); /* without overflow */
   if (!isfinite(c.scale)) return SCREE_OK; /* no two doubles are that close */
   c.head_count = 64;
   while (c.head_count < mesh->vertex_count) c.head_count *= 2;

@@ -18,9 +18,7 @@ typedef struct strip {
 
 /* The normal across the axis with twice the area as its length; 0 of a flank. */
 static vec3 running_normal(const scree_mesh *mesh, size_t facet, vec3 axis) {
-  vec3 n =
-      vec3_triangle_normal(scree_mesh_corner(mesh, facet, 0), scree_mesh_corner(mesh, facet, 1),
-                           scree_mesh_corner(mesh, facet, 2));
+  vec3 n = scree_facet_normal(mesh, facet);
   const double along = vec3_dot(n, axis);
   if (fabs(along) > flank_cosine * vec3_norm(n)) return (vec3){0, 0, 0};
   return vec3_mad(n, axis, -along);

@@ -1,4 +1,6 @@
-/* Facets of a scan are of one size, so that a grid of cells sees each a few times: all pairs in a
+/* A grid beside the tree (base/tree.h), for on a sound scan it answers in a third of the time.
+ *
+ * Facets of a scan are of one size, so that a grid of cells sees each a few times: all pairs in a
  * cell whose boxes touch are tested, each pair in the first cell that both have. Nearly always one
  * facet's plane has the other, but for what they share, surely on one side; the rest is tested
  * exactly. Where the surface is flat the rest would be most: there facets that share a vertex are
@@ -111,11 +113,7 @@ static facet_cells cells_of(const prover *p, const span *s) {
 /* False: a surface without extent. */
 static bool shape(prover *p, size_t *cell_count) {
   const scree_mesh *mesh = p->mesh;
-  vec3 high = p->low = vec3_load(mesh->positions);
-  for (size_t v = 1; v < mesh->vertex_count; v++) {
-    p->low = vec3_min(p->low, vec3_load(mesh->positions + 3 * v));
-    high = vec3_max(high, vec3_load(mesh->positions + 3 * v));
-  }
+  const scree_box whole = scree_box_of_points(mesh->positions, mesh->vertex_count);
   double sum = 0;
   size_t samples = 0;
   for (size_t t = 0; t < mesh->triangle_count; t += SAMPLE_STEP, samples++) {
@@ -123,7 +121,8 @@ static bool shape(prover *p, size_t *cell_count) {
     vec3 size = vec3_sub(box.high, box.low);
     sum += fmax(size.x, fmax(size.y, size.z));
   }
-  vec3 extent = vec3_sub(high, p->low);
+  vec3 extent = vec3_sub(whole.high, whole.low);
+  p->low = whole.low;
   double cell = SIZES_PER_CELL * sum / (double)samples, n;
   if (!(cell > 0 && cell < INFINITY)) return false;
   for (;; cell *= 1.25) {
@@ -210,9 +209,8 @@ static bool fan_is_graph(const prover *p, uint32_t h) {
   if (count == 0) return false;
   spoke[count] = spoke[0];
   for (size_t i = 0; i < count; i++) n = vec3_add(n, vec3_cross(spoke[i], spoke[i + 1]));
-  double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
-  int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-  double sign = axis == 0 ? n.x : axis == 1 ? n.y : n.z;
+  int axis = vec3_greatest(vec3_abs(n));
+  double sign = vec3_along(n, axis);
   double a[2] = {0, 0}, b[2];
   for (size_t i = 0; i <= count; i++) {
     const double e[3] = {spoke[i].x, spoke[i].y, spoke[i].z};

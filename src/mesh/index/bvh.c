@@ -62,7 +62,7 @@ bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit) {
 
 /* ---- Of many points ---- */
 
-static scree_box box_of_points(const scree_point_block *points) {
+static scree_box box_of_block(const scree_point_block *points) {
   scree_box b = scree_box_empty();
   for (int i = 0; i < points->count; i++) {
     vec3 p = {points->at[0][i], points->at[1][i], points->at[2][i]};
@@ -78,7 +78,7 @@ void scree_bvh_closest_block(const scree_bvh *bvh, scree_point_block *points) {
   } stack[SCREE_TREE_STACK];
   const scree_tree_node *nodes = bvh->tree.nodes;
   int depth = 0;
-  scree_box bounds = box_of_points(points);
+  scree_box bounds = box_of_block(points);
   double farthest2 = scree_point_block_farthest(points);
   vec3 middle = vec3_scale(vec3_add(bounds.low, bounds.high), 0.5);
   if (bvh->tree.item_count == 0) return;

@@ -32,8 +32,7 @@ scree_view scree_view_of_corners(const double *a, const double *b, const double 
   scree_view f = {.corner = {a, b, c}};
   vec3 n =
       vec3_triangle_normal(vec3_load(f.corner[0]), vec3_load(f.corner[1]), vec3_load(f.corner[2]));
-  double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
-  f.axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+  f.axis = vec3_greatest(vec3_abs(n));
   f.u = (f.axis + 1) % 3;
   f.v = (f.axis + 2) % 3;
   f.side = seen_side(&f);
@@ -96,7 +95,7 @@ static int order_at(const scree_winding *w, const scree_view *f, const scree_vie
   double height = scree_view_height(f, p), other = scree_view_height(g, p);
   vec3 n = vec3_triangle_normal(vec3_load(g->corner[0]), vec3_load(g->corner[1]),
                                 vec3_load(g->corner[2]));
-  double upright = fabs(f->axis == 0 ? n.x : f->axis == 1 ? n.y : n.z);
+  double upright = fabs(vec3_along(n, f->axis));
   double rounding = w->rounding * (1 + vec3_norm(n) / upright);
   if (other > height + rounding) return 1;
   if (other < height - rounding) return -1;

@@ -234,14 +234,9 @@ typedef struct corner {
   double area, mean, angle;
 } corner;
 
-static vec3 facet_normal(const scree_mesh *mesh, size_t t) {
-  return vec3_triangle_normal(scree_mesh_corner(mesh, t, 0), scree_mesh_corner(mesh, t, 1),
-                              scree_mesh_corner(mesh, t, 2));
-}
-
 static void add_facets(const scree_mesh *mesh, corner *corners) {
   for (size_t t = 0; t < mesh->triangle_count; t++) {
-    double area = vec3_norm(facet_normal(mesh, t)) / 2;
+    double area = vec3_norm(scree_facet_normal(mesh, t)) / 2;
     for (int k = 0; k < 3; k++) {
       vec3 p = scree_mesh_corner(mesh, t, k),
            a = vec3_sub(scree_mesh_corner(mesh, t, (k + 1) % 3), p),
@@ -255,7 +250,7 @@ static void add_facets(const scree_mesh *mesh, corner *corners) {
 
 /* Half-edge h and its twin g: positive where the surface is convex. */
 static void add_edge(const scree_mesh *mesh, uint32_t h, uint32_t g, corner *corners) {
-  vec3 m = facet_normal(mesh, h / 3), n = facet_normal(mesh, g / 3);
+  vec3 m = scree_facet_normal(mesh, h / 3), n = scree_facet_normal(mesh, g / 3);
   vec3 along = vec3_sub(
       scree_mesh_corner(mesh, scree_half_edge_next(h) / 3, (int)(scree_half_edge_next(h) % 3)),
       scree_mesh_corner(mesh, h / 3, (int)(h % 3)));

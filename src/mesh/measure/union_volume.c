@@ -324,11 +324,6 @@ static void join_pieces(const work *w, const scree_adjacency *adjacency, uint32_
   }
 }
 
-static vec3 normal_of(const scree_mesh *mesh, uint32_t t) {
-  return vec3_triangle_normal(scree_mesh_corner(mesh, t, 0), scree_mesh_corner(mesh, t, 1),
-                              scree_mesh_corner(mesh, t, 2));
-}
-
 /* The largest facet speaks for each piece. number has room for one of each facet. */
 static void ask_pieces(work *w, uint32_t *parent, uint32_t *number) {
   const scree_mesh *mesh = w->mesh;
@@ -342,8 +337,8 @@ static void ask_pieces(work *w, uint32_t *parent, uint32_t *number) {
       w->pieces[asked++] = 0;
     }
     uint32_t *speaker = &w->asked[number[root]];
-    vec3 n = normal_of(mesh, t);
-    if (vec3_norm2(n) > vec3_norm2(normal_of(mesh, *speaker))) *speaker = t;
+    vec3 n = scree_facet_normal(mesh, t);
+    if (vec3_norm2(n) > vec3_norm2(scree_facet_normal(mesh, *speaker))) *speaker = t;
     w->pieces[number[root]] += vec3_dot(vec3_sub(scree_mesh_corner(mesh, t, 0), w->origin), n);
   }
   w->asked_count = asked;

@@ -2,6 +2,7 @@
 #include "base/array.h"
 #include "mesh/repair/repair.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -23,21 +24,28 @@ bool scree_repair_add_vertex(scree_repair *r, const double *position, uint32_t *
   return true;
 }
 
-bool scree_repair_add_facet(scree_repair *r, uint32_t a, uint32_t b, uint32_t c) {
+bool scree_repair_reserve(scree_repair *r, size_t more) {
   scree_mesh *m = &r->mesh;
   void *items = m->triangles;
-  if (m->triangle_count >= (UINT32_MAX - 1) / 3) return false;
-  bool room = scree_array_reserve(&items, &r->triangle_capacity, m->triangle_count + 1,
+  if (m->triangle_count + more > (UINT32_MAX - 1) / 3) return false;
+  bool room = scree_array_reserve(&items, &r->triangle_capacity, m->triangle_count + more,
                                   3 * sizeof(uint32_t));
   m->triangles = items;
-  if (!room) return false;
-  uint32_t *corner = m->triangles + 3 * m->triangle_count++;
+  return room;
+}
+
+bool scree_repair_add_facet(scree_repair *r, uint32_t a, uint32_t b, uint32_t c) {
+  if (!scree_repair_reserve(r, 1)) return false;
+  uint32_t *corner = r->mesh.triangles + 3 * r->mesh.triangle_count++;
   corner[0] = a, corner[1] = b, corner[2] = c;
   return true;
 }
 
 size_t scree_repair_remove(scree_repair *r, const bool *marked) {
-  scree_mesh *m = &r->mesh;
+  return scree_facets_drop(&r->mesh, marked);
+}
+
+size_t scree_facets_drop(scree_mesh *m, const bool *marked) {
   size_t kept = 0, before = m->triangle_count;
   for (size_t t = 0; t < before; t++) {
     if (marked[t]) continue;
@@ -60,4 +68,53 @@ scree_status scree_repair_growth(const scree_repair *r, size_t triangle_count, s
 
 scree_status scree_repair_no_memory(scree_error *error) {
   return scree_fail_memory(error, 0, "the repair");
+}
+
+/* ---- Duplicates ---- */
+
+typedef struct corner_key {
+  uint32_t low, middle, high, facet;
+} corner_key;
+
+static int compare_corner_keys(const void *a, const void *b) {
+  const corner_key *x = a, *y = b;
+  if (x->low != y->low) return x->low < y->low ? -1 : 1;
+  if (x->middle != y->middle) return x->middle < y->middle ? -1 : 1;
+  if (x->high != y->high) return x->high < y->high ? -1 : 1;
+  return (x->facet > y->facet) - (x->facet < y->facet);
+}
+
+static corner_key key_of(const scree_mesh *mesh, size_t t) {
+  const uint32_t *c = mesh->triangles + 3 * t;
+  uint32_t low = c[0] < c[1] ? c[0] : c[1], high = c[0] < c[1] ? c[1] : c[0], middle = c[2];
+  if (middle < low) {
+    uint32_t keep = low;
+    low = middle, middle = keep;
+  } else if (middle > high) {
+    uint32_t keep = high;
+    high = middle, middle = keep;
+  }
+  return (corner_key){low, middle, high, (uint32_t)t};
+}
+
+scree_status scree_facets_drop_doubles(scree_mesh *mesh, size_t *dropped, scree_error *error) {
+  size_t count = mesh->triangle_count;
+  corner_key *keys = NULL;
+  bool *marked = NULL;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(keys, count, error, done);
+  SCREE_ALLOC_OR(marked, count, error, done);
+  memset(marked, 0, count);
+  for (size_t t = 0; t < count; t++) keys[t] = key_of(mesh, t);
+  qsort(keys, count, sizeof *keys, compare_corner_keys);
+  for (size_t i = 1; i < count; i++)
+    if (keys[i].low == keys[i - 1].low && keys[i].middle == keys[i - 1].middle &&
+        keys[i].high == keys[i - 1].high)
+      marked[keys[i].facet] = true;
+  *dropped = scree_facets_drop(mesh, marked);
+  status = SCREE_OK;
+done:
+  scree_free(keys);
+  scree_free(marked);
+  return status;
 }

@@ -46,8 +46,7 @@ static vec3 normal_of(const loop *l, size_t i, size_t j, size_t k) {
 static vec3 normal_across(const loop *l, size_t i) {
   size_t t = l->half_edge[i] / 3;
   const scree_mesh *m = &l->r->mesh;
-  return vec3_unit(vec3_triangle_normal(scree_mesh_corner(m, t, 0), scree_mesh_corner(m, t, 1),
-                                        scree_mesh_corner(m, t, 2)));
+  return vec3_unit(scree_facet_normal(m, t));
 }
 
 /* Edges are sorted by lower, then higher vertex. */

@@ -41,11 +41,8 @@ static size_t ring_size(const scree_adjacency *adjacency, uint32_t h) {
 static void mark_fins(const scree_mesh *mesh, const scree_adjacency *adjacency, uint32_t *patch,
                       uint8_t *traits) {
   const uint32_t *ring = adjacency->ring;
-  for (size_t t = 0; t < mesh->triangle_count; t++) patch[t] = (uint32_t)t, traits[t] = 0;
-  for (size_t e = 0; e < adjacency->edge_count; e++) {
-    uint32_t h = adjacency->edges[e], g = ring[h];
-    if (g != h && ring[g] == h) scree_join(patch, h / 3, g / 3);
-  }
+  memset(traits, 0, mesh->triangle_count);
+  scree_join_over_edges(mesh, adjacency, true, patch);
   for (size_t e = 0; e < adjacency->edge_count; e++) {
     uint32_t first = adjacency->edges[e], h = first;
     size_t count = ring_size(adjacency, first);
@@ -65,9 +62,7 @@ static scree_status largest_patch(const scree_mesh *mesh, uint32_t *patch, uint3
   memset(area, 0, mesh->triangle_count * sizeof *area);
   *largest = 0;
   for (uint32_t t = 0; t < mesh->triangle_count; t++)
-    area[scree_find_root(patch, t)] +=
-        vec3_norm(vec3_triangle_normal(scree_mesh_corner(mesh, t, 0), scree_mesh_corner(mesh, t, 1),
-                                       scree_mesh_corner(mesh, t, 2)));
+    area[scree_find_root(patch, t)] += vec3_norm(scree_facet_normal(mesh, t));
   for (uint32_t t = 0; t < mesh->triangle_count; t++)
     if (area[t] > area[*largest]) *largest = t;
   scree_free(area);
@@ -342,12 +337,6 @@ typedef struct wind {
   uint32_t *queue;
 } wind;
 
-static double facet_area(const scree_mesh *mesh, size_t t) {
-  return 0.5 * vec3_norm(vec3_triangle_normal(scree_mesh_corner(mesh, t, 0),
-                                              scree_mesh_corner(mesh, t, 1),
-                                              scree_mesh_corner(mesh, t, 2)));
-}
-
 /* Floods the piece of facet `start`; the facets reached lie in queue[0 .. count). */
 static size_t flood(wind *w, uint32_t start, double area[3]) {
   size_t count = 1;
@@ -355,7 +344,7 @@ static size_t flood(wind *w, uint32_t start, double area[3]) {
   w->turned[start] = 1;
   for (size_t i = 0; i < count; i++) {
     uint32_t t = w->queue[i];
-    area[w->turned[t]] += facet_area(w->mesh, t);
+    area[w->turned[t]] += 0.5 * vec3_norm(scree_facet_normal(w->mesh, t));
     for (uint32_t h = 3 * t; h < 3 * t + 3; h++) {
       uint32_t g = w->ring[h];
       if (g == NO_HALF_EDGE || g == h || w->ring[g] != h || w->turned[g / 3]) continue;

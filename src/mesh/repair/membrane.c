@@ -28,12 +28,7 @@ typedef struct walk {
 } walk;
 
 static void find_pieces(walk *w) {
-  for (uint32_t t = 0; t < w->mesh->triangle_count; t++) w->piece[t] = t;
-  for (size_t e = 0; e < w->adjacency->edge_count; e++) {
-    uint32_t first = w->adjacency->edges[e];
-    for (uint32_t h = w->adjacency->ring[first]; h != first; h = w->adjacency->ring[h])
-      scree_join(w->piece, first / 3, h / 3);
-  }
+  scree_join_over_edges(w->mesh, w->adjacency, false, w->piece);
   for (size_t e = 0; e < w->adjacency->edge_count; e++) {
     uint32_t first = w->adjacency->edges[e];
     size_t count = scree_edge_facet_count(w->adjacency, first);
@@ -97,8 +92,7 @@ static uint32_t outermost(walk *w, uint32_t facet) {
 }
 
 static double seen_area(const scree_mesh *m, uint32_t t, bool *back) {
-  vec3 n = vec3_triangle_normal(scree_mesh_corner(m, t, 0), scree_mesh_corner(m, t, 1),
-                                scree_mesh_corner(m, t, 2));
+  vec3 n = scree_facet_normal(m, t);
   *back = n.x < 0;
   return fabs(n.x);
 }

@@ -99,25 +99,17 @@ done:
 
 /* ---- Which side is which ---- */
 
-static double doubled_area(const scree_mesh *mesh, uint32_t t) {
-  return vec3_norm(vec3_triangle_normal(
-      scree_mesh_corner(mesh, t, 0), scree_mesh_corner(mesh, t, 1), scree_mesh_corner(mesh, t, 2)));
-}
-
 static scree_status find_patches(merger *m, scree_error *error) {
   const scree_mesh *mesh = &m->parts.mesh;
   size_t count = mesh->triangle_count;
   SCREE_ALLOC_OR(m->patch, count, error, out_of_memory);
   SCREE_ALLOC_OR(m->speaker, count, error, out_of_memory);
   SCREE_ALLOC_OR(m->keep, count, error, out_of_memory);
-  for (uint32_t t = 0; t < count; t++) m->patch[t] = t;
-  for (size_t e = 0; e < m->adjacency.edge_count; e++) {
-    uint32_t h = m->adjacency.edges[e], g = m->adjacency.ring[h];
-    if (g != h && m->adjacency.ring[g] == h) scree_join(m->patch, h / 3, g / 3);
-  }
+  scree_join_over_edges(mesh, &m->adjacency, true, m->patch);
   for (uint32_t t = 0; t < count; t++) {
     uint32_t root = scree_find_root(m->patch, t); /* the lowest: it comes first */
-    if (root == t || doubled_area(mesh, t) > doubled_area(mesh, m->speaker[root]))
+    if (root == t || vec3_norm(scree_facet_normal(mesh, t)) >
+                         vec3_norm(scree_facet_normal(mesh, m->speaker[root])))
       m->speaker[root] = t;
   }
   return SCREE_OK;

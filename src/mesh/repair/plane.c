@@ -175,13 +175,8 @@ static bool keep_above(const scree_mesh *mesh, size_t t, const double *height, c
 }
 
 static double diagonal_of(const scree_mesh *mesh) {
-  vec3 low = {0, 0, 0}, high = low;
-  for (size_t v = 0; v < mesh->vertex_count; v++) {
-    vec3 p = point(mesh, v);
-    low = v ? vec3_min(low, p) : p;
-    high = v ? vec3_max(high, p) : p;
-  }
-  return vec3_distance(low, high);
+  const scree_box box = scree_box_of_points(mesh->positions, mesh->vertex_count);
+  return mesh->vertex_count ? vec3_distance(box.low, box.high) : 0;
 }
 
 scree_status scree_repair_cut_off(const scree_mesh *mesh, const scree_cut_plane *given,

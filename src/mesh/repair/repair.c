@@ -17,7 +17,6 @@
 #include "base/alloc.h"
 #include "mesh/repair/check.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,13 +74,9 @@ static scree_status verify_options(const scree_repair_options *o, scree_error *e
 /* ---- Welding ---- */
 
 static void measure_box(scree_repair *r) {
-  vec3 low = {DBL_MAX, DBL_MAX, DBL_MAX}, high = vec3_neg(low);
-  for (size_t v = 0; v < r->mesh.vertex_count; v++) {
-    low = vec3_min(low, vec3_load(r->mesh.positions + 3 * v));
-    high = vec3_max(high, vec3_load(r->mesh.positions + 3 * v));
-  }
-  r->diagonal = r->mesh.vertex_count ? vec3_distance(low, high) : 0;
-  vec3 far = vec3_max(vec3_neg(low), high);
+  const scree_box box = scree_box_of_points(r->mesh.positions, r->mesh.vertex_count);
+  r->diagonal = r->mesh.vertex_count ? vec3_distance(box.low, box.high) : 0;
+  vec3 far = vec3_max(vec3_neg(box.low), box.high);
   r->largest = fmax(far.x, fmax(far.y, far.z));
 }
 
@@ -160,52 +155,10 @@ static scree_status take_copy(scree_repair *r, const scree_mesh *mesh, scree_err
   return SCREE_OK;
 }
 
-/* ---- Duplicates ---- */
-
-typedef struct corner_key {
-  uint32_t low, middle, high, facet;
-} corner_key;
-
-static int compare_corner_keys(const void *a, const void *b) {
-  const corner_key *x = a, *y = b;
-  if (x->low != y->low) return x->low < y->low ? -1 : 1;
-  if (x->middle != y->middle) return x->middle < y->middle ? -1 : 1;
-  if (x->high != y->high) return x->high < y->high ? -1 : 1;
-  return (x->facet > y->facet) - (x->facet < y->facet);
-}
-
-static corner_key key_of(const scree_mesh *mesh, size_t t) {
-  const uint32_t *c = mesh->triangles + 3 * t;
-  uint32_t low = c[0] < c[1] ? c[0] : c[1], high = c[0] < c[1] ? c[1] : c[0], middle = c[2];
-  if (middle < low) {
-    uint32_t keep = low;
-    low = middle, middle = keep;
-  } else if (middle > high) {
-    uint32_t keep = high;
-    high = middle, middle = keep;
-  }
-  return (corner_key){low, middle, high, (uint32_t)t};
-}
-
 scree_status scree_repair_duplicates(scree_repair *r, scree_error *error) {
-  size_t count = r->mesh.triangle_count;
-  corner_key *keys = NULL;
-  bool *marked = NULL;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(keys, count, error, done);
-  SCREE_ALLOC_OR(marked, count, error, done);
-  memset(marked, 0, count);
-  for (size_t t = 0; t < count; t++) keys[t] = key_of(&r->mesh, t);
-  qsort(keys, count, sizeof *keys, compare_corner_keys);
-  for (size_t i = 1; i < count; i++)
-    if (keys[i].low == keys[i - 1].low && keys[i].middle == keys[i - 1].middle &&
-        keys[i].high == keys[i - 1].high)
-      marked[keys[i].facet] = true;
-  r->report.done[SCREE_REPAIR_DROP_DUPLICATE] += scree_repair_remove(r, marked);
-  status = SCREE_OK;
-done:
-  scree_free(keys);
-  scree_free(marked);
+  size_t dropped;
+  scree_status status = scree_facets_drop_doubles(&r->mesh, &dropped, error);
+  if (status == SCREE_OK) r->report.done[SCREE_REPAIR_DROP_DUPLICATE] += dropped;
   return status;
 }
 

@@ -29,8 +29,12 @@ typedef struct scree_repair {
 /* Room for more; false when memory is out. */
 bool scree_repair_add_vertex(scree_repair *r, const double *position, uint32_t *index);
 bool scree_repair_add_facet(scree_repair *r, uint32_t a, uint32_t b, uint32_t c);
+bool scree_repair_reserve(scree_repair *r, size_t more_facets);
 /* Removes the facets marked; returns how many. */
 size_t scree_repair_remove(scree_repair *r, const bool *marked);
+size_t scree_facets_drop(scree_mesh *mesh, const bool *marked);
+/* Those on the same three vertices as one before them. */
+scree_status scree_facets_drop_doubles(scree_mesh *mesh, size_t *dropped, scree_error *error);
 /* Refuses a mesh of so many triangles where that is far more than came in: facets at angles beyond
  * rounding can be split at each other for ever, 42 became 84,057 in three rounds. */
 scree_status scree_repair_growth(const scree_repair *r, size_t triangle_count, scree_error *error);

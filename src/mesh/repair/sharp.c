@@ -8,11 +8,6 @@ static double least_cosine_squared(void) {
   return cosine * cosine;
 }
 
-static vec3 normal_of(const scree_mesh *mesh, uint32_t facet) {
-  return vec3_triangle_normal(scree_mesh_corner(mesh, facet, 0), scree_mesh_corner(mesh, facet, 1),
-                              scree_mesh_corner(mesh, facet, 2));
-}
-
 bool scree_normals_are_sharp(vec3 a, vec3 b) {
   double dot = vec3_dot(a, b);
   return dot < 0 && dot * dot > least_cosine_squared() * vec3_dot(a, a) * vec3_dot(b, b);
@@ -22,7 +17,7 @@ bool scree_edge_is_sharp(const scree_mesh *mesh, const scree_adjacency *adjacenc
   uint32_t g = adjacency->ring[h];
   if (g == SCREE_NO_HALF_EDGE || g == h || adjacency->ring[g] != h) return false;
   if (scree_half_edge_from(mesh, h) == scree_half_edge_from(mesh, g)) return false;
-  return scree_normals_are_sharp(normal_of(mesh, h / 3), normal_of(mesh, g / 3));
+  return scree_normals_are_sharp(scree_facet_normal(mesh, h / 3), scree_facet_normal(mesh, g / 3));
 }
 
 size_t scree_sharp_edges(const scree_mesh *mesh, const scree_adjacency *adjacency, bool *marked) {

@@ -16,25 +16,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool takes_part(const scree_adjacency *adjacency, size_t triangle) {
-  return adjacency->ring[3 * triangle] != SCREE_NO_HALF_EDGE;
-}
-
 /* Labels in the order of the lowest facets; returns how many shells there are. */
 static size_t label_shells(const scree_mesh *mesh, const scree_adjacency *adjacency,
                            uint32_t *label) {
   size_t count = 0;
-  for (size_t t = 0; t < mesh->triangle_count; t++) label[t] = (uint32_t)t;
-  for (size_t e = 0; e < adjacency->edge_count; e++) {
-    uint32_t first = adjacency->edges[e];
-    for (uint32_t h = adjacency->ring[first]; h != first; h = adjacency->ring[h])
-      scree_join(label, first / 3, h / 3);
-  }
+  scree_join_over_edges(mesh, adjacency, false, label);
   /* roots are the lowest of their set, so the root's label is made before the others ask for it */
   for (size_t t = 0; t < mesh->triangle_count; t++) label[t] = scree_find_root(label, (uint32_t)t);
   for (size_t t = 0; t < mesh->triangle_count; t++) {
     uint32_t root = label[t];
-    if (!takes_part(adjacency, t))
+    if (!scree_takes_part(adjacency, t))
       label[t] = SCREE_NO_SHELL;
     else
       label[t] = root == t ? (uint32_t)count++ : label[root];

@@ -20,6 +20,7 @@
 #include "mesh/index/closest.h"
 #include "mesh/index/facet_tree.h"
 #include "mesh/measure/solid_angle.h"
+#include "mesh/repair/repair.h"
 #include "mesh/repair/soup_tidy.h"
 
 #include <math.h>
@@ -208,7 +209,7 @@ typedef struct cover {
   const sheets *sheets;
   const scree_facet_tree *tree;
   const uint8_t *loose; /* of a piece that is no solid */
-  uint8_t *gone;
+  bool *gone;
   double tolerance;
 } cover;
 
@@ -267,7 +268,7 @@ static size_t drop_from(const cover *c, uint32_t first) {
   return count;
 }
 
-static scree_status find_covered(const sheets *s, double tolerance, uint8_t *gone, size_t *count,
+static scree_status find_covered(const sheets *s, double tolerance, bool *gone, size_t *count,
                                  scree_error *error) {
   size_t facets = s->mesh->triangle_count;
   scree_facet_tree tree = {0};
@@ -453,7 +454,7 @@ static scree_status divide(scree_mesh *mesh, double tolerance, scree_pieces *out
   for (int round = 0;; round++) {
     sheets s;
     size_t covered = 0;
-    uint8_t *gone = scree_alloc_zero(mesh->triangle_count, 1);
+    bool *gone = scree_alloc_zero(mesh->triangle_count, sizeof *gone);
     if (!gone) return scree_fail_memory(error, mesh->triangle_count, "a wall's facets");
     scree_status status = begin_sheets(&s, mesh, error);
     if (status == SCREE_OK) {
@@ -462,7 +463,7 @@ static scree_status divide(scree_mesh *mesh, double tolerance, scree_pieces *out
       if (status == SCREE_OK && covered == 0) status = put_pieces(&s, out, error);
       free_sheets(&s);
     }
-    scree_soup_drop(mesh, gone);
+    scree_facets_drop(mesh, gone);
     scree_free(gone);
     out->mending.doubled += covered;
     if (status == SCREE_OK && covered) /* edges may have lost their other facet */

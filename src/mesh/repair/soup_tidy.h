@@ -13,7 +13,5 @@ scree_status scree_soup_tidy(scree_mesh *mesh, double tolerance, scree_wall_mend
 /* Sets vertices into edges of one facet that run past them. */
 scree_status scree_soup_join(scree_mesh *mesh, double tolerance, scree_wall_mending *mending,
                              scree_error *error);
-/* The triangles that are marked go. */
-void scree_soup_drop(scree_mesh *mesh, const uint8_t *gone);
 
 #endif
