@@ -19,24 +19,27 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* The levels to measure, ascending, each once; indices has room for SCREE_FIDELITY_MOST and the
- * grid. */
-static size_t list_levels(const scree_curve *curve, const scree_choice *choice, size_t *indices) {
+/* The levels to measure, ascending, each once, of the grid those of at most so many triangles;
+ * indices has room for SCREE_FIDELITY_MOST and the grid. */
+static size_t list_levels(const scree_curve *curve, const scree_choice *choice, size_t most,
+                          size_t *indices) {
   size_t count = scree_fidelity_levels(curve, indices), kept = 0;
-  for (size_t i = 0; i < choice->level_count; i++) indices[count++] = choice->levels[i].level_index;
+  for (size_t i = 0; i < choice->level_count; i++)
+    if (choice->levels[i].triangle_count <= most) indices[count++] = choice->levels[i].level_index;
   qsort(indices, count, sizeof *indices, ascending);
   for (size_t i = 0; i < count; i++)
     if (kept == 0 || indices[i] != indices[kept - 1]) indices[kept++] = indices[i];
   return kept;
 }
 
-/* Gives the grid's levels their errors. */
+/* Gives the grid's levels that were measured their errors. */
 static void fill_errors(scree_choice *choice, double weight) {
   const scree_fidelity *f = choice->fidelity;
+  size_t rows = scree_fidelity_count(f);
   for (size_t i = 0; i < choice->level_count; i++) {
     size_t row = 0;
-    while (scree_fidelity_level_index(f, row) != choice->levels[i].level_index) row++;
-    for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    while (row < rows && scree_fidelity_level_index(f, row) != choice->levels[i].level_index) row++;
+    for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT && row < rows; e++)
       choice->levels[i].errors[e] = scree_fidelity_error(f, row, (scree_shape_error)e);
   }
   for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
@@ -89,7 +92,8 @@ static scree_status measure(const scree_curve *curve, const scree_mesh *scan,
   size_t *indices = scree_alloc(SCREE_FIDELITY_MOST + choice->level_count, sizeof *indices);
   if (!indices)
     return scree_fail_memory(error, choice->level_count * sizeof *indices, "levels to measure");
-  size_t count = list_levels(curve, choice, indices);
+  size_t count =
+      list_levels(curve, choice, options->fine_errors ? SIZE_MAX : SCREE_FIDELITY_FINEST, indices);
   scree_status status = scree_gauge_make(scan, SCREE_GAUGE_POINTS, &gauge, error);
   if (status == SCREE_OK)
     status =

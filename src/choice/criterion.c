@@ -53,7 +53,7 @@ static bool is_accident(double error, double worst) {
 }
 
 scree_choice_options scree_default_choice_options(void) {
-  scree_choice_options o = {1, 1e-5, 1e-1, 9, SCREE_REFERENCE_SCAN, {0}, {0}, false};
+  scree_choice_options o = {1, 1e-5, 1e-1, 9, SCREE_REFERENCE_SCAN, {0}, {0}, false, false};
   for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
     o.tolerances[e] = o.tolerance_lengths[e] = INFINITY;
   for (size_t i = 0; i < sizeof usual_tolerances / sizeof *usual_tolerances; i++)
@@ -282,13 +282,15 @@ static double misfit(const scree_choice_level *level) {
   return fabs(log10(level->rp / level->rp_reached));
 }
 
-/* The grid index with the least value of error + w Nr/Nm; NaN never wins. */
-static size_t best_on_grid(const scree_choice *choice, scree_shape_error which, double weight) {
+/* The grid index with the least value of error + w Nr/Nm, unless one that was not measured (NaN)
+ * has less by its triangles alone. */
+size_t scree_choice_best_level(const scree_choice *choice, scree_shape_error which, double weight) {
   size_t best = choice->level_count;
-  double best_ip = INFINITY;
+  double best_ip = INFINITY, unknown = INFINITY;
   for (size_t i = 0; i < choice->level_count; i++) {
     const scree_choice_level *level = &choice->levels[i];
-    double ip = level->errors[which] + weight * level->rp_reached;
+    double penalty = weight * level->rp_reached, ip = level->errors[which] + penalty;
+    if (isnan(ip)) unknown = fmin(unknown, penalty);
     bool nearer = best < choice->level_count && ip == best_ip &&
                   level->triangle_count == choice->levels[best].triangle_count &&
                   misfit(level) < misfit(&choice->levels[best]);
@@ -297,11 +299,7 @@ static size_t best_on_grid(const scree_choice *choice, scree_shape_error which, 
       best_ip = ip;
     }
   }
-  return best;
-}
-
-size_t scree_choice_best_level(const scree_choice *choice, scree_shape_error which, double weight) {
-  return best_on_grid(choice, which, weight);
+  return unknown < best_ip ? choice->level_count : best;
 }
 
 static scree_status check_options(const scree_choice_options *o, scree_error *error) {
@@ -365,8 +363,9 @@ scree_status scree_choice_from_table(const scree_level_table *table,
     return status;
   }
   for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
-    filled.best[e] = best_on_grid(&filled, (scree_shape_error)e, options->weight);
-  size_t finer = best_on_grid(&filled, SCREE_ERROR_AREA, SCREE_FINER_PENALTY * options->weight);
+    filled.best[e] = scree_choice_best_level(&filled, (scree_shape_error)e, options->weight);
+  size_t finer =
+      scree_choice_best_level(&filled, SCREE_ERROR_AREA, SCREE_FINER_PENALTY * options->weight);
   filled.paper_finer_count = filled.levels[finer].triangle_count;
   const scree_choice_level *paper = &filled.levels[filled.best[SCREE_ERROR_AREA]];
   filled.paper = (scree_pick){.rp = paper->rp,

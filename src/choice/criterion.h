@@ -40,7 +40,7 @@ static inline double scree_level_ip(const scree_choice_level *level, scree_crite
 }
 
 /* The grid index with the least errors[which] + w Nr/Nm (ties as for `paper`), or level_count where
- * it was not measured. */
+ * a level that was not measured could have less. */
 size_t scree_choice_best_level(const scree_choice *choice, scree_shape_error which, double weight);
 
 /* Whether a text means the recommended Rp, as "recommended", or a multiple of it, as

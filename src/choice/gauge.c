@@ -33,6 +33,7 @@ static const double SLOPE = 0.5;
 static const double FACING_BACK = 0.8;
 /* Thinner is the surface itself, seen from beside the point; of D. */
 static const double LEAST_WALL = 0.002;
+
 double scree_normalised_error(const double errors[SCREE_SHAPE_ERROR_COUNT],
                               const double tolerances[SCREE_SHAPE_ERROR_COUNT],
                               scree_shape_error *which) {
@@ -67,8 +68,11 @@ static double thickness_along(const scree_bvh *bvh, const scree_body_wall *wall)
   return inside ? there + back : 0;
 }
 
+/* None of a foil: what a ray meets there are its edges. */
 static void find_walls(scree_gauge *g) {
   const scree_bvh *bvh = &g->surface->bvh;
+  double usual = 2 * fabs(g->measures.volume) / g->measures.area;
+  if (usual < LEAST_WALL * g->length) return;
   for (size_t i = 0; i < g->probe_count; i++) {
     scree_body_wall *wall = &g->walls[g->wall_count];
     double facing = 0;

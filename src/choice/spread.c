@@ -9,37 +9,23 @@
 #include "base/radix.h"
 #include "mesh/measure/measure.h"
 #include "mesh/mesh.h"
-
-enum { AXIS_BITS = 10 };
+#include "simplify/morton.h"
 
 /* Steps of R2: 1/p and 1/p^2 with p^3 = p + 1. */
 static const double STEP_U = 0.7548776662466927, STEP_V = 0.5698402909980532;
-
-static uint32_t interleave(uint32_t x) {
-  x = (x | x << 16) & 0x030000ff;
-  x = (x | x << 8) & 0x0300f00f;
-  x = (x | x << 4) & 0x030c30c3;
-  return (x | x << 2) & 0x09249249;
-}
-
-static uint32_t morton(vec3 p, vec3 low, double side) {
-  double scale = ((1 << AXIS_BITS) - 1) / side;
-  return interleave((uint32_t)((p.x - low.x) * scale)) |
-         interleave((uint32_t)((p.y - low.y) * scale)) << 1 |
-         interleave((uint32_t)((p.z - low.z) * scale)) << 2;
-}
 
 static void key_facets(const scree_mesh *mesh, scree_keyed *keys) {
   vec3 low, high;
   scree_mesh_bounds(mesh, &low, &high);
   vec3 size = vec3_sub(high, low);
-  double side = fmax(size.x, fmax(size.y, size.z));
+  double scale = ((1 << SCREE_MORTON_BITS) - 1) / fmax(size.x, fmax(size.y, size.z));
   for (size_t t = 0; t < mesh->triangle_count; t++) {
     vec3 middle =
         vec3_scale(vec3_add(vec3_add(scree_mesh_corner(mesh, t, 0), scree_mesh_corner(mesh, t, 1)),
                             scree_mesh_corner(mesh, t, 2)),
                    1.0 / 3);
-    keys[t] = (scree_keyed){morton(middle, low, side), (uint32_t)t};
+    keys[t] =
+        (scree_keyed){scree_morton_code(vec3_scale(vec3_sub(middle, low), scale)), (uint32_t)t};
   }
 }
 
@@ -116,7 +102,8 @@ scree_status scree_spread_make(const scree_mesh *mesh, size_t count, scree_sprea
   SCREE_ALLOC_OR(made.starts, count + 1, error, done);
   SCREE_ALLOC_OR(made.reach, count, error, done);
   key_facets(mesh, keys);
-  const scree_keyed *curve = scree_radix_sort(keys, swap, mesh->triangle_count, 3 * AXIS_BITS);
+  const scree_keyed *curve =
+      scree_radix_sort(keys, swap, mesh->triangle_count, 3 * SCREE_MORTON_BITS);
   take_points(mesh, curve, count, before, &made);
   find_nearest(mesh, curve, before, &made, nearest, distance);
   group_vertices(mesh, nearest, distance, &made);

@@ -50,7 +50,9 @@ static const cli_option options[] = {
      "noise, measured on the curve). Default: scan.",
      0, 0, "scan|smooth"},
     {"errors", CLI_FLAG, AT(errors), NULL,
-     "Also the count that each other error alone would choose on the grid.", 0, 0, NULL},
+     "Also the count that each other error alone would choose on the grid, of which levels above "
+     "2,500 triangles are measured then too.",
+     0, 0, NULL},
     {"density", CLI_REAL, AT(density), "KG/M3",
      "Density in kg/m3, for the mass and inertia written. Default: 2000.", 1e-6, 1e6, NULL},
     {"no-repair", CLI_FLAG, AT(no_repair), NULL,
@@ -286,6 +288,7 @@ static int run_choose(const cli_call *call) {
                     : a->rule != RULE_UNSET ? (scree_choice_rule)a->rule
                                             : SCREE_RULE_RECOMMENDED;
   run.options.weight = a->weight;
+  run.options.fine_errors = a->errors;
   run.options.reference = (scree_reference)a->reference;
   run.simplify = scree_default_simplify_options();
   if (a->method != METHOD_UNSET) run.simplify.method = (scree_method)a->method;

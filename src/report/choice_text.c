@@ -58,6 +58,7 @@ static const char *number_text(double value, int digits, char buffer[NUMBER_BYTE
 /* A fraction as a change in per cent: +1.2, -3 */
 static const char *change_text(double fraction, char buffer[NUMBER_BYTES]) {
   int digits = fabs(fraction) < 0.995 ? 2 : 6; /* no powers of ten */
+  if (fabs(fraction) < ROUNDING) fraction = 0;
   buffer[0] = '+';
   scree_number_format_digits(100 * fraction, digits, buffer + (fraction >= 0));
   return buffer;
@@ -130,14 +131,19 @@ static bool is_distance(scree_shape_error which) {
 static void say_limit(sentences *s, const scree_choice_report *report, const scree_choice *c) {
   double error = scree_fidelity_error(c->fidelity, c->recommended_row, c->limited_by),
          most = scree_choice_tolerance(c, report->options, c->limited_by);
+  const char *how = error > most / 2
+                        ? "Limited by"
+                        : "No coarser level keeps all tolerances; nearest to its own is";
   char share[NUMBER_BYTES], limit[NUMBER_BYTES];
-  if (is_distance(c->limited_by))
-    say(s, "Limited by %s, %s mm of %s mm allowed, which is %s of the body's size of %s mm.",
+  if (error < ROUNDING)
+    say(s, "The surface is the scan's; no coarser level keeps all tolerances.");
+  else if (is_distance(c->limited_by))
+    say(s, "%s %s, %s mm of %s mm allowed, which is %s of the body's size of %s mm.", how,
         error_words(c->limited_by), LENGTH(c, error), LENGTH(c, most),
         scree_percent_text(most, limit),
         NUMBER(1e3 * scree_fidelity_scan(c->fidelity, SCREE_SCAN_LENGTH), 3));
   else
-    say(s, "Limited by %s, %s of %s allowed.", error_words(c->limited_by),
+    say(s, "%s %s, %s of %s allowed.", how, error_words(c->limited_by),
         scree_percent_text(error, share), scree_percent_text(most, limit));
 }
 

@@ -434,6 +434,21 @@ static void *failing(void *context, void *block, size_t size) {
   return realloc(block, size);
 }
 
+/* The level of the least error + Nr/Nm is known unless a level without that error could have less.
+ */
+static void levels_not_measured_may_be_the_best(void **state) {
+  (void)state;
+  scree_choice_level levels[] = {{.rp = 0.1, .rp_reached = 0.1, .errors[SCREE_ERROR_MEAN] = 0.5},
+                                 {.rp = 0.3, .rp_reached = 0.3, .errors[SCREE_ERROR_MEAN] = 0.2},
+                                 {.rp = 0.6, .rp_reached = 0.6, .errors[SCREE_ERROR_MEAN] = NAN}};
+  const scree_choice c = {.levels = levels, .level_count = 3};
+  assert_int_equal(scree_choice_best_level(&c, SCREE_ERROR_MEAN, 1), 1); /* .5 is less than .6 */
+  levels[2].rp_reached = 0.45;
+  assert_int_equal(scree_choice_best_level(&c, SCREE_ERROR_MEAN, 1), 3);
+  for (int i = 0; i < 2; i++) levels[i].errors[SCREE_ERROR_MEAN] = NAN;
+  assert_int_equal(scree_choice_best_level(&c, SCREE_ERROR_MEAN, 1), 3);
+}
+
 static void every_allocation_may_fail(void **state) {
   (void)state;
   const scree_level_row rows[] = {{8, 1, 1}, {4, 0.5, 1}};
@@ -477,6 +492,7 @@ int main(void) {
       cmocka_unit_test(pass_agrees_with_the_quadratic_oracle),
       cmocka_unit_test(set_takes_the_least_mean),
       cmocka_unit_test(bad_input_is_one_sentence),
+      cmocka_unit_test(levels_not_measured_may_be_the_best),
       cmocka_unit_test(every_allocation_may_fail),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
