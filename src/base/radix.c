@@ -4,11 +4,13 @@
 
 #include "base/parallel.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum { DIGIT = 11, RADIX = 1 << DIGIT, SLICES = 4 };
 /* Fewer are not worth waking anybody. */
 enum { SLICED_FROM = 4096 };
+enum { INSERTION_MOST = 48 }; /* above, qsort wins */
 
 typedef struct sorting {
   const scree_keyed *from;
@@ -53,4 +55,22 @@ scree_keyed *scree_radix_sort(scree_keyed *items, scree_keyed *swap, size_t coun
     s.to = s.from == items ? swap : items;
   }
   return s.to == items ? swap : items;
+}
+
+static int compare_keys(const void *a, const void *b) {
+  uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+  return (x > y) - (x < y);
+}
+
+void scree_sort_keys(uint64_t *keys, size_t count) {
+  if (count > INSERTION_MOST) {
+    qsort(keys, count, sizeof *keys, compare_keys);
+    return;
+  }
+  for (size_t i = 1; i < count; i++) {
+    uint64_t key = keys[i];
+    size_t j = i;
+    for (; j > 0 && keys[j - 1] > key; j--) keys[j] = keys[j - 1];
+    keys[j] = key;
+  }
 }

@@ -1,4 +1,4 @@
-/* Sorting by a number of 32 bits. */
+/* Sorting of numbers, and by a number of 32 bits. */
 #ifndef SCREE_BASE_RADIX_H
 #define SCREE_BASE_RADIX_H
 
@@ -12,5 +12,8 @@ typedef struct scree_keyed {
 /* Sorts by key, of which only the lowest `bits` bits may be set; those of equal key keep their
  * order. Uses both arrays, and answers the one that holds the outcome. O(count), parallel. */
 scree_keyed *scree_radix_sort(scree_keyed *items, scree_keyed *swap, size_t count, int bits);
+
+/* Ascending: by insertion where there are few, as round a vertex. */
+void scree_sort_keys(uint64_t *keys, size_t count);
 
 #endif

@@ -6,15 +6,12 @@
 
 #include "base/alloc.h"
 #include "base/parallel.h"
+#include "base/radix.h"
 #include "mesh/mesh.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-enum {
-  INSERTION_LIMIT = 48,  /* pairs; above, qsort wins */
-  VERTEX_BLOCK = 1 << 14 /* vertices per parallel block */
-};
+enum { VERTEX_BLOCK = 1 << 14 }; /* vertices per parallel block */
 
 typedef struct builder {
   const scree_mesh *mesh;
@@ -24,24 +21,6 @@ typedef struct builder {
   size_t *block_edges;
   scree_adjacency *out;
 } builder;
-
-static int compare_pairs(const void *a, const void *b) {
-  uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-  return (x > y) - (x < y);
-}
-
-static void sort_pairs(uint64_t *pairs, size_t count) {
-  if (count > INSERTION_LIMIT) {
-    qsort(pairs, count, sizeof *pairs, compare_pairs);
-    return;
-  }
-  for (size_t i = 1; i < count; i++) {
-    uint64_t pair = pairs[i];
-    size_t j = i;
-    for (; j > 0 && pairs[j - 1] > pair; j--) pairs[j] = pairs[j - 1];
-    pairs[j] = pair;
-  }
-}
 
 static void count_half(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)worker;
@@ -101,7 +80,7 @@ static void link_block(void *context, size_t begin, size_t end, size_t block, in
   size_t write = b->start[begin];
   for (size_t v = begin; v < end; v++) {
     size_t first = b->start[v], last = b->start[v + 1];
-    sort_pairs(b->pairs + first, last - first);
+    scree_sort_keys(b->pairs + first, last - first);
     for (size_t i = first; i < last;) {
       uint32_t lowest = (uint32_t)b->pairs[i], high = (uint32_t)(b->pairs[i] >> 32);
       uint32_t h = lowest;

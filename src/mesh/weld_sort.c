@@ -2,12 +2,14 @@
 #include "mesh/weld_sort.h"
 
 #include "base/parallel.h"
+#include "base/radix.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum {
   SMALL = 24,         /* sorted by insertion */
-  MOST_DEPTH = 12,    /* spreads of one range before a heap sort bounds the worst case */
+  MOST_DEPTH = 12,    /* spreads of one range before qsort bounds the worst case */
   PER_BUCKET = 2,     /* vertices per bucket, on average */
   SORT_BLOCK = 32768, /* vertices per block of parallel work */
 };
@@ -32,24 +34,8 @@ static void insertion_sort(record *r, size_t n) {
   }
 }
 
-static void sift_down(record *r, size_t root, size_t n) {
-  record moving = r[root];
-  for (size_t child; (child = 2 * root + 1) < n; root = child) {
-    if (child + 1 < n && record_less(&r[child], &r[child + 1])) child++;
-    if (!record_less(&moving, &r[child])) break;
-    r[root] = r[child];
-  }
-  r[root] = moving;
-}
-
-static void heap_sort(record *r, size_t n) {
-  for (size_t i = n / 2; i-- > 0;) sift_down(r, i, n);
-  for (size_t end = n; end-- > 1;) {
-    record largest = r[0];
-    r[0] = r[end];
-    r[end] = largest;
-    sift_down(r, 0, end);
-  }
+static int compare_records(const void *a, const void *b) {
+  return record_less(a, b) ? -1 : record_less(b, a);
 }
 
 /* The bucket of coordinate x: its place in [low, high], spread over `last` + 1 buckets. Monotone,
@@ -93,7 +79,7 @@ static void sort_records(record *r, record *scratch, uint32_t *counts, size_t n,
     return;
   }
   if (depth == MOST_DEPTH) {
-    heap_sort(r, n);
+    qsort(r, n, sizeof *r, compare_records);
     return;
   }
   spread s = find_spread(r, n, axis);
@@ -213,44 +199,12 @@ typedef struct triangle_sort {
   uint32_t *triangles;
 } triangle_sort;
 
-static void sort_keys_by_heap(uint64_t *keys, size_t n) {
-  for (size_t built = n / 2, end = n; end > 1;) {
-    size_t root = 0;
-    uint64_t moving;
-    if (built > 0)
-      moving = keys[root = --built];
-    else {
-      moving = keys[--end];
-      keys[end] = keys[0];
-    }
-    for (size_t child; (child = 2 * root + 1) < end; root = child) {
-      if (child + 1 < end && keys[child] < keys[child + 1]) child++;
-      if (moving >= keys[child]) break;
-      keys[root] = keys[child];
-    }
-    keys[root] = moving;
-  }
-}
-
-static void sort_keys(uint64_t *keys, size_t n) {
-  if (n > SMALL) { /* a fan around one vertex */
-    sort_keys_by_heap(keys, n);
-    return;
-  }
-  for (size_t i = 1; i < n; i++) {
-    uint64_t moving = keys[i];
-    size_t j = i;
-    for (; j > 0 && moving < keys[j - 1]; j--) keys[j] = keys[j - 1];
-    keys[j] = moving;
-  }
-}
-
 static void sort_triangle_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   const triangle_sort *s = context;
   for (size_t v = begin; v < end; v++) {
     size_t first = s->starts[v], last = s->starts[v + 1];
-    sort_keys(s->rest + first, last - first);
+    scree_sort_keys(s->rest + first, last - first);
     for (size_t t = first; t < last; t++) {
       s->triangles[3 * t] = (uint32_t)v;
       s->triangles[3 * t + 1] = (uint32_t)(s->rest[t] >> 32);

@@ -1,7 +1,9 @@
 /* Closest points.
  *
  * Point to triangle: barycentric coordinates of the projection, then the regions of Ericson (2005,
- * 5.1.5). Point to surface: depth-first through the box tree, nearer child first. */
+ * 5.1.5), from what a face keeps for all its queries: contacts ask of the same faces in every step,
+ * meshes (mesh/index/closest.h) of each a few times. Point to surface: depth-first through the box
+ * tree, nearer child first. */
 #include "particle/closest.h"
 
 #include "base/prefetch.h"

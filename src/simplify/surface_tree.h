@@ -1,7 +1,9 @@
 /* A tree of boxes over the triangles of a surface as they lie in memory, which is near their
  * neighbours (morton.h): leaf k has triangles LEAF k to LEAF k + LEAF - 1, node i has children 2i
  * and 2i + 1. Bounds are single numbers, rounded outward. Boxes grow as triangles move;
- * scree_surface_tree_fit makes them tight again. */
+ * scree_surface_tree_fit makes them tight again.
+ * It is no scree_tree (base/tree.h): it is fitted anew in every pass and grows between, which takes
+ * nodes whose parents and leaves are known by number. */
 #ifndef SCREE_SIMPLIFY_SURFACE_TREE_H
 #define SCREE_SIMPLIFY_SURFACE_TREE_H
 
@@ -72,7 +74,8 @@ static inline bool scree_bounds_meet(const scree_bounds *a, const scree_bounds *
          (b->low[1] <= a->high[1]) & (a->low[2] <= b->high[2]) & (b->low[2] <= a->high[2]);
 }
 
-/* The squared distance of p from the triangle, in the box. */
+/* The squared distance of p from the triangle; scree_triangle_closest (mesh/index/closest.h), which
+ * finds the point too and minds needles, would make a decimation an eighth slower. */
 double scree_distance2(const vec3 corner[3], vec3 p);
 
 #endif
