@@ -235,8 +235,8 @@ static void take_places(const scree_world *world, const scree_pair *pair, scree_
   scratch->b = scree_pair_frame_b(world, pair);
   scratch->drift = world->time_step / pair->substeps;
   if (pair->substeps == 1) return;
-  scratch->own[0] = scree_owed_frame(world, pair, false);
-  scratch->own[1] = scree_owed_frame(world, pair, true);
+  scratch->own[0] = scree_owed_frame(world, pair, scratch, false);
+  scratch->own[1] = scree_owed_frame(world, pair, scratch, true);
   scratch->a = &scratch->own[0];
   scratch->b = &scratch->own[1];
 }
@@ -278,10 +278,13 @@ static void apply_contact_law(const scree_world *world, scree_pair *pair, scree_
 
 void scree_pair_begin_work(const scree_world *world, const scree_pair *pair,
                            scree_scratch *scratch) {
+  scratch->last =
+      pair->touching ? pair->wrench : (scree_pair_wrench){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
   take_places(world, pair, scratch);
   scratch->work = (scree_pair_work){.later_dashpot = pair->later_dashpot,
                                     .later_tangential = pair->later_tangential};
   add_later_work(world, pair, scratch, &scratch->work);
+  if (pair->substeps > 1) scratch->spring_work += scree_unforeseen_work(world, pair, scratch);
   if (pair->touching && pair->wall) scratch->work.wall = scree_half_work_of_wall(world, pair);
 }
 
@@ -306,8 +309,6 @@ void scree_pair_meet(const scree_world *world, scree_pair *pair, scree_scratch *
   end_visits(pair, scratch);
   scratch->substeps = scree_substep_count(world, pair, &scratch->relative, scratch);
   scratch->step = world->time_step / scratch->substeps;
-  scratch->last =
-      pair->touching ? pair->wrench : (scree_pair_wrench){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
   ask(world, pair, scratch);
 }
 

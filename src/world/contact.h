@@ -314,7 +314,11 @@ void scree_pair_narrow_phase_between(const scree_world *world, scree_pair *pair,
 uint32_t scree_substep_count(const scree_world *world, const scree_pair *pair,
                              const scree_frame *relative, const scree_scratch *scratch);
 /* Pose and motion of a, or b, as this pair sees it, which moved it in sub-steps. */
-scree_frame scree_owed_frame(const scree_world *world, const scree_pair *pair, bool of_b);
+scree_frame scree_owed_frame(const scree_world *world, const scree_pair *pair,
+                             const scree_scratch *scratch, bool of_b);
+/* J, of the pair's spring since the last look, as the others did other than was foreseen. */
+double scree_unforeseen_work(const scree_world *world, const scree_pair *pair,
+                             const scree_scratch *scratch);
 /* Force and moment of all but the pair on a, or b, in the last step; of a wall none. */
 scree_wrench scree_wrench_of_others(const scree_world *world, const scree_pair *pair,
                                     const scree_scratch *scratch, bool of_b);

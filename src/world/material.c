@@ -161,6 +161,7 @@ scree_status scree_world_set_pair(scree_world *world, size_t a, size_t b,
   if (status) return status;
   world->contacts[a][b] = world->contacts[b][a] = make_contact(world, contact);
   scree_neighbours_set_up(world);
+  world->time_step_stale = true;
   return SCREE_OK;
 }
 

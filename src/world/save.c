@@ -20,12 +20,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 18};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 19};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
                    (sizeof(scree_feature_pair) == 128 && sizeof(scree_anchor) == 56 &&
-                    sizeof(scree_sleeping_feature) == 24 && sizeof(scree_pair) == 768 &&
+                    sizeof(scree_sleeping_feature) == 24 && sizeof(scree_pair) == 832 &&
                     sizeof(scree_neighbours) == 280 && sizeof(scree_frame) == 192),
                "a field was added: add it to the checkpoint");
 
@@ -300,6 +300,7 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
                      &p->kick,
                      &p->later_dashpot,
                      &p->later_tangential,
+                     &p->foreseen,
                      &belt_power,
                      &since};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
@@ -321,6 +322,7 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
   scree_code_vec3(c, &p->spring.moment);
   code_load(c, &p->dashpot);
   code_load(c, &p->tangential);
+  for (int i = 0; i < 2; i++) code_load(c, &p->others[i]);
   uint64_t contacts = p->contact_count;
   scree_code_u64(c, &contacts);
   p->contact_count = (uint32_t)contacts;

@@ -4,14 +4,17 @@
  * Where the way of a step is not small beside the contact radii, blends between features are
  * crossed in one step, and no force that is a slope of the energy could be told from samples so far
  * apart. The two bodies are moved on copies, by leapfrog with steps dt/n, under the forces of their
- * pair, and under all others as they were in the last step. What the world's step is given is the
- * mean wrench that brings its own leapfrog to where the copies have come, less that of the others;
- * what their velocities have more by then is owed to the bodies, and the pair begins its next step
- * with it. So no other part of the step knows of sub-steps.
+ * pair, and under all others as they will be if they change by as much as in the last step. What
+ * the world's step is given is the mean wrench that brings its own leapfrog to where the copies
+ * have come, less that of the others; what their velocities have more by then is owed to the
+ * bodies, and the pair begins its next step with it. So no other part of the step knows of
+ * sub-steps. By what the others do otherwise the bodies come elsewhere than the copies: the balance
+ * of the pair's spring is drawn with the work on that way.
  *
  * Leapfrog with steps that differ kicks with the mean of the steps before and after. */
 #include "world/contact.h"
 #include "world/integrate.h"
+#include "world/law.h"
 #include "world/walls.h"
 
 enum { ROUNDS = 4 };
@@ -21,7 +24,7 @@ typedef struct mover {
   scree_frame frame;
   quat orientation;
   vec3 momentum, inertia;
-  scree_wrench others; /* force and moment of all but the pair, as in the last step */
+  scree_wrench others; /* force and moment of all but the pair */
   double mass;
   bool free;
 } mover;
@@ -42,6 +45,11 @@ static mover mover_of(const scree_world *world, uint32_t index, bool is_wall) {
 static vec3 spin_of(const mover *m, vec3 momentum) {
   const mat3 *rotation = &m->frame.rotation;
   return mat3_mul_vec(rotation, scree_local_spin(m->inertia, rotation, momentum));
+}
+
+/* Of each of its parts, in the last step. */
+static double part_of_step(const scree_world *world, const scree_pair *pair) {
+  return world->time_step / pair->substeps;
 }
 
 scree_wrench scree_wrench_of_others(const scree_world *world, const scree_pair *pair,
@@ -138,8 +146,13 @@ uint32_t scree_substep_count(const scree_world *world, const scree_pair *pair,
   return parts < SCREE_MOST_SUBSTEPS ? 1 + (uint32_t)parts : SCREE_MOST_SUBSTEPS;
 }
 
-scree_frame scree_owed_frame(const scree_world *world, const scree_pair *pair, bool of_b) {
+/* Velocities at the middle of the last step's last part. Those of the bodies are at the middle of
+ * the step; what the others add since then they are given with the coming step. */
+scree_frame scree_owed_frame(const scree_world *world, const scree_pair *pair,
+                             const scree_scratch *scratch, bool of_b) {
   mover m = mover_of(world, of_b ? pair->b : pair->a, of_b && pair->wall);
+  m.others = scree_wrench_of_others(world, pair, scratch, of_b);
+  kick_by_others(&m, 0.5 * (world->time_step - part_of_step(world, pair)), 0);
   scree_frame f = m.frame;
   const scree_pair_wrench *owed = &pair->owed;
   kick(&m, of_b ? vec3_neg(owed->force) : owed->force, of_b ? owed->torque_b : owed->torque_a, 0);
@@ -147,6 +160,40 @@ scree_frame scree_owed_frame(const scree_world *world, const scree_pair *pair, b
   m.frame.velocity_now = vec3_mad(m.frame.velocity, ahead, 1.0 / pair->substeps);
   m.frame.spin_now = vec3_mad(m.frame.spin, spin, 1.0 / pair->substeps);
   return m.frame;
+}
+
+/* W/s: by how much the others make the spring's power grow. */
+static double power_by_others(const scree_world *world, const scree_pair *pair, const mover m[2]) {
+  vec3 arm = scree_pair_between(world, pair, &m[0].frame, &m[1].frame),
+       spin = spin_of(&m[0], m[0].others.moment),
+       u = vec3_sub(vec3_scale(m[0].others.force, 1 / m[0].mass), vec3_cross(spin, arm));
+  if (m[1].free) {
+    u = vec3_mad(u, m[1].others.force, -1 / m[1].mass);
+    spin = vec3_sub(spin, spin_of(&m[1], m[1].others.moment));
+  }
+  return vec3_dot(pair->spring.force, u) + vec3_dot(pair->spring.moment, spin);
+}
+
+/* J, of the spring on the way of a step by what the others do; the last part's way has been counted
+ * with its velocity. */
+static double work_by_others(const scree_world *world, const scree_pair *pair, const mover m[2]) {
+  const double dt = world->time_step, h = part_of_step(world, pair);
+  return dt * (dt - h) * power_by_others(world, pair, m);
+}
+
+double scree_unforeseen_work(const scree_world *world, const scree_pair *pair,
+                             const scree_scratch *scratch) {
+  mover m[2] = {mover_of(world, pair->a, false), mover_of(world, pair->b, pair->wall)};
+  for (int k = 0; k < 2; k++) m[k].others = scree_wrench_of_others(world, pair, scratch, k == 1);
+  return work_by_others(world, pair, m) - pair->foreseen;
+}
+
+/* If they go on to change as they did since the step before, where that is known. */
+static scree_wrench foresee(const scree_wrench *last, scree_kept_wrench *kept, bool known) {
+  const scree_wrench before = known ? scree_kept_as_wrench(kept) : *last;
+  *kept = scree_kept(last);
+  return (scree_wrench){vec3_sub(vec3_scale(last->force, 2), before.force),
+                        vec3_sub(vec3_scale(last->moment, 2), before.moment)};
 }
 
 /* What the pair shows while it is looked at: that of the moment at which the step began. */
@@ -191,8 +238,10 @@ void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch
   const double dt = world->time_step, h = scratch->step;
   const shown first = {pair->elastic, pair->tangential_elastic, pair->contact_count};
   mover begin[2] = {mover_of(world, pair->a, false), mover_of(world, pair->b, pair->wall)};
-  for (int k = 0; k < 2; k++)
-    begin[k].others = scree_wrench_of_others(world, pair, scratch, k == 1);
+  for (int k = 0; k < 2; k++) {
+    const scree_wrench last = scree_wrench_of_others(world, pair, scratch, k == 1);
+    begin[k].others = foresee(&last, &pair->others[k], pair->substeps > 1);
+  }
   mover now[2] = {begin[0], begin[1]};
   kick_both(&now[0], &now[1], &pair->owed, 1, 0);
   const scree_pair_wrench w = pair->wrench, owed = pair->owed; /* at the step's beginning */
@@ -226,4 +275,5 @@ void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch
   pair->tangential_elastic = first.tangential_elastic;
   pair->contact_count = first.contact_count;
   pair->substeps = (uint8_t)count;
+  pair->foreseen = work_by_others(world, pair, now);
 }

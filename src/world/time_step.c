@@ -4,7 +4,8 @@
  * fraction of the loading half of the shortest contact: dt = (pi/2) sqrt(m/K)/N with the reduced
  * mass m, over all pairs of
  * kinds of body and of kind of body and wall. A hit on a corner feels an effective mass up to seven
- * times smaller than m, which N = 15 still resolves.
+ * times smaller than m, which N = 15 still resolves. A hysteretic contact unloads in e times that
+ * time: below e = 0.3 the step follows it.
  *
  * Hertz: 1/E* = sum (1 - nu^2)/E, 1/G* = sum 2 (2 - nu) (1 + nu)/E, 1/R* = sum 1/R, where R of a
  * clump is half its size and a mesh or wall has none. A contact that begins at v lasts 2.943
@@ -13,6 +14,8 @@
 #include "world/materials.h"
 
 static const double pi = 3.14159265358979323846;
+/* Of the loading, which the unloading of a hysteretic contact takes e times as long as. */
+static const double least_unloading = 0.3;
 
 static bool is_round(const scree_particle *particle) {
   return particle && particle->measures.kind != SCREE_PARTICLE_MESH;
@@ -87,52 +90,75 @@ static size_t list_kinds(const scree_world *world, body_kind *kinds) {
   return count;
 }
 
-double scree_world_choose_time_step(const scree_world *world, char reason[256]) {
-  body_kind kinds[MOST_KINDS];
-  size_t count = list_kinds(world, kinds);
-  const scree_bodies *bodies = &world->bodies;
-  double best = INFINITY, mass = 0, stiffness = 0;
-  size_t first = 0, second = 0;
-  bool wall = false;
+/* The contact that asks for the shortest step. */
+typedef struct fastest_contact {
+  double square; /* s^2, m/K, by what its unloading asks for */
+  double mass, stiffness;
+  size_t first, second;
+  bool wall;
+} fastest_contact;
+
+static void consider(const scree_world *world, const scree_contact_sides *sides,
+                     const fastest_contact *between, fastest_contact *fastest) {
   scree_pair_law law;
+  scree_set_stiffness(world, sides, &law);
+  const double e = world->contacts[sides->material_a][sides->material_b].given.restitution,
+               steeper = world->options.law == SCREE_LAW_HYSTERETIC
+                             ? scree_min(1, e / least_unloading)
+                             : 1,
+               square = sides->mass / law.stiffness * steeper * steeper;
+  if (!(square < fastest->square)) return;
+  *fastest = *between;
+  fastest->square = square;
+  fastest->mass = sides->mass;
+  fastest->stiffness = law.stiffness;
+}
+
+static fastest_contact find_fastest(const scree_world *world, const body_kind *kinds,
+                                    size_t count) {
+  const scree_bodies *bodies = &world->bodies;
+  fastest_contact fastest = {.square = INFINITY};
   for (size_t i = 0; i < count; i++) {
-    double mi = bodies->mass[kinds[i].body], li = size_of(world, kinds[i].body);
+    const body_kind *a = &kinds[i];
+    double mi = bodies->mass[a->body], li = size_of(world, a->body);
     for (size_t j = i; j < count; j++) {
-      double mj = bodies->mass[kinds[j].body], m = mi * mj / (mi + mj);
-      const scree_contact_sides sides = {kinds[i].particle,
-                                         kinds[j].particle,
-                                         kinds[i].material,
-                                         kinds[j].material,
-                                         scree_min(li, size_of(world, kinds[j].body)),
-                                         m};
-      scree_set_stiffness(world, &sides, &law);
-      double k = law.stiffness;
-      if (m / k < best)
-        best = m / k, mass = m, stiffness = k, first = kinds[i].body, second = kinds[j].body,
-        wall = false;
+      const body_kind *b = &kinds[j];
+      double mj = bodies->mass[b->body];
+      const scree_contact_sides sides = {a->particle,
+                                         b->particle,
+                                         a->material,
+                                         b->material,
+                                         scree_min(li, size_of(world, b->body)),
+                                         mi * mj / (mi + mj)};
+      consider(world, &sides, &(fastest_contact){.first = a->body, .second = b->body}, &fastest);
     }
     for (size_t w = 0; w < world->walls.count; w++) {
       const scree_contact_sides sides = {
-          kinds[i].particle, NULL, kinds[i].material, world->walls.items[w].given.material, li, mi};
-      scree_set_stiffness(world, &sides, &law);
-      double k = law.stiffness;
-      if (mi / k < best)
-        best = mi / k, mass = mi, stiffness = k, first = kinds[i].body, second = w, wall = true;
+          a->particle, NULL, a->material, world->walls.items[w].given.material, li, mi};
+      consider(world, &sides, &(fastest_contact){.first = a->body, .second = w, .wall = true},
+               &fastest);
     }
   }
+  return fastest;
+}
+
+double scree_world_choose_time_step(const scree_world *world, char reason[256]) {
+  body_kind kinds[MOST_KINDS];
+  size_t count = list_kinds(world, kinds);
   const scree_world_options *o = &world->options;
   if (count == 0) {
     double dt = o->time_step > 0 ? o->time_step : 1e-5;
     if (reason) snprintf(reason, 256, "%.4g s: there are no bodies yet", dt);
     return dt;
   }
-  double contact = 0.5 * pi * sqrt(best);
-  double dt = o->time_step > 0 ? o->time_step : contact / o->steps_per_contact;
+  const fastest_contact f = find_fastest(world, kinds, count);
+  double dt = o->time_step > 0 ? o->time_step : 0.5 * pi * sqrt(f.square) / o->steps_per_contact;
   if (reason)
     snprintf(reason, 256,
              "%.4g s: %s, %.3g steps in a quarter period of the fastest contact, of body %zu with "
              "%s %zu (reduced mass %.3g kg, stiffness %.3g N/m)",
-             dt, o->time_step > 0 ? "as given" : "automatic", contact / dt, first,
-             wall ? "wall" : "body", second, mass, stiffness);
+             dt, o->time_step > 0 ? "as given" : "automatic",
+             0.5 * pi * sqrt(f.mass / f.stiffness) / dt, f.first, f.wall ? "wall" : "body",
+             f.second, f.mass, f.stiffness);
   return dt;
 }

@@ -266,6 +266,8 @@ typedef struct scree_pair {
   scree_watch watch;
   scree_pair_wrench
       ahead; /* impulses: what the motion at the step's beginning has more than the mean */
+  scree_kept_wrench others[2]; /* on a and on b, before the last step's sub-steps: substep.c */
+  double foreseen;             /* J, of the spring by them */
 } scree_pair;
 
 /* Two bodies, or a body and a wall, whose boxes are near each other: what is kept of them while

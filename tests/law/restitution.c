@@ -156,8 +156,8 @@ static void corners_edges_and_faces_rebound_by_e(void **state) {
   scree_particle_free(ball);
 }
 
-/* 27 smooth elastic boxes in a periodic room, 1000 hits or so. What is not told from a hit's energy
- * is at most as many as those. */
+/* 27 smooth elastic boxes in a periodic room, 10,000 hits or so. What is not told from a hit's
+ * energy is at most as many as those. */
 static double change_of_gas(uint64_t seed) {
   enum { SIDE = 3 };
   const double room = 0.062;
@@ -184,7 +184,7 @@ static double change_of_gas(uint64_t seed) {
   scree_observation seen;
   law_step(world, 1);
   double start = law_ledger(world, &seen);
-  while (scree_world_time(world) < 0.3) law_step(world, 100);
+  while (scree_world_time(world) < 3) law_step(world, 100);
   double change = law_ledger(world, &seen) / start - 1;
   scree_world_free(world);
   scree_particle_free(box);
@@ -193,7 +193,7 @@ static double change_of_gas(uint64_t seed) {
 
 static void elastic_boxes_keep_their_energy(void **state) {
   (void)state;
-  enum { ROOMS = 7 };
+  enum { ROOMS = 3 };
   double changes[ROOMS];
   for (int i = 0; i < ROOMS; i++) {
     double change = fabs(change_of_gas((uint64_t)i + 1));
@@ -201,8 +201,54 @@ static void elastic_boxes_keep_their_energy(void **state) {
     for (; k > 0 && changes[k - 1] > change; k--) changes[k] = changes[k - 1];
     changes[k] = change;
   }
-  LAW_BELOW("L17", "27 elastic boxes, 1000 hits: ledger, median of rooms", changes[ROOMS / 2],
+  LAW_BELOW("L17", "27 elastic boxes, 10,000 hits: ledger, median of rooms", changes[ROOMS / 2],
             1e-3);
+}
+
+/* Boxes turned at random fall on a plane at 1 m/s by the hysteretic law: the ledger's error, rms.
+ */
+static double hysteretic_error(double e) {
+  enum { TRIES = 40 };
+  const vec3 half = {0.03, 0.02, 0.012};
+  scree_particle *box = shape_particle(shape_box(2 * half.x, 2 * half.y, 2 * half.z));
+  scree_rng rng = {.seed = 3};
+  double square = 0;
+  for (int i = 0; i < TRIES; i++) {
+    quat turn = scree_rng_rotation(&rng);
+    mat3 rotation = quat_to_mat3(turn);
+    const double *z = rotation.m[2];
+    double low = fabs(z[0]) * half.x + fabs(z[1]) * half.y + fabs(z[2]) * half.z;
+    scree_error error;
+    scree_world_options o = scree_default_world_options();
+    o.gravity[2] = 0, o.law = SCREE_LAW_HYSTERETIC;
+    scree_world *world = NULL;
+    CHECK_OK(scree_world_create(&o, &world, &error), error);
+    const scree_material materials[2] = {scree_default_material(), scree_default_wall_material()};
+    for (int k = 0; k < 2; k++)
+      CHECK_OK(scree_world_add_material(world, &materials[k], NULL, &error), error);
+    law_floor(world);
+    law_body(world, box, body_at((vec3){0, 0, low + 3e-4}, (vec3){0, 0, 0}, turn, -1));
+    law_step(world, 1);
+    CHECK_OK(scree_world_set_contact(world, 0, 1, e, 0, &error), error); /* the step follows */
+    scree_observation seen;
+    double start = law_ledger(world, &seen);
+    while (scree_world_time(world) < 3e-3) law_step(world, 10);
+    double change = law_ledger(world, &seen) / start - 1;
+    square += change * change / TRIES;
+    scree_world_free(world);
+  }
+  scree_particle_free(box);
+  return sqrt(square);
+}
+
+static void hysteretic_unloading_is_resolved(void **state) {
+  (void)state;
+  static const double given[] = {0.1, 0.2, 0.3, 0.5, 0.9};
+  for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
+    char what[60];
+    snprintf(what, sizeof what, "ledger of hysteretic boxes, e = %.1f", given[i]);
+    LAW_BELOW("L17", what, hysteretic_error(given[i]), 2e-3);
+  }
 }
 
 /* Where an elastic box is 2 ms after a corner met a plane at 1 m/s. */
@@ -256,6 +302,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(corners_edges_and_faces_rebound_by_e),
       cmocka_unit_test(elastic_boxes_keep_their_energy),
+      cmocka_unit_test(hysteretic_unloading_is_resolved),
       cmocka_unit_test(hits_converge_with_the_step),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
