@@ -20,7 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 19};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 20};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
@@ -31,18 +31,9 @@ _Static_assert(sizeof(void *) != 8 ||
 
 /* ---- field lists ---- */
 
-static void code_quat(scree_codec *c, quat *q) {
-  scree_code_real(c, &q->w);
-  scree_code_real(c, &q->x);
-  scree_code_real(c, &q->y);
-  scree_code_real(c, &q->z);
-}
-
-static void code_frame(scree_codec *c, scree_frame *f) {
-  vec3 *vectors[] = {&f->position, &f->velocity, &f->spin, &f->velocity_now, &f->spin_now};
-  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) scree_code_vec3(c, vectors[i]);
-  for (int i = 0; i < 3; i++) scree_code_reals(c, f->rotation.m[i], 3);
-}
+/* A record of real numbers alone, in the order of its fields. */
+#define CODE_REALS(codec, record)                                                                  \
+  scree_code_reals(codec, (double *)(record), sizeof *(record) / sizeof(double))
 
 static void code_options(scree_codec *c, scree_world_options *o) {
   uint32_t law = (uint32_t)o->law;
@@ -56,23 +47,6 @@ static void code_options(scree_codec *c, scree_world_options *o) {
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   scree_code_reals(c, o->period, 3);
   scree_code_reals(c, o->period_from, 3);
-}
-
-static void code_material(scree_codec *c, scree_material *m) {
-  scree_code_real(c, &m->young);
-  scree_code_real(c, &m->density);
-  scree_code_real(c, &m->restitution);
-  scree_code_real(c, &m->friction);
-  scree_code_real(c, &m->rolling_friction);
-  scree_code_real(c, &m->surface_energy);
-  scree_code_real(c, &m->poisson);
-}
-
-static void code_contact(scree_codec *c, scree_material_pair *p) {
-  double *reals[] = {&p->given.restitution, &p->given.friction,       &p->given.rolling_friction,
-                     &p->given.pull_off,    &p->given.surface_energy, &p->damping_ratio,
-                     &p->hertz_damping};
-  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
 }
 
 static void code_measures(scree_codec *c, scree_particle_measures *m) {
@@ -141,15 +115,9 @@ static void code_wall_motion(scree_codec *c, scree_motion_state *m) {
   if (table != (m->row_count > 0)) c->failed = true;
 }
 
-static void code_motion_row(scree_codec *c, scree_motion_row *r) {
-  scree_code_real(c, &r->time);
-  scree_code_real(c, &r->value);
-  scree_code_real(c, &r->sum);
-}
-
 static void code_wall_state(scree_codec *c, scree_world_wall *w) {
-  code_frame(c, &w->frame);
-  code_quat(c, &w->orientation);
+  CODE_REALS(c, &w->frame);
+  CODE_REALS(c, &w->orientation);
   scree_code_real(c, &w->travel);
   scree_code_real(c, &w->path);
   scree_code_real(c, &w->path_at_build);
@@ -158,16 +126,10 @@ static void code_wall_state(scree_codec *c, scree_world_wall *w) {
   vec3 *vectors[] = {&w->force,        &w->torque,       &w->surface_velocity,
                      &w->surface_spin, &w->surface_loop, &w->start_position};
   for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) scree_code_vec3(c, vectors[i]);
-  code_quat(c, &w->start_orientation);
+  CODE_REALS(c, &w->start_orientation);
   scree_code_real(c, &w->power);
   scree_code_real(c, &w->energy);
   scree_code_count(c, &w->motion_count, 8 * sizeof(double));
-}
-
-static void code_anchor(scree_codec *c, scree_anchor *a) {
-  scree_code_vec3(c, &a->stretch);
-  scree_code_vec3(c, &a->normal);
-  scree_code_real(c, &a->weight);
 }
 
 /* Memory that has come to nothing is saved as such: whether a world has been saved in between does
@@ -176,7 +138,7 @@ static void code_further(scree_codec *c, scree_feature_pair *i, scree_further *f
   bool any = false;
   for (int k = 0; k < SCREE_ANCHORS - 1; k++) {
     scree_anchor *own = &further->anchor[k], none = {0};
-    code_anchor(c, c->loading || (i->notched && own->weight > 0) ? own : &none);
+    CODE_REALS(c, c->loading || (i->notched && own->weight > 0) ? own : &none);
     any = any || (c->loading && own->weight > 0);
   }
   if (c->loading) i->notched = any;
@@ -205,23 +167,25 @@ static void code_feature(scree_codec *c, scree_feature_pair *i, scree_further *f
   scree_code_real(c, &i->gap);
   scree_code_bool(c, &i->has_reference);
   scree_code_bool(c, &i->inside);
-  code_anchor(c, &i->anchor);
+  CODE_REALS(c, &i->anchor);
   code_further(c, i, further);
 }
 
-static void code_float(scree_codec *c, float *x) {
-  double value = *x;
-  scree_code_real(c, &value);
-  *x = (float)value;
+static void code_floats(scree_codec *c, float *numbers, int count) {
+  for (int i = 0; i < count; i++) {
+    double number = numbers[i];
+    scree_code_real(c, &number);
+    numbers[i] = (float)number;
+  }
 }
 
 static void code_watch(scree_codec *c, scree_watch *w) {
   scree_code_real(c, &w->due);
   scree_code_vec3(c, &w->at);
-  for (int i = 0; i < 4; i++) code_float(c, &w->turned[i]);
-  for (int i = 0; i < 3; i++) code_float(c, &w->came[i]);
-  code_float(c, &w->speed);
-  code_float(c, &w->since);
+  code_floats(c, w->turned, 4);
+  code_floats(c, w->came, 3);
+  code_floats(c, &w->speed, 1);
+  code_floats(c, &w->since, 1);
   for (int i = 0; i < SCREE_INNER_PLACES; i++) {
     uint32_t through = w->through[i];
     scree_code_u32(c, &through);
@@ -237,27 +201,6 @@ static void code_sleeping(scree_codec *c, scree_sleeping_feature *s) {
   scree_code_u32(c, &s->kind);
 }
 
-static void code_wrench(scree_codec *c, scree_pair_wrench *w) {
-  scree_code_vec3(c, &w->force);
-  scree_code_vec3(c, &w->torque_a);
-  scree_code_vec3(c, &w->torque_b);
-}
-
-static void code_load(scree_codec *c, scree_kept_wrench *l) {
-  float *numbers[2] = {l->force, l->moment};
-  for (int i = 0; i < 6; i++) {
-    double number = numbers[i / 3][i % 3];
-    scree_code_real(c, &number);
-    numbers[i / 3][i % 3] = (float)number;
-  }
-}
-
-static void code_balance(scree_codec *c, scree_balance *b) {
-  scree_code_real(c, &b->dashpot);
-  scree_code_real(c, &b->tangential);
-  scree_code_real(c, &b->wall);
-}
-
 static void code_pair_name(scree_codec *c, scree_neighbours *n) {
   scree_code_u32(c, &n->a);
   scree_code_u32(c, &n->b);
@@ -270,59 +213,38 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
   scree_code_bool(c, &p->depenetrating);
   scree_code_bool(c, &p->was_depenetrating);
   scree_code_bool(c, &p->followed);
-  double since = p->elastic_since, belt_power = p->belt_power;
-  double *reals[] = {&n->law.stiffness,
-                     &n->law.damping,
-                     &n->law.friction,
-                     &n->law.restitution,
-                     &n->law.smoothing,
-                     &n->law.reach,
-                     &n->law.limit,
-                     &n->law.thin,
-                     &n->law.pull,
-                     &n->law.rolling,
-                     &n->law.rolling_damping,
-                     &n->law.hertz,
-                     &n->law.mindlin,
-                     &p->list.travel,
-                     &p->list.path,
-                     &n->wake,
+  CODE_REALS(c, &n->law);
+  CODE_REALS(c, &p->list);
+  double *reals[] = {&n->wake,
                      &n->asleep_since,
-                     &p->list.next_feature,
-                     &p->list.end,
                      &p->elastic,
                      &p->tangential_elastic,
-                     &n->law.contact_time,
                      &p->age,
                      &p->overlap,
                      &p->largest,
                      &p->depth,
                      &p->kick,
-                     &p->later_dashpot,
-                     &p->later_tangential,
                      &p->foreseen,
-                     &belt_power,
-                     &since};
+                     &p->found,
+                     &p->later_dashpot,
+                     &p->later_tangential};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
-  p->elastic_since = (float)since;
-  p->belt_power = (float)belt_power;
+  code_floats(c, &p->elastic_since, 1);
+  code_floats(c, &p->belt_power, 1);
   scree_code_vec3(c, &p->rolled);
   scree_code_vec3(c, &p->separation);
   scree_code_vec3(c, &p->pushed);
-  scree_code_real(c, &p->found);
-  code_wrench(c, &p->wrench);
-  code_wrench(c, &p->owed);
-  code_wrench(c, &p->ahead);
+  CODE_REALS(c, &p->wrench);
+  CODE_REALS(c, &p->owed);
+  CODE_REALS(c, &p->ahead);
   code_watch(c, &p->watch);
   uint32_t substeps = p->substeps;
   scree_code_u32(c, &substeps);
   if (substeps < 1 || substeps > SCREE_MOST_SUBSTEPS) c->failed = true;
   p->substeps = (uint8_t)substeps;
-  scree_code_vec3(c, &p->spring.force);
-  scree_code_vec3(c, &p->spring.moment);
-  code_load(c, &p->dashpot);
-  code_load(c, &p->tangential);
-  for (int i = 0; i < 2; i++) code_load(c, &p->others[i]);
+  CODE_REALS(c, &p->spring);
+  scree_kept_wrench *kept[] = {&p->dashpot, &p->tangential, &p->others[0], &p->others[1]};
+  for (int i = 0; i < 4; i++) code_floats(c, (float *)kept[i], 6);
   uint64_t contacts = p->contact_count;
   scree_code_u64(c, &contacts);
   p->contact_count = (uint32_t)contacts;
@@ -333,32 +255,20 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
   p->active.count = (uint32_t)active;
   n->sleeping.count = (uint32_t)sleeping;
   scree_code_vec3(c, &n->asleep_at);
-  code_quat(c, &n->asleep_turned);
-  scree_code_vec3(c, &p->list.region);
-  scree_code_real(c, &p->list.region_radius);
+  CODE_REALS(c, &n->asleep_turned);
 }
 
-/* Body i as it lies in the arrays. */
-typedef struct body_record {
-  scree_frame frame;
-  quat orientation;
-  vec3 momentum, inertia, force, torque;
-  double mass, travel, path, path_at_build;
-  bool removed;
-  scree_balance balance;
-} body_record;
-
-static void code_body(scree_codec *c, body_record *b) {
-  code_frame(c, &b->frame);
-  code_quat(c, &b->orientation);
-  vec3 *vectors[] = {&b->momentum, &b->inertia, &b->force, &b->torque};
-  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) scree_code_vec3(c, vectors[i]);
-  scree_code_real(c, &b->mass);
-  scree_code_real(c, &b->travel);
-  scree_code_real(c, &b->path);
-  scree_code_real(c, &b->path_at_build);
-  scree_code_bool(c, &b->removed);
-  code_balance(c, &b->balance);
+/* Body i, in the arrays. */
+static void code_body(scree_codec *c, const scree_world *world, size_t i) {
+  const scree_bodies *b = &world->bodies;
+  CODE_REALS(c, &b->frame[i]);
+  CODE_REALS(c, &b->orientation[i]);
+  vec3 *vectors[] = {&b->momentum[i], &b->inertia[i], &b->force[i], &b->torque[i]};
+  for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++) scree_code_vec3(c, vectors[k]);
+  double *reals[] = {&b->mass[i], &b->travel[i], &b->path[i], &world->body_path_at_build[i]};
+  for (size_t k = 0; k < sizeof reals / sizeof *reals; k++) scree_code_real(c, reals[k]);
+  scree_code_bool(c, &b->removed[i]);
+  CODE_REALS(c, &b->balance[i]);
 }
 
 /* What the world counts, and how it ended. */
@@ -456,12 +366,12 @@ static void save_setup(scree_codec *c, const scree_world *world) {
   scree_code_count(c, &count, 1);
   for (size_t i = 0; i < count; i++) {
     scree_material material = world->materials[i];
-    code_material(c, &material);
+    CODE_REALS(c, &material);
   }
   for (size_t i = 0; i < count; i++)
     for (size_t j = 0; j <= i; j++) {
       scree_material_pair contact = world->contacts[i][j];
-      code_contact(c, &contact);
+      CODE_REALS(c, &contact);
     }
   count = world->walls.count;
   scree_code_count(c, &count, 1);
@@ -472,45 +382,16 @@ static void save_setup(scree_codec *c, const scree_world *world) {
     if (wall.given.kind == SCREE_WALL_MESH) code_mesh(c, &mesh);
     code_wall_state(c, &wall);
   }
-  for (size_t i = 0; i < world->motions.count; i++) {
-    scree_motion_state motion = world->motions.items[i];
-    code_wall_motion(c, &motion);
-  }
-  for (size_t i = 0; i < world->motion_rows.count; i++) {
-    scree_motion_row row = world->motion_rows.items[i];
-    code_motion_row(c, &row);
-  }
-}
-
-static void code_applied(scree_codec *c, scree_applied *a) {
-  vec3 *vectors[] = {&a->now.force, &a->now.moment, &a->last.force, &a->last.moment};
-  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) scree_code_vec3(c, vectors[i]);
-  scree_code_real(c, &a->work);
+  for (size_t i = 0; i < world->motions.count; i++) code_wall_motion(c, &world->motions.items[i]);
+  for (size_t i = 0; i < world->motion_rows.count; i++) CODE_REALS(c, &world->motion_rows.items[i]);
 }
 
 static void save_bodies(scree_codec *c, const scree_world *world) {
   const scree_bodies *b = &world->bodies;
-  for (size_t i = 0; i < b->count; i++) {
-    body_record record = {.frame = b->frame[i],
-                          .orientation = b->orientation[i],
-                          .momentum = b->momentum[i],
-                          .inertia = b->inertia[i],
-                          .force = b->force[i],
-                          .torque = b->torque[i],
-                          .mass = b->mass[i],
-                          .travel = b->travel[i],
-                          .path = b->path[i],
-                          .path_at_build = world->body_path_at_build[i],
-                          .removed = b->removed[i],
-                          .balance = b->balance[i]};
-    code_body(c, &record);
-  }
+  for (size_t i = 0; i < b->count; i++) code_body(c, world, i);
   bool any = b->applied != NULL;
   scree_code_bool(c, &any);
-  for (size_t i = 0; b->applied && i < b->count; i++) {
-    scree_applied applied = b->applied[i];
-    code_applied(c, &applied);
-  }
+  for (size_t i = 0; any && i < b->count; i++) CODE_REALS(c, &b->applied[i]);
 }
 
 static void save_pairs(scree_codec *c, const scree_world *world, bool contacts) {
@@ -523,8 +404,7 @@ static void save_pairs(scree_codec *c, const scree_world *world, bool contacts) 
     if (!pair) scree_pair_begin(pair = &asleep, n, k);
     code_pair_name(c, n);
     code_pair_state(c, pair, n);
-    scree_balance balance = world->ledger.items[k];
-    code_balance(c, &balance);
+    CODE_REALS(c, &world->ledger.items[k]);
     scree_range items = pair->active, sleeping_features = n->sleeping;
     for (uint32_t i = 0; i < items.count; i++)
       code_feature(c, &pools->features[items.first + i], &pools->further[items.first + i]);
@@ -612,7 +492,7 @@ static void load_motions(loader *l) {
   }
   for (size_t i = 0; i < rows && good(l); i++) {
     scree_motion_row row = {0};
-    code_motion_row(&l->codec, &row);
+    CODE_REALS(&l->codec, &row);
     if (!SCREE_PUSH(&world->motion_rows, row)) l->codec.out_of_memory = true;
   }
 }
@@ -626,12 +506,12 @@ static void load_setup(loader *l) {
   scree_code_count(c, &count, 4 * sizeof(double));
   for (size_t i = 0; i < count && good(l); i++) {
     scree_material material = {0};
-    code_material(c, &material);
+    CODE_REALS(c, &material);
     if (good(l)) scree_world_add_material(l->world, &material, NULL, &l->error);
   }
   for (size_t i = 0; i < count && good(l); i++)
     for (size_t j = 0; j <= i; j++) {
-      code_contact(c, &l->world->contacts[i][j]);
+      CODE_REALS(c, &l->world->contacts[i][j]);
       l->world->contacts[j][i] = l->world->contacts[i][j];
     }
   scree_code_count(c, &count, 64);
@@ -708,28 +588,15 @@ static void load_particles(loader *l) {
 static void load_bodies(loader *l) {
   scree_bodies *b = &l->world->bodies;
   for (size_t i = 0; i < b->count && good(l); i++) {
-    body_record record = {0};
-    code_body(&l->codec, &record);
-    vec3 at = record.frame.position; /* its norm may overflow */
+    code_body(&l->codec, l->world, i);
+    const vec3 at = b->frame[i].position; /* its norm may overflow */
     if (!isfinite(at.x) || !isfinite(at.y) || !isfinite(at.z)) l->codec.failed = true;
-    b->frame[i] = record.frame;
-    b->orientation[i] = record.orientation;
-    b->momentum[i] = record.momentum;
-    b->inertia[i] = record.inertia;
-    b->force[i] = record.force;
-    b->torque[i] = record.torque;
-    b->mass[i] = record.mass;
-    b->travel[i] = record.travel;
-    b->path[i] = record.path;
-    b->removed[i] = record.removed;
-    b->balance[i] = record.balance;
-    b->removed_count += record.removed;
-    l->world->body_path_at_build[i] = record.path_at_build;
+    b->removed_count += b->removed[i];
   }
   bool any = false;
   scree_code_bool(&l->codec, &any);
   if (any && good(l)) scree_bodies_make_applied(b, &l->error);
-  for (size_t i = 0; any && i < b->count && good(l); i++) code_applied(&l->codec, &b->applied[i]);
+  for (size_t i = 0; any && i < b->count && good(l); i++) CODE_REALS(&l->codec, &b->applied[i]);
 }
 
 /* Whether a feature pair names features that are there. */
@@ -822,7 +689,7 @@ static void load_pair(loader *l, uint32_t k, uint32_t index) {
   scree_pair *pair = &world->pairs.items[index];
   scree_pair_begin(pair, n, k);
   code_pair_state(&l->codec, pair, n);
-  code_balance(&l->codec, &world->ledger.items[k]);
+  CODE_REALS(&l->codec, &world->ledger.items[k]);
   load_features(l, pair);
   pair->law = n->law;
   if (scree_pair_stays_awake(pair)) {
