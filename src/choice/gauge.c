@@ -9,7 +9,7 @@
 #include "base/math.h"
 #include "base/parallel.h"
 #include "base/sum.h"
-#include "mesh/index/ray.h"
+#include "mesh/index/bvh.h"
 #include "simplify/flat_fan.h"
 
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include "choice/fidelity.h"
 #include "choice/recommend.h"
 #include "choice/spread.h"
-#include "mesh/index/ray.h"
+#include "mesh/index/bvh.h"
 #include "support/check.h"
 #include "support/shapes.h"
 

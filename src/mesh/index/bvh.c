@@ -1,5 +1,6 @@
 /* The tree splits by area. Nearest-point queries go down the nearer child first and skip boxes
- * farther than the best found. */
+ * farther than the best found. Rays: boxes by slabs (Kay and Kajiya 1986), triangles by Moller and
+ * Trumbore (1997). */
 #include "mesh/index/bvh.h"
 
 #include "base/alloc.h"
@@ -104,4 +105,42 @@ void scree_bvh_closest_block(const scree_bvh *bvh, scree_point_block *points) {
     if (far2 < farthest2) stack[depth].node = far, stack[depth++].apart2 = far2;
     if (near2 < farthest2) stack[depth].node = near, stack[depth++].apart2 = near2;
   }
+}
+
+/* ---- Rays ---- */
+
+/* How far, in barycentric coordinates, a ray may pass beside a triangle and still meet it: so that
+ * rounding leaves no gap between neighbours. */
+static const double RIM = 1e-9;
+
+/* The distance to one triangle, INFINITY beside it; *normal is along its outward one. */
+static double meet_triangle(vec3 from, vec3 along, const double *corners, vec3 *normal) {
+  vec3 origin = vec3_load(corners), e = vec3_sub(vec3_load(corners + 3), origin),
+       f = vec3_sub(vec3_load(corners + 6), origin), h = vec3_cross(along, f);
+  double det = vec3_dot(e, h);
+  if (det == 0) return INFINITY;
+  vec3 g = vec3_sub(from, origin), q = vec3_cross(g, e);
+  double u = vec3_dot(g, h) / det, v = vec3_dot(along, q) / det;
+  if (!(u >= -RIM && v >= -RIM && u + v <= 1 + RIM)) return INFINITY;
+  *normal = vec3_cross(e, f);
+  return vec3_dot(f, q) / det;
+}
+
+double scree_ray_meet(const scree_bvh *bvh, vec3 from, vec3 along, double least, double *facing) {
+  double nearest = INFINITY;
+  scree_tree_walk walk;
+  scree_tree_start(&walk, &bvh->tree);
+  for (const scree_tree_node *node; (node = scree_tree_next(&walk));) {
+    double low = least, high = nearest;
+    if (!scree_box_cut(&node->box, from, along, &low, &high) || scree_tree_enter(&walk, node))
+      continue;
+    for (uint32_t i = node->first; i < node->first + node->count; i++) {
+      vec3 normal = {0, 0, 0};
+      double t = meet_triangle(from, along, bvh->corners + 9 * (size_t)i, &normal);
+      if (!(t > least && t < nearest)) continue;
+      nearest = t;
+      *facing = vec3_dot(vec3_unit(normal), along);
+    }
+  }
+  return nearest;
 }

@@ -32,4 +32,10 @@ bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit);
  * where the points lie as near to each other as the triangles are large. */
 void scree_bvh_closest_block(const scree_bvh *bvh, scree_point_block *points);
 
+/* The distance from `from` along the unit vector `along` to the first facet beyond `least`,
+ * INFINITY where there is none. *facing is the cosine of that facet's outward normal with the ray:
+ * positive where the ray leaves the body. A ray through an edge meets at least one of its facets.
+ * Flat facets are not met. */
+double scree_ray_meet(const scree_bvh *bvh, vec3 from, vec3 along, double least, double *facing);
+
 #endif
