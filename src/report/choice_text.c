@@ -28,6 +28,8 @@ static const double NOTABLE_NOISE = 0.3;
 static const double NOTABLE_SHARE = 0.5;
 /* A distance of less, as a share of the size, is none. */
 static const double ROUNDING = 1e-9;
+/* Thinner bodies, as shares of the size, of which no walls were found are foils. */
+static const double FOIL = 0.01;
 /* Walls that a level has no more of than this are said to be gone. */
 static const double GONE = 0.01;
 /* The cost of a particle-step in a flowing heap, over that of 100 triangles: 2.5 at 1,500. */
@@ -314,6 +316,11 @@ static void warn_of_losses(sentences *s, const scree_choice_report *report, cons
         "Scan noise of %s mm takes part in the mean distance: the count is more than the "
         "shape needs.",
         NUMBER(1e3 * noise, 2));
+  double usual = 2 * fabs(c->volume) / c->area;
+  if (isnan(scree_fidelity_scan(f, SCREE_SCAN_THICKNESS)) && usual < FOIL * length)
+    say(s,
+        "A foil of about %s mm: its thickness counts as no error (--tolerance mean=%smm keeps it).",
+        NUMBER(1e3 * usual, 2), NUMBER(1e2 * usual, 1));
   if ((double)c->recommended.triangle_count > NOTABLE_SHARE * (double)c->triangle_count)
     say(s, "The scan is coarse for these tolerances: of its %s triangles most are needed.",
         count_text(c->triangle_count, count));

@@ -111,3 +111,7 @@ for folder in spiky one-level; do
       outside += hidden ? $3 ~ /choice/ : $5 > end[$1 "y"] }
     END { print (drawn ? "some" : "none"), "drawn,", outside + 0, "outside" }' ends $folder/figure.csv
 done
+
+# a body too thin for its walls to be measured is told, with what keeps its thickness
+box 30 20 0.01 >foil.off
+"$SCREE" choose foil.off | grep 'A foil' | shape
