@@ -1,19 +1,19 @@
 #!/bin/bash
 # Spheres beside LIGGGHTS on one core, with the same places, stiffness, damping, friction and step on both sides:
-# a lifted tube, flow through an orifice, a sphere that rolls out.
+# a lifted tube, a sphere that rolls out. Flow through holes: bench/evidence/orifice.
 #
 #   bench/liggghts.sh [SEEDS [SCENE...]]
 #
 # SEEDS (default 10) runs a scene and engine, of half a minute at most; needs liggghts (apt-get install liggghts).
-# Writes results/liggghts.md; of scenes that are named, results/liggghts-SCENE.md by the first of them: tube, roll, and
-# orifice-MM through a hole of as many millimetres. LIGGGHTS has its rolling model CDT, a constant couple; in the tube also EPSD, a spring up to
-# the same couple, without a dashpot and with one of 0.3 of critical besides. Here it is a spring and such a dashpot, both
-# together up to the same couple.
+# Writes results/liggghts.md; of scenes that are named, results/liggghts-SCENE.md by the first of them: tube, roll.
+# LIGGGHTS has its rolling model CDT, a constant couple; in the tube also EPSD, a spring up to the same couple, without a
+# dashpot and with one of 0.3 of critical besides. Here it is a spring and such a dashpot, both together up to the same
+# couple.
 set -euo pipefail
 . "$(dirname "$0")/lib.sh"
 seeds=${1:-10}
 named=("${@:2}")
-[ ${#named[@]} -gt 0 ] || named=(tube orifice-30 roll)
+[ ${#named[@]} -gt 0 ] || named=(tube roll)
 cmake -S "$root" --preset release -B "$build" -DSCREE_BENCH=ON -DBUILD_TESTING=OFF >/dev/null
 cmake --build "$build" --target bench_spheres ${SCREE_BENCH_JOBS:+-j "$SCREE_BENCH_JOBS"} >/dev/null
 scenes=$work/liggghts
@@ -32,24 +32,18 @@ places() {
         }
   }'
 }
-# sheet R0 Z0 R1 Z1: the surface of revolution between two circles, as STL.
-sheet() {
-  awk -v r0="$1" -v z0="$2" -v r1="$3" -v z1="$4" '
-    function corner(r, z, k) { printf "vertex %.9g %.9g %.9g\n", r * cos(w * k), r * sin(w * k), z }
-    BEGIN {
-      w = 2 * 3.14159265358979 / 90; print "solid sheet"
-      for (k = 0; k < 90; k++) {
-        print "facet normal 0 0 0\nouter loop"; corner(r0, z0, k); corner(r1, z1, k); corner(r1, z1, k + 1)
-        print "endloop\nendfacet\nfacet normal 0 0 0\nouter loop"; corner(r0, z0, k); corner(r1, z1, k + 1)
-        corner(r0, z0, k + 1); print "endloop\nendfacet"
-      }
-      print "endsolid sheet"
-    }'
-}
-sheet 0.036 0 0.036 0.14 >"$scenes/tube.stl"
-for scene in "${named[@]}"; do
-  [[ $scene != orifice-* ]] || sheet "$(awk "BEGIN { print ${scene#orifice-} / 2000 }")" 0 0.036 0 >"$scenes/$scene.stl"
-done
+# The tube of 72 mm, as STL.
+awk '
+  function corner(z, k) { printf "vertex %.9g %.9g %.9g\n", 0.036 * cos(w * k), 0.036 * sin(w * k), z }
+  BEGIN {
+    w = 2 * 3.14159265358979 / 90; print "solid tube"
+    for (k = 0; k < 90; k++) {
+      print "facet normal 0 0 0\nouter loop"; corner(0, k); corner(0.14, k); corner(0.14, k + 1)
+      print "endloop\nendfacet\nfacet normal 0 0 0\nouter loop"; corner(0, k); corner(0.14, k + 1)
+      corner(0, k + 1); print "endloop\nendfacet"
+    }
+    print "endsolid tube"
+  }' >"$scenes/tube.stl"
 
 # property NAME PAIR WALL: of sphere and sphere, sphere and wall.
 property() { echo "fix $1 all property/global $1 peratomtypepair 2 $2 $3 $3 $2"; }
@@ -82,15 +76,7 @@ I
   echo 'pair_coeff * *'
   echo 'timestep 2.5e-5'
   echo 'fix weight all gravity 9.81 vector 0 0 -1'
-  local floor="fix floor all wall/gran $model primitive type 2 zplane 0.0 $options"
-  case $1 in
-  orifice-*)
-    echo "fix bin all mesh/surface file $scenes/tube.stl type 2"
-    echo "fix ring all mesh/surface file $scenes/$1.stl type 2"
-    echo "fix walls all wall/gran $model mesh n_meshes 2 meshes bin ring $options"
-    ;;
-  *) echo "$floor" ;;
-  esac
+  echo "fix floor all wall/gran $model primitive type 2 zplane 0.0 $options"
   if [ "$1" = tube ]; then
     echo "fix tube all mesh/surface file $scenes/tube.stl type 2"
     echo "fix walls all wall/gran $model mesh n_meshes 1 meshes tube $options"
@@ -112,26 +98,21 @@ undump places
 shell mv $scenes/places.txt $scenes"
   case $1 in
   tube) printf 'run 14000\nfix lift all move/mesh mesh tube linear 0. 0. 0.1\nrun 38000\n%s/last.txt\n' "$write" ;;
-  orifice-*) printf 'run 10000\n%s/first.txt\ndump places all custom 1000000 %s id x y z\nrun 20000\n%s/last.txt\n' \
-    "$write" "$scenes/places.txt" "$write" ;;
   roll) printf 'run 40000\n%s/last.txt\n' "$write" ;;
   esac
 }
-# of_places SCENE FILE...: the value that bench_spheres prints.
+# of_places SCENE FILE: the value that bench_spheres prints.
 of_places() {
-  awk -v scene="$1" 'FNR == 1 { file++; atoms = 0 } /ITEM: ATOMS/ { atoms = 1; next } !atoms { next }
-    { n++; r2 += $2 * $2 + $3 * $3; x = $2; if ($4 >= -0.01) above[file]++ }
-    END { print scene == "tube" ? 1000 * sqrt(r2 / n) : scene == "roll" ? 1000 * x : above[1] - above[2] }' "${@:2}"
+  awk -v scene="$1" '/ITEM: ATOMS/ { atoms = 1; next } !atoms { next } { n++; r2 += $2 * $2 + $3 * $3; x = $2 }
+    END { print 1000 * (scene == "tube" ? sqrt(r2 / n) : x) }' "$2"
 }
 # peer SCENE PLACES ROLLING [VISCOUS]: value and CPU seconds.
 peer() {
-  rm -f "$scenes"/{places,first,last}.txt
+  rm -f "$scenes"/{places,last}.txt
   lammps "$@" >"$scenes/in"
   local TIMEFORMAT=%U seconds
   seconds=$({ time liggghts -in "$scenes/in" -log "$scenes/log" >"$scenes/screen" 2>&1; } 2>&1) || tail -3 "$scenes/screen" >&2
-  local files=("$scenes/last.txt")
-  [[ $1 != orifice-* ]] || files=("$scenes/first.txt" "$scenes/last.txt")
-  echo "$(of_places "$1" "${files[@]}") $seconds"
+  echo "$(of_places "$1" "$scenes/last.txt") $seconds"
 }
 rows=$scenes/rows
 : >"$rows"
@@ -160,7 +141,6 @@ done
     { k = $1 " " $2; if (!(k in n)) order[++m] = k; n[k]++; s[k] += $3; q[k] += $3 * $3; t[k] += $4 }
     END { for (i = 1; i <= m; i++) { k = order[i]; split(k, name, " "); mean = s[k] / n[k]
       v = n[k] > 1 ? (q[k] - n[k] * mean * mean) / (n[k] - 1) : 0
-      if (sub(/orifice-/, "", name[1])) what[name[1]] = "through a hole of " name[1] " mm in 0.5 s"
       printf "| %s | %s | %d | %.2f | %s | %.1f |\n", what[name[1]], name[2], n[k], mean,
         (n[k] > 1 ? sprintf("%.2f", sqrt((v > 0 ? v : 0) / n[k])) : "-"), t[k] / n[k] } }' "$rows"
-} >"$results/liggghts${2:+-${2%-*}}.md"
+} >"$results/liggghts${2:+-$2}.md"

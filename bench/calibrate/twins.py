@@ -7,6 +7,7 @@ usage: twins.py METHOD TABLE [--twins FROM:TO]
   angle      the same with nothing measured but the heap's angle
   latin      one Latin design for all twins: its run nearest to the measurements, and the least of a quadratic surface
   cma        CMA-ES of DEAP (Debian: python3-deap) on the distance to the measurements
+  flat       the heap's angle over both parameters, in a table of its own: where it is low it tells rolling friction alone
   report     what the table says
 A row a twin and budget; a run that was broken off goes on. Runs of both experiments count."""
 import argparse
@@ -37,10 +38,10 @@ def work(name):
     return folder
 
 
-def runs(folder, rows):
+def runs(folder, rows, experiments=("heap", "drawdown")):
     """Answers of a heap and a drawdown at every row (friction, rolling, seed): {target: [number or None]}, seconds."""
     answers, seconds = {}, 0
-    for experiment in ("heap", "drawdown"):
+    for experiment in experiments:
         targets = {name: t for name, t in TARGETS.items() if t[0] == experiment}
         lines = [f"base: {{scene: {HERE / experiment}.yaml}}", "design: list", "replicates: 1", "factors:"]
         for k, field in enumerate([*FIELDS.values(), "seed"]):
@@ -167,6 +168,16 @@ def cma(index, table):
             add_point(table, "cma", index, done, truth, found, seconds)
 
 
+def flat(path):
+    table = common.Table(path, ["friction", "rolling", "heaps", "angle_deg", "standard_error"], 2)
+    for rolling in (0.1, 0.16, 0.25, 0.35):
+        for friction in (0.1, 0.3, 0.6, 0.9):
+            if table.key((friction, rolling)) not in table.done:
+                answers, _ = runs(work(f"flat-{friction}-{rolling}"), [(friction, rolling, 700 + i) for i in range(4)], ("heap",))
+                angles = [a or 0 for a in answers["angle"]]  # too low to have one
+                table.add(friction, rolling, len(angles), common.mean(angles), common.deviation(angles) / math.sqrt(len(angles)))
+
+
 def report(table):
     print("method,runs,twins,distance,sd,friction_held,rolling_held,friction_identified,rolling_identified,friction_end,rolling_end,identified_held,friction_width,rolling_width")
     for method, budget in sorted({(r["method"], int(r["runs"])) for r in table.rows}):
@@ -186,10 +197,12 @@ def report(table):
 
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
-    parser.add_argument("method", choices=["calibrate", "angle", "latin", "cma", "report"])
+    parser.add_argument("method", choices=["calibrate", "angle", "latin", "cma", "flat", "report"])
     parser.add_argument("table")
     parser.add_argument("--twins", default="0:20")
     options = parser.parse_args()
+    if options.method == "flat":
+        return flat(options.table)
     table = common.Table(options.table, COLUMNS, 3)
     if options.method == "report":
         return report(table)
