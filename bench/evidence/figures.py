@@ -53,9 +53,18 @@ def penetration():
                for name, column in (("LIGGGHTS", "liggghts"), ("scree", "scree"))], "time, ms", "height of the ball, mm")
 
 
+def orifice():
+    table = RESULTS / "orifice.csv"
+    if table.exists():
+        series = [(name, [(float(r["hole"]), float(r["rate"]) ** 0.4) for r in read(table) if r["code"] == name], "points")
+                  for name in ("scree", "liggghts", "liggghts-no-dashpot")]
+        write(FIGURES / "evidence-orifice.svg", series, "hole, sphere diameters", "(spheres a second) to the power 2/5")
+
+
 if __name__ == "__main__":
     if len(sys.argv) > 1:
         sys.exit(__doc__)
     boulders()
     drum()
     penetration()
+    orifice()

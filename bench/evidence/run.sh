@@ -1,6 +1,6 @@
 #!/bin/bash
 # Evidence: cases beside measurements and other codes, docs/background/evidence.md.
-#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration; all without a name
+#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration, orifice; all without a name
 # Each piece goes on where it was broken off; what is done is not done again (delete its table in results/ to repeat it).
 # SCREE_EVIDENCE_DIR names the folder of measurements (default ../shared/evidence); a case without its folder is skipped.
 # One process at a time: nice -n 15 bench/evidence/run.sh runs beside other work. Some hours of one core in all.
@@ -13,7 +13,7 @@ work=${SCREE_EVIDENCE_WORK:-$root/build/evidence}
 results=$here/results
 shapes=recommended,4x,0.25x,0.0625x,sphere,clump5,clump20,clump50
 mkdir -p "$work" "$results"
-[ $# -gt 0 ] || set -- boulders drum penetration
+[ $# -gt 0 ] || set -- boulders drum penetration orifice
 
 # fitted CASE: its calibration and both tables of it.
 fitted() {
@@ -32,6 +32,7 @@ boulders() {
   # shellcheck disable=SC2086 # many words
   "$here/boulders/boulders.py" grid "$results/boulders-grid.csv" $words --every 16 --variant $shapes
   "$here/boulders/boulders.py" grid "$results/boulders-corner.csv" "${corner[@]}" --every 4 --variant $shapes
+  "$here/boulders/boulders.py" rolling "$results/boulders-rolling.csv"
   for table in grid corner; do
     "$here/boulders/compare.py" places "$results/boulders-$table.csv" "$results/boulders-$table-places.csv"
     "$here/boulders/compare.py" shapes "$results/boulders-$table.csv" "$results/boulders-$table-shapes.csv"
@@ -59,12 +60,18 @@ penetration() {
   "$here/penetration/penetration.py" compare "$results/penetration.csv" >"$results/penetration.txt"
 }
 
+orifice() {
+  "$here/orifice/orifice.py" run "$results/orifice.csv" 6 scree liggghts liggghts-no-dashpot
+  "$here/orifice/orifice.py" compare "$results/orifice.csv" >"$results/orifice-compared.csv"
+}
+
 for case in "$@"; do
   case $case in
   boulders) folder=authume ;;
   drum) folder=granudrum ;;
   penetration) folder=bulk ;;
-  *) echo "run.sh: no case '$case'; there are boulders, drum and penetration" >&2 && exit 2 ;;
+  orifice) folder= ;; # nothing measured
+  *) echo "run.sh: no case '$case'; there are boulders, drum, penetration and orifice" >&2 && exit 2 ;;
   esac
   if [ -d "$SCREE_EVIDENCE_DIR/$folder" ]; then $case; else echo "$case: skipped, there is no folder $SCREE_EVIDENCE_DIR/$folder"; fi
 done

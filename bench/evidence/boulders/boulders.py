@@ -5,6 +5,7 @@
                         N boulders drawn at random; prints lines NAME: NUMBER, as `scree calibrate` asks
   boulders.py grid FILE.csv ZONE.restitution=X ... [--profile P] [--variant V,...] [--every N]
                         all shapes, places and every Nth orientation; adds to the table what it lacks
+  boulders.py rolling FILE.csv   spheres on a ground that resists rolling by several values, at restitution 0.05 and friction 1
   boulders.py used [--variant V,...]     triangles or spheres of every shape
   boulders.py measured  the numbers of the 41 boulders and their standard errors by bootstrap
   boulders.py fitted FIT.csv     its means, as words for `grid`
@@ -97,7 +98,7 @@ class Quarry:
         self.folder = data("authume")
         self.terrain = Terrain(self.folder, profile)
         self.orientations = [row[:4] for row in numbers(self.folder / "orientations.txt")]
-        values = {f"{zone}.{what}": None for zone in ZONES for what in ("restitution", "friction")}
+        values = {f"{zone}.{what}": None for zone in ZONES for what in ("restitution", "friction", "rolling_friction")}
         for word in words:
             name, _, value = word.partition("=")
             if name not in values:
@@ -201,6 +202,18 @@ def grid(options):
                         table.add(*key, *quarry.fall(*key))
 
 
+def rolling(options):
+    table = Table(options.file, ["rolling_friction", "count", "along_mean", "along_sd", *(f"{z}_share" for z in (*ZONES, "off"))], 1)
+    for value in (0.2, 0.3, 0.4, 0.5, 0.6, 0.7):
+        if table.key((value,)) in table.done:
+            continue
+        words = {"restitution": 0.05, "friction": 1, "rolling_friction": value}
+        quarry = Quarry(1, [f"{zone}.{what}={x}" for zone in ZONES for what, x in words.items()])
+        ends = [quarry.fall("sphere", name, place, 0) for place in range(4) for name in SHAPES]
+        answers = told([(end[3], end[4], end[5]) for end in ends])
+        table.add(value, len(ends), *(answers[name] for name in table.columns[2:]))
+
+
 def measured_rows(profile=1):
     folder = data("authume")
     terrain = Terrain(folder, profile)
@@ -238,10 +251,10 @@ def fitted(options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     verbs = parser.add_subparsers(dest="verb", required=True)
-    for name, function in (("drop", drop), ("grid", grid), ("used", used), ("measured", measured), ("fitted", fitted)):
+    for name, function in (("drop", drop), ("grid", grid), ("rolling", rolling), ("used", used), ("measured", measured), ("fitted", fitted)):
         verb = verbs.add_parser(name)
         verb.set_defaults(function=function)
-        if name in ("grid", "fitted"):
+        if name in ("grid", "rolling", "fitted"):
             verb.add_argument("file")
         if name in ("drop", "grid"):
             verb.add_argument("--profile", type=int, default=1)

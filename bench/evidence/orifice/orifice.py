@@ -5,7 +5,8 @@
                                   both codes from the same places, seed by seed; adds to the table what it lacks. CODE is scree,
                                   liggghts, or liggghts-no-dashpot: its tangential dashpot acts in every contact, scree's in
                                   those that last
-  orifice.py compare FILE.csv     rates beside each other, and the fits of W = C rho sqrt(g) (D - k d)^n, as CSV
+  orifice.py compare FILE.csv     as CSV: each hole's rates, their relative difference, and the fits of
+                                  W = C rho sqrt(g) (D - k d)^n; of the seeds that both codes have
 
 A bin is 2 holes wide, its bed 2 holes high at the start. The rate is taken from when a fifth has left until half has: the
 bed is then still a hole high. rho is what lies, meanwhile, in a box in the bed. Environment: LIGGGHTS (the program)."""
@@ -20,12 +21,13 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, library, mean, read  # noqa: E402
+from common import WORK, Table, deviation, library, mean, read  # noqa: E402
 
 D, G, EVERY = 0.006, 9.81, 0.009
 HOLES = (5.5, 6.25, 7.0, 8.0, 9.0)  # sphere diameters
 FIRST, LAST, WIDE = 0.2, 0.5, 2
 CODES = "scree", "liggghts", "liggghts-no-dashpot"
+STUDENT = 6.314, 2.920, 2.353, 2.132, 2.015, 1.943, 1.895, 1.860, 1.833  # its quantile 0.95 of 1, 2, ... degrees of freedom
 COLUMNS = ["hole", "seed", "code", "spheres", "from_s", "until_s", "count", "rate", "solid", "cpu_s"]
 
 
@@ -122,8 +124,53 @@ def run(path, seeds, codes):
                     table.add(hole, seed, code, *one(hole, seed, code))
 
 
+def student(values):
+    """Mean and half of the interval of 90 %."""
+    return mean(values), STUDENT[len(values) - 2] * deviation(values) / math.sqrt(len(values))
+
+
+def line(xs, ys):
+    x, y = mean(xs), mean(ys)
+    slope = sum((a - x) * (b - y) for a, b in zip(xs, ys)) / sum((a - x) ** 2 for a in xs)
+    return y - slope * x, slope
+
+
+def beverloo(rates, solids):
+    """k and C with n = 5/2; C with k = 1.4; n with k = 1.4. In diameters: rate pi/6 / solid / sqrt(g/d) = C (D - k)^n."""
+    flows = [rate * math.pi / 6 / solid / math.sqrt(G / D) for rate, solid in zip(rates, solids)]
+    offset, slope = line(HOLES, [w ** 0.4 for w in flows])
+    return (-offset / slope, slope ** 2.5, mean([w / (hole - 1.4) ** 2.5 for w, hole in zip(flows, HOLES)]),
+            line([math.log(hole - 1.4) for hole in HOLES], [math.log(w) for w in flows])[1])
+
+
+def compare(path):
+    found = {(float(r["hole"]), int(r["seed"]), r["code"]): (float(r["rate"]), float(r["solid"])) for r in read(path)}
+    print("what,code,seeds,mean,half_of_90,less_than_scree")
+    for code in CODES:
+        seeds = [s for s in sorted({key[1] for key in found}) if all((h, s, c) in found for h in HOLES for c in {"scree", code})]
+        if len(seeds) < 2:
+            continue
+
+        def tell(what, values, other=""):
+            print(f"{what},{code},{len(seeds)},{values[0]:.4g},{values[1]:.2g},{other}")
+        differences = []
+        for hole in HOLES:
+            ours, theirs = ([found[hole, s, c][0] for s in seeds] for c in ("scree", code))
+            difference, error = mean(ours) - mean(theirs), math.hypot(deviation(ours), deviation(theirs)) / math.sqrt(len(seeds))
+            tell(f"rate {hole:g}", student(theirs), "" if code == "scree" else f"{difference / error:.1f} standard errors")
+            differences.append([a / b - 1 for a, b in zip(ours, theirs)])
+        if code != "scree":
+            tell("scree more than this, share", student([mean(d) for d in zip(*differences)]))
+        fits = [beverloo(*zip(*(found[hole, s, code] for hole in HOLES))) for s in seeds]
+        for name, values in zip(("k", "C", "C with k = 1.4", "n with k = 1.4"), zip(*fits)):
+            tell(name, student(values))
+        tell("solid", student([mean([found[hole, s, code][1] for hole in HOLES]) for s in seeds]))
+
+
 if __name__ == "__main__":
     if sys.argv[1:2] == ["run"] and len(sys.argv) > 4 and set(sys.argv[4:]) <= set(CODES):
         run(sys.argv[2], int(sys.argv[3]), sys.argv[4:])
+    elif sys.argv[1:2] == ["compare"] and len(sys.argv) == 3:
+        compare(sys.argv[2])
     else:
         sys.exit(__doc__)
