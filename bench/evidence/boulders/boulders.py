@@ -204,7 +204,7 @@ def grid(options):
 
 def rolling(options):
     table = Table(options.file, ["rolling_friction", "count", "along_mean", "along_sd", *(f"{z}_share" for z in (*ZONES, "off"))], 1)
-    for value in (0.2, 0.3, 0.4, 0.5, 0.6, 0.7):
+    for value in (0.2, 0.3, 0.4, 0.5, 0.525, 0.55, 0.6, 0.7):
         if table.key((value,)) in table.done:
             continue
         words = {"restitution": 0.05, "friction": 1, "rolling_friction": value}
