@@ -61,7 +61,7 @@ penetration() {
 }
 
 orifice() {
-  "$here/orifice/orifice.py" run "$results/orifice.csv" 6 scree liggghts liggghts-no-dashpot
+  "$here/orifice/orifice.py" run "$results/orifice.csv" 5.5:4,6.25:4,7:4,8:2,9:1 scree liggghts liggghts-no-dashpot
   "$here/orifice/orifice.py" compare "$results/orifice.csv" >"$results/orifice-compared.csv"
 }
 

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Spheres through a hole: scree beside LIGGGHTS, and Beverloo's law (Chemical Engineering Science 15, 260, 1961).
 
-  orifice.py run FILE.csv SEEDS CODE...
-                                  both codes from the same places, seed by seed; adds to the table what it lacks. CODE is scree,
-                                  liggghts, or liggghts-no-dashpot: its tangential dashpot acts in every contact, scree's in
-                                  those that last
+  orifice.py run FILE.csv HOLE:SEEDS,... CODE...
+                                  from the same places, seed by seed; adds to the table what it lacks. HOLE is in diameters.
+                                  CODE is scree, liggghts, or liggghts-no-dashpot: its tangential dashpot acts in every
+                                  contact, scree's in those that last
   orifice.py compare FILE.csv     as CSV: each hole's rates, their relative difference, and the fits of
-                                  W = C rho sqrt(g) (D - k d)^n; of the seeds that both codes have
+                                  W = C rho sqrt(g) (D - k d)^n, with half of their intervals of 90 %
+
+A rate scatters from seed to seed by s / sqrt(count); s is of all holes and codes together, since a large hole has few
+seeds. Intervals of fits are those of rates drawn anew with their scatter.
 
 A bin is 2 holes wide, its bed 2 holes high at the start. The rate is taken from when a fifth has left until half has: the
 bed is then still a hole high. rho is what lies, meanwhile, in a box in the bed. Environment: LIGGGHTS (the program)."""
@@ -24,10 +27,8 @@ sys.path.insert(0, str(HERE.parent))
 from common import WORK, Table, deviation, library, mean, read  # noqa: E402
 
 D, G, EVERY = 0.006, 9.81, 0.009
-HOLES = (5.5, 6.25, 7.0, 8.0, 9.0)  # sphere diameters
 FIRST, LAST, WIDE = 0.2, 0.5, 2
 CODES = "scree", "liggghts", "liggghts-no-dashpot"
-STUDENT = 6.314, 2.920, 2.353, 2.132, 2.015, 1.943, 1.895, 1.860, 1.833  # its quantile 0.95 of 1, 2, ... degrees of freedom
 COLUMNS = ["hole", "seed", "code", "spheres", "from_s", "until_s", "count", "rate", "solid", "cpu_s"]
 
 
@@ -112,64 +113,80 @@ def one(hole, seed, code):
     return len(spheres), begin[0], end[0], int(begin[1] - end[1]), (begin[1] - end[1]) / (end[0] - begin[0]), solid, seconds
 
 
-def run(path, seeds, codes):
+def run(path, holes, codes):
     if not shutil.which(os.environ.get("LIGGGHTS", "liggghts")):
         print("skipped: LIGGGHTS is not installed")
         return
-    table = Table(path, COLUMNS, 3)
-    for seed in range(1, seeds + 1):
+    table, seeds = Table(path, COLUMNS, 3), {float(hole): int(count) for hole, _, count in (h.partition(":") for h in holes.split(","))}
+    for seed in range(1, max(seeds.values()) + 1):
         for code in codes:
-            for hole in HOLES:
-                if table.key((hole, seed, code)) not in table.done:
+            for hole, count in seeds.items():
+                if seed <= count and table.key((hole, seed, code)) not in table.done:
                     table.add(hole, seed, code, *one(hole, seed, code))
 
 
-def student(values):
-    """Mean and half of the interval of 90 %."""
-    return mean(values), STUDENT[len(values) - 2] * deviation(values) / math.sqrt(len(values))
-
-
-def line(xs, ys):
-    x, y = mean(xs), mean(ys)
-    slope = sum((a - x) * (b - y) for a, b in zip(xs, ys)) / sum((a - x) ** 2 for a in xs)
+def line(points):
+    """Weighted least squares of x, y, weight: offset and slope."""
+    whole = sum(p[2] for p in points)
+    x, y = (sum(p[k] * p[2] for p in points) / whole for k in (0, 1))
+    slope = sum(w * (a - x) * (b - y) for a, b, w in points) / sum(w * (a - x) ** 2 for a, _, w in points)
     return y - slope * x, slope
 
 
-def beverloo(rates, solids):
-    """k and C with n = 5/2; C with k = 1.4; n with k = 1.4. In diameters: rate pi/6 / solid / sqrt(g/d) = C (D - k)^n."""
-    flows = [rate * math.pi / 6 / solid / math.sqrt(G / D) for rate, solid in zip(rates, solids)]
-    offset, slope = line(HOLES, [w ** 0.4 for w in flows])
-    return (-offset / slope, slope ** 2.5, mean([w / (hole - 1.4) ** 2.5 for w, hole in zip(flows, HOLES)]),
-            line([math.log(hole - 1.4) for hole in HOLES], [math.log(w) for w in flows])[1])
+def beverloo(rates):
+    """Rows of hole, flow, weight of the flow's logarithm: k and C with n = 5/2, C and n with k = 1.4. In diameters:
+    flow = rate pi/6 / solid / sqrt(g/d) = C (D - k)^n."""
+    offset, slope = line([(hole, w ** 0.4, weight / w ** 0.8) for hole, w, weight in rates])
+    whole = sum(row[2] for row in rates)
+    return (-offset / slope, slope ** 2.5,
+            math.exp(sum(weight * math.log(w / (hole - 1.4) ** 2.5) for hole, w, weight in rates) / whole),
+            line([(math.log(hole - 1.4), math.log(w), weight) for hole, w, weight in rates])[1])
+
+
+def scatter(groups):
+    """s of a rate's relative scatter s / sqrt(count), and Student's quantile 0.95 of its degrees of freedom."""
+    free = sum(len(rows) - 1 for rows in groups.values())
+    s2 = sum(row[1] * (row[0] / mean([r[0] for r in rows]) - 1) ** 2 for rows in groups.values() for row in rows) / free
+    return math.sqrt(s2), 1.645 * (1 + 0.93 / free)  # within 1 % from 3 degrees on
 
 
 def compare(path):
-    found = {(float(r["hole"]), int(r["seed"]), r["code"]): (float(r["rate"]), float(r["solid"])) for r in read(path)}
-    print("what,code,seeds,mean,half_of_90,less_than_scree")
+    groups = {}
+    for r in read(path):
+        groups.setdefault((r["code"], float(r["hole"])), []).append((float(r["rate"]), float(r["count"]), float(r["solid"])))
+    (s, student), rng = scatter(groups), random.Random(1)
+    print("what,code,seeds,mean,half_of_90,scree_less_this,half_of_90")
+    print(f"scatter x sqrt(count),,,{s:.3g},,,")
     for code in CODES:
-        seeds = [s for s in sorted({key[1] for key in found}) if all((h, s, c) in found for h in HOLES for c in {"scree", code})]
-        if len(seeds) < 2:
+        holes = sorted(hole for c, hole in groups if c == code and ("scree", hole) in groups)
+        if len(holes) < 3:
             continue
-
-        def tell(what, values, other=""):
-            print(f"{what},{code},{len(seeds)},{values[0]:.4g},{values[1]:.2g},{other}")
-        differences = []
-        for hole in HOLES:
-            ours, theirs = ([found[hole, s, c][0] for s in seeds] for c in ("scree", code))
-            difference, error = mean(ours) - mean(theirs), math.hypot(deviation(ours), deviation(theirs)) / math.sqrt(len(seeds))
-            tell(f"rate {hole:g}", student(theirs), "" if code == "scree" else f"{difference / error:.1f} standard errors")
-            differences.append([a / b - 1 for a, b in zip(ours, theirs)])
+        rows, differences = [], []
+        for hole in holes:
+            (rate, sd, count), (ours, ours_sd, _) = (summary(groups[c, hole], s) for c in (code, "scree"))
+            differences.append((ours / rate - 1, sd * sd + ours_sd * ours_sd))
+            other = "" if code == "scree" else f"{differences[-1][0]:.4f},{student * math.sqrt(differences[-1][1]):.3f}"
+            print(f"rate of {hole:g},{code},{count},{rate:.5g},{student * sd * rate:.2g},{other or ','}")
+            solid = mean([row[2] for row in groups[code, hole]])
+            rows.append((hole, rate * math.pi / 6 / solid / math.sqrt(G / D), sd))
         if code != "scree":
-            tell("scree more than this, share", student([mean(d) for d in zip(*differences)]))
-        fits = [beverloo(*zip(*(found[hole, s, code] for hole in HOLES))) for s in seeds]
-        for name, values in zip(("k", "C", "C with k = 1.4", "n with k = 1.4"), zip(*fits)):
-            tell(name, student(values))
-        tell("solid", student([mean([found[hole, s, code][1] for hole in HOLES]) for s in seeds]))
+            half = student * math.sqrt(sum(d[1] for d in differences)) / len(holes)
+            print(f"mean of all holes,{code},,,,{mean([d[0] for d in differences]):.4f},{half:.3f}")
+        drawn = [beverloo([(h, w * math.exp(sd * rng.gauss(0, 1)), sd ** -2) for h, w, sd in rows]) for _ in range(1000)]
+        for name, value, draws in zip(("k", "C", "C with k = 1.4", "n with k = 1.4"),
+                                      beverloo([(h, w, sd ** -2) for h, w, sd in rows]), zip(*drawn)):
+            print(f"{name},{code},,{value:.4g},{student * deviation(draws):.2g},,")
+        print(f"solid,{code},,{mean([mean([row[2] for row in groups[code, h]]) for h in holes]):.4g},,,")
+
+
+def summary(rows, s):
+    """Mean rate, its relative standard error, how many."""
+    return mean([row[0] for row in rows]), s / math.sqrt(sum(row[1] for row in rows)), len(rows)
 
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["run"] and len(sys.argv) > 4 and set(sys.argv[4:]) <= set(CODES):
-        run(sys.argv[2], int(sys.argv[3]), sys.argv[4:])
+        run(*sys.argv[2:4], sys.argv[4:])
     elif sys.argv[1:2] == ["compare"] and len(sys.argv) == 3:
         compare(sys.argv[2])
     else:
