@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The scripts of bench/evidence on inputs whose answers are known: statistics against counting and random samples, a table
-that was broken off, a drawn picture, a camera over one sphere, and a cube dropped on a slope of three sheets.
+that was broken off, a drawn picture, a camera over one sphere, a cube dropped on a slope of three sheets, and rates by Beverloo's law.
 usage: check.py ROOT, with SCREE_LIBRARY and PYTHONPATH"""
 import math
 import os
@@ -14,11 +14,12 @@ from types import SimpleNamespace
 ROOT, SCRATCH = pathlib.Path(sys.argv[1]), tempfile.TemporaryDirectory()
 HOME = pathlib.Path(SCRATCH.name)
 os.environ["SCREE_EVIDENCE_DIR"], os.environ["SCREE_EVIDENCE_WORK"] = str(HOME), str(HOME / "work")
-for folder in ("", "boulders", "drum"):
+for folder in ("", "boulders", "drum", "orifice"):
     sys.path.insert(0, str(ROOT / "bench" / "evidence" / folder))
 import boulders  # noqa: E402
 import common  # noqa: E402
 import drum  # noqa: E402
+import orifice  # noqa: E402
 
 wrong = []
 
@@ -138,7 +139,20 @@ def speed():
     check(len(scene.world) > 30 and 20 < drum.angle(lengths) < 75, f"{len(scene.world)} spheres stand at {drum.angle(lengths)} degrees")
 
 
-for part in (statistics, table, profiles, turns, quarry, speed):
+def holes():
+    holes = [(hole, 0.6 * (hole - 1.4) ** 2.5, weight) for hole, weight in ((5.5, 4), (7, 1), (9, 2))]
+    check(all(abs(a - b) < 1e-9 for a, b in zip(orifice.beverloo(holes), (1.4, 0.6, 0.6, 2.5))), "the fit of rates by the law")
+    rng, groups = random.Random(3), {}
+    for k in range(200):
+        groups[k] = [(50 * (1 + 0.5 * rng.gauss(0, 1) / math.sqrt(n)), n, 0.6) for n in (400, 400, 900)]
+    check(abs(orifice.scatter(groups)[0] - 0.5) < 0.05, f"the scatter of rates is {orifice.scatter(groups)[0]}, not 0.5")
+    places, far = orifice.places(5.5, 1), 0.5 * orifice.WIDE * 5.5 * orifice.D
+    least = min(math.dist(a, b) for i, a in enumerate(places) for b in places[:i])
+    check(least > 0.99 * orifice.D and all(math.hypot(x, y) < far - 0.5 * orifice.D for x, y, _ in places),
+          f"spheres begin {least} m apart, inside the bin")
+
+
+for part in (statistics, table, profiles, turns, quarry, speed, holes):
     part()
 print("\n".join(wrong) or "the scripts of bench/evidence give what is known")
 sys.exit(bool(wrong))
