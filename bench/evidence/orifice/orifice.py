@@ -117,12 +117,12 @@ def run(path, holes, codes):
     if not shutil.which(os.environ.get("LIGGGHTS", "liggghts")):
         print("skipped: LIGGGHTS is not installed")
         return
-    table, seeds = Table(path, COLUMNS, 3), {float(hole): int(count) for hole, _, count in (h.partition(":") for h in holes.split(","))}
+    table, seeds = Table(path, COLUMNS, 3), {hole: int(count) for hole, _, count in (h.partition(":") for h in holes.split(","))}
     for seed in range(1, max(seeds.values()) + 1):
         for code in codes:
             for hole, count in seeds.items():
                 if seed <= count and table.key((hole, seed, code)) not in table.done:
-                    table.add(hole, seed, code, *one(hole, seed, code))
+                    table.add(hole, seed, code, *one(float(hole), seed, code))
 
 
 def line(points):
