@@ -40,7 +40,7 @@ def calibrate(folder, seed, experiments, parameters, targets, budget):
               for k, (e, answer, value, repeats) in enumerate(targets)]
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "fit.yaml").write_text("\n".join([*lines, f"budget: {{runs: {budget}}}", "confidence: 0.9"]) + "\n")
-    return json.loads(common.run("calibrate", folder / "fit.yaml", "-o", folder / "out", "-q", "--json", "-j", 1))
+    return json.loads(common.run("calibrate", folder / "fit.yaml", "-o", folder / "out", "-q", "--json", "--jobs", 1, "-j", 1))
 
 
 def shrink(path):
@@ -64,8 +64,8 @@ def overhead(path):
     for parameters, answers, experiments in ((2, 2, 1), (4, 4, 2)):
         if table.key((parameters, answers * experiments)) in table.done:
             continue
-        seen = measure((0.1, 0.2, -0.1, 0.3)[:parameters], 9000, 1)
-        targets = [(e, answer, seen[answer], 1) for e in range(experiments) for answer in ANSWERS[:answers]]
+        seen = measure((0.1, 0.2, -0.1, 0.3)[:parameters], 9000, 100)  # so many that no budget is too large
+        targets = [(e, answer, seen[answer], 100) for e in range(experiments) for answer in ANSWERS[:answers]]
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         told = calibrate(common.WORK / "closed" / f"overhead-{parameters}", 1, experiments, parameters, targets, 200)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -9,7 +9,8 @@
 #include <string.h>
 
 /* A parameter is called identified where its interval is at most this share of that of its range,
- * and no end of the range is part of it. */
+ * no end of the range is part of it, and runs at what agrees gave the answers that were measured.
+ */
 static const double identified_share = 0.5;
 static const double end_share = 0.01; /* of samples: so few beyond are none */
 /* Two trade against each other where one tells this share of the other's variance. */
@@ -22,8 +23,9 @@ typedef struct analysis {
   scree_calibration_model model;
   scree_arena arena; /* all of the result */
   scree_calibration_result *r;
-  double *samples; /* coordinates, sample_count x d */
-  double *column;  /* scratch: sample_count */
+  double unanswered; /* share of the samples: below */
+  double *samples;   /* coordinates, sample_count x d */
+  double *column;    /* scratch: sample_count */
   scree_error *error;
 } analysis;
 
@@ -79,6 +81,43 @@ int scree_samples_end(const double *values, size_t count, double confidence) {
   return shortest <= near ? -1 : shortest + held + near >= count - 1 ? 1 : 0;
 }
 
+/* Whether the run nearest to x gave the quantity's answer; of several there, any. */
+static bool answered_near(const analysis *a, const scree_quantity *q, const double *x) {
+  const scree_experiment_plan *e = &a->c->experiments[q->experiment];
+  const double *place = a->gathered.x[q->experiment];
+  const double *answer = a->gathered.answers[q->experiment] + q->first_answer;
+  double nearest = INFINITY;
+  bool answered = false;
+  for (size_t i = 0; i < a->gathered.run_counts[q->experiment]; i++) {
+    double distance = 0;
+    bool has = !isnan(answer[i * e->answer_count]);
+    for (size_t k = 0; k < e->active_count; k++) {
+      double way = x[e->active[k]] - place[i * a->c->parameter_count + e->active[k]];
+      distance += way * way;
+    }
+    if (distance < nearest || (distance == nearest && has)) answered = has;
+    nearest = fmin(nearest, distance);
+  }
+  return answered;
+}
+
+/* The largest share of the posterior, over what was measured, that lies nearest to runs without
+ * such an answer, as of a heap too low to have an angle. The process continues to there from
+ * elsewhere, so that an interval which rests on it tells nothing. */
+static double find_unanswered(const analysis *a) {
+  size_t n = a->r->sample_count;
+  double most = 0;
+  for (size_t q = 0; q < a->c->quantity_count; q++) {
+    const scree_quantity *quantity = &a->c->quantities[q];
+    size_t without = 0;
+    if (quantity->kind != SCREE_QUANTITY_TARGET || !quantity->measured) continue;
+    for (size_t i = 0; i < n; i++)
+      without += !answered_near(a, quantity, a->samples + i * a->c->parameter_count);
+    most = fmax(most, (double)without / (double)n);
+  }
+  return most;
+}
+
 /* What the posterior says in one word. A list has no beyond. */
 static void judge(analysis *a, size_t k, scree_parameter_result *out) {
   const scree_plan_parameter *p = &a->c->parameters[k];
@@ -87,7 +126,7 @@ static void judge(analysis *a, size_t k, scree_parameter_result *out) {
   out->narrowed = narrowed(a->samples, n, a->c->parameter_count, k, confidence, a->column);
   int end = p->values.count ? 0 : scree_samples_end(a->column, n, confidence);
   bool narrow = out->narrowed <= identified_share;
-  out->identified = narrow && end == 0;
+  out->identified = narrow && end == 0 && a->unanswered <= 1 - confidence;
   if (narrow && end > 0)
     out->at_least = scree_parameter_number(p, quantile(a->column, n, 1 - confidence));
   if (narrow && end < 0)
@@ -541,6 +580,7 @@ static scree_status calibrate(analysis *a) {
                                                  &a->r->sample_count, a->error);
   if (status == SCREE_OK && !(a->column = scree_alloc(a->r->sample_count, sizeof *a->column)))
     status = fail_memory(a);
+  if (status == SCREE_OK) a->unanswered = find_unanswered(a);
   if (status == SCREE_OK) status = describe_parameters(a);
   if (status == SCREE_OK) status = find_trades(a);
   if (status == SCREE_OK) status = describe_answers(a);
