@@ -63,7 +63,8 @@ typedef struct scree_parameter_result {
   double mean, sd, median, low, high;
   double narrowed; /* width of the interval beside that of the range (of logarithms on a log scale):
                       1 says nothing was learnt */
-  bool identified; /* narrowed to a half at most, between both ends of the range */
+  bool identified; /* narrowed to a half at most, between both ends of the range,
+                       where runs gave the answers that were measured */
   /* Where it is narrowed so far by an end of the range: what it is at least, or at most, with
      `confidence`. Else NaN. */
   double at_least, at_most;
