@@ -16,7 +16,8 @@ FIT = ["kind", "name", "measured", "mean", "low", "high", "single_low", "single_
 def fit(folder, path):
     told, table = json.loads(run("calibrate", "status", folder, "--json")), Table(path, FIT, 2)
     for p in told["parameters"]:
-        table.add("parameter", p["name"], "", p["mean"], p["low"], p["high"], "", "", "yes" if p["identified"] else "no")
+        bounds = [f"at {end} {p[f'at_{end}']:.3g}" for end in ("least", "most") if p[f"at_{end}"] is not None]
+        table.add("parameter", p["name"], "", p["mean"], p["low"], p["high"], "", "", "yes" if p["identified"] else bounds[0] if bounds else "no")
     for a in told["answers"]:
         kind = "prediction" if a["predicted"] else "target" if a["measured"] else "offer"
         table.add(kind, a["name"], a["value"] if a["measured"] else "", a["mean"], a["low"], a["high"], a["single_low"], a["single_high"], "")
