@@ -88,6 +88,28 @@ static void a_rolling_ball_stops(void **state) {
   scree_world_free(world);
 }
 
+/* Thrown without spin it slides until it rolls, the couple against its spin all the while. */
+static void a_thrown_ball_slides_rolls_and_stops(void **state) {
+  (void)state;
+  const double rolling = 0.2, friction = law_default().friction, speed = 0.5;
+  scree_world *world = incline(0, rolling);
+  law_step(world, 1000);
+  scree_body body;
+  scree_world_get_body(world, 0, &body);
+  double from = body.position[0];
+  body.velocity[0] = speed;
+  law_place(world, 0, &body);
+  while (scree_world_time(world) < 0.6) law_step(world, 10);
+  scree_world_get_body(world, 0, &body);
+  const double sliding = speed / ((friction + 2.5 * (friction - rolling)) * gravity),
+               rolls = speed - friction * gravity * sliding,
+               way = 0.5 * (speed + rolls) * sliding +
+                     0.5 * rolls * rolls / (5.0 / 7 * rolling * gravity);
+  LAW_RELATIVE("R2", "way of a thrown ball, m", body.position[0] - from, way, 2e-3);
+  LAW_BELOW("R2", "its speed then, m/s", fabs(body.velocity[0]), 1e-9);
+  scree_world_free(world);
+}
+
 /* Whether a body that lies on the plane has left it after pulling at it with `force` for 20 ms. */
 static bool leaves(scree_particle *particle, double height, double pull_off, double surface_energy,
                    double force) {
@@ -167,6 +189,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(balls_on_inclines),
       cmocka_unit_test(a_rolling_ball_stops),
+      cmocka_unit_test(a_thrown_ball_slides_rolls_and_stops),
       cmocka_unit_test(pull_off_forces),
       cmocka_unit_test(hits_stick),
   };
