@@ -1,7 +1,6 @@
 /* The one way to memory. Every block is 64-byte aligned, counted against the limit, and may fail.
  */
-#ifndef SCREE_BASE_ALLOC_H
-#define SCREE_BASE_ALLOC_H
+#pragma once
 
 #include "base/error.h"
 
@@ -46,5 +45,3 @@ size_t scree_memory_limit(void);
 /* The most bytes the library may hold at once; further allocations fail with SCREE_OUT_OF_MEMORY.
  * 0 (the default) means no limit. */
 void scree_set_memory_limit(size_t byte_count);
-
-#endif

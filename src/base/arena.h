@@ -1,6 +1,5 @@
 /* Memory that is taken in pieces and given back at once. Not thread-safe. */
-#ifndef SCREE_BASE_ARENA_H
-#define SCREE_BASE_ARENA_H
+#pragma once
 
 #include "base/alloc.h"
 
@@ -13,5 +12,3 @@ typedef struct scree_arena {
 void *scree_arena_take(scree_arena *arena, size_t count, size_t size);
 /* Gives everything back; the arena is as new. */
 void scree_arena_free(scree_arena *arena);
-
-#endif

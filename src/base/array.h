@@ -2,8 +2,7 @@
  *
  *   typedef struct { edge *items; size_t count, capacity; } edge_list;
  *   if (!SCREE_PUSH(&list, value)) return scree_fail_memory(...); */
-#ifndef SCREE_BASE_ARRAY_H
-#define SCREE_BASE_ARRAY_H
+#pragma once
 
 #include "base/alloc.h"
 
@@ -26,5 +25,3 @@ static inline bool scree_array_reserve(void **items, size_t *capacity, size_t ne
 #define SCREE_PUSH(list, ...)                                                                      \
   (SCREE_RESERVE(list, (list)->count + 1) ? ((list)->items[(list)->count++] = (__VA_ARGS__), true) \
                                           : false)
-
-#endif

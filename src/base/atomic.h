@@ -1,7 +1,6 @@
 /* Numbers that many threads change at once, on the processor and on a device. In which order they
  * do is left open, and nothing else is ordered by them. */
-#ifndef SCREE_BASE_ATOMIC_H
-#define SCREE_BASE_ATOMIC_H
+#pragma once
 
 #include <stdint.h>
 
@@ -47,5 +46,3 @@ static inline void scree_atomic_raise(uint64_t *at, uint64_t value) {
   }
 #endif
 }
-
-#endif

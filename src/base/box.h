@@ -1,6 +1,5 @@
 /* Axis-aligned boxes. */
-#ifndef SCREE_BASE_BOX_H
-#define SCREE_BASE_BOX_H
+#pragma once
 
 #include "base/vec.h"
 
@@ -88,5 +87,3 @@ static inline bool scree_box_cut(const scree_box *box, vec3 start, vec3 along, d
   }
   return *from <= *to;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Work that is not to be trusted, done in a child process under limits: code of others that reads
  * hostile files may crash, spin or swell there, and costs one error sentence here. */
-#ifndef SCREE_BASE_CHILD_H
-#define SCREE_BASE_CHILD_H
+#pragma once
 
 #include "base/alloc.h"
 
@@ -31,5 +30,3 @@ typedef struct scree_child_answer {
 scree_status scree_child_run(scree_child_work *work, void *context,
                              const scree_child_limits *limits, const char *what,
                              scree_child_answer *answer, scree_error *error);
-
-#endif

@@ -2,8 +2,7 @@
  * record and serves both ways: scree_code_* appends the value to the bytes, or, when loading, reads
  * it into the value. Errors stick: after one nothing is changed, and the end of the work asks for
  * `failed` (the bytes ran out, or hold what they must not) and `out_of_memory`. */
-#ifndef SCREE_BASE_CODEC_H
-#define SCREE_BASE_CODEC_H
+#pragma once
 
 #include "base/vec.h"
 
@@ -38,5 +37,3 @@ char *scree_decode_text(scree_codec *codec);
 static inline bool scree_codec_good(const scree_codec *codec) {
   return !codec->failed && !codec->out_of_memory;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* A file of two columns of numbers, as CSV or with blanks between. */
-#ifndef SCREE_BASE_CURVE_FILE_H
-#define SCREE_BASE_CURVE_FILE_H
+#pragma once
 
 #include "base/error.h"
 
@@ -17,5 +16,3 @@ void scree_curve_file_free(scree_curve_file *columns);
 /* Brings a column, 0 or 1, into `wanted`; a column without a unit is in units of `otherwise`. */
 scree_status scree_curve_file_convert(scree_curve_file *columns, int column, const char *wanted,
                                       double otherwise, const char *path, scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Eigenvalues and eigenvectors of symmetric 3x3 matrices. */
-#ifndef SCREE_BASE_EIGEN_H
-#define SCREE_BASE_EIGEN_H
+#pragma once
 
 #include "base/vec.h"
 
@@ -12,5 +11,3 @@ void scree_eigen_symmetric(const mat3 *a, double values[3], mat3 *axes);
 /* Makes three orthonormal rows a right-handed frame whose rows 0 and 1 have their largest component
  * positive: one answer where signs are free. */
 void scree_frame_canonical(mat3 *axes);
-
-#endif

@@ -1,6 +1,5 @@
 /* Filling a scree_error, and the assertion for callers' bugs (never for user data). */
-#ifndef SCREE_BASE_ERROR_H
-#define SCREE_BASE_ERROR_H
+#pragma once
 
 #include "base/platform.h"
 #include "scree.h"
@@ -42,5 +41,3 @@ void scree_assert_failed(const char *condition, const char *file, int line);
 
 /* The status in words, for example "bad file". */
 const char *scree_status_text(scree_status status);
-
-#endif

@@ -1,7 +1,6 @@
 /* Sums and products of doubles without error, as a rounded result and what it lacks (Dekker 1971,
  * Shewchuk 1997). */
-#ifndef SCREE_BASE_EXACT_H
-#define SCREE_BASE_EXACT_H
+#pragma once
 
 /* x + y = a + b exactly, x the rounded sum. */
 static inline void scree_two_sum(double a, double b, double *x, double *y) {
@@ -31,5 +30,3 @@ static inline void scree_two_product(double a, double b, double *x, double *y) {
   *y = a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low);
   *x = product;
 }
-
-#endif

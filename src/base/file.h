@@ -2,8 +2,7 @@
  * the target's folder (where a file system has none, to a temporary name there), which takes the
  * target's name when complete and on disk. A target that is no file (a device, a pipe) is written
  * to as it stands. */
-#ifndef SCREE_BASE_FILE_H
-#define SCREE_BASE_FILE_H
+#pragma once
 
 #include "base/alloc.h"
 
@@ -73,5 +72,3 @@ scree_checksum scree_checksum_of(const void *bytes, size_t byte_count);
 
 /* Creates the folder and its parents; an existing folder is fine. */
 scree_status scree_folder_create(const char *path, scree_error *error);
-
-#endif

@@ -2,8 +2,7 @@
  * SCREE_LANES is compiled for AVX2 and AVX-512 as well, chosen when the program starts; as nothing
  * contracts and no sum is reordered, all give the same bits. Names must differ in the whole
  * library, for clang gives the chooser of a static function external linkage. */
-#ifndef SCREE_BASE_LANES_H
-#define SCREE_BASE_LANES_H
+#pragma once
 
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__OPTIMIZE__) &&                      \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) &&                             \
@@ -23,5 +22,3 @@
 
 /* A part of such a function that must be compiled with it. */
 #define SCREE_LANES_INLINE static inline __attribute__((always_inline))
-
-#endif

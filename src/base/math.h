@@ -1,8 +1,7 @@
 /* Elementary functions of our own, within an ulp or two of the true value: the C library's differ
  * in their last bit from one platform to the next, and a device has none. Only sqrt, floor, ceil
  * and fabs, which IEEE 754 defines to the bit, come from there. */
-#ifndef SCREE_BASE_MATH_H
-#define SCREE_BASE_MATH_H
+#pragma once
 
 #include <math.h>
 
@@ -30,5 +29,3 @@ static inline double scree_min(double a, double b) {
 static inline double scree_max(double a, double b) {
   return b > a || a != a ? b : a;
 }
-
-#endif

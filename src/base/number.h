@@ -1,7 +1,6 @@
 /* Decimal numbers in and out, whatever the locale: the C library's strtod and printf read and write
  * a decimal comma where the surrounding program asked for one. */
-#ifndef SCREE_BASE_NUMBER_H
-#define SCREE_BASE_NUMBER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -28,5 +27,3 @@ size_t scree_number_format_digits(double value, int digits, char text[SCREE_NUMB
  * percentage, with three decimals below 0.1 %, two below 10 % and else none. */
 const char *scree_rp_text(double rp, char text[SCREE_NUMBER_SIZE]);
 const char *scree_percent_text(double share, char text[SCREE_NUMBER_SIZE]);
-
-#endif

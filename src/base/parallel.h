@@ -1,8 +1,7 @@
 /* The only door to threads. Work is cut into blocks whose size depends on the count alone, never on
  * the number of threads: a reduction that combines its blocks in block order is therefore the same
  * bits for any number of threads. Nested calls run serially. */
-#ifndef SCREE_BASE_PARALLEL_H
-#define SCREE_BASE_PARALLEL_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -41,5 +40,3 @@ void scree_leave_alone(void);
 
 /* How many workers a scree_parallel_for called here may use: the size of per-worker scratch. */
 int scree_worker_count(void);
-
-#endif

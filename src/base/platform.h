@@ -2,8 +2,7 @@
  * platform_wasm.c in its system part for a browser, platform_windows.c for Windows. Functions that
  * can fail set errno, so that strerror tells why. Paths are UTF-8. POSIX threads are taken for
  * granted: all three have them. */
-#ifndef SCREE_BASE_PLATFORM_H
-#define SCREE_BASE_PLATFORM_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -189,5 +188,3 @@ void scree_signals_go_on(void);
 void scree_signals_release(void (*handler)(int number));
 /* Ends the program as the signal would have. */
 void scree_signal_end(int number);
-
-#endif

@@ -1,6 +1,5 @@
 /* Asking for memory ahead of its use. */
-#ifndef SCREE_BASE_PREFETCH_H
-#define SCREE_BASE_PREFETCH_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -15,5 +14,3 @@ SCREE_PREFETCHES void scree_prefetch(const void *start, size_t size) {
     __builtin_prefetch(
         (const void *)((uintptr_t)start + at)); /* NOLINT(performance-no-int-to-ptr) */
 }
-
-#endif

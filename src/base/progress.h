@@ -1,6 +1,5 @@
 /* Rate-limited calls of a scree_progress. */
-#ifndef SCREE_BASE_PROGRESS_H
-#define SCREE_BASE_PROGRESS_H
+#pragma once
 
 #include "base/platform.h" /* scree_now */
 #include "scree.h"
@@ -13,5 +12,3 @@ typedef struct scree_ticker {
 /* Reports when the progress's interval is over (always when fraction is 0 or 1); false means
  * cancel. */
 bool scree_tick(scree_ticker *ticker, const char *phase, double fraction);
-
-#endif

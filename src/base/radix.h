@@ -1,6 +1,5 @@
 /* Sorting of numbers, and by a number of 32 bits. */
-#ifndef SCREE_BASE_RADIX_H
-#define SCREE_BASE_RADIX_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -15,5 +14,3 @@ scree_keyed *scree_radix_sort(scree_keyed *items, scree_keyed *swap, size_t coun
 
 /* Ascending: by insertion where there are few, as round a vertex. */
 void scree_sort_keys(uint64_t *keys, size_t count);
-
-#endif

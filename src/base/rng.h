@@ -1,8 +1,7 @@
 /* Counter-based random numbers: value number `counter` of stream `stream` of `seed`, with no state
  * to carry, the same on every machine and in every order of evaluation. The mixing is Philox2x64-10
  * (Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3"). */
-#ifndef SCREE_BASE_RNG_H
-#define SCREE_BASE_RNG_H
+#pragma once
 
 #include "base/vec.h"
 
@@ -30,5 +29,3 @@ double scree_rng_normal(scree_rng *rng);
 quat scree_rng_rotation(scree_rng *rng);
 /* Uniform on the unit sphere. */
 vec3 scree_rng_direction(scree_rng *rng);
-
-#endif

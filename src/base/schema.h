@@ -1,8 +1,7 @@
 /* Records that are read from YAML by a table of their fields: each has a key, a kind, a range, a
  * unit and a sentence. The same table reads, refuses what is wrong with its place, and prints the
  * record with units and comments. */
-#ifndef SCREE_BASE_SCHEMA_H
-#define SCREE_BASE_SCHEMA_H
+#pragma once
 
 #include "base/arena.h"
 #include "base/error.h"
@@ -117,5 +116,3 @@ void scree_record_print(const scree_record *kind, const void *record, int depth,
 
 /* Of the names the one that is a typing error away from `word`; NULL: none is. */
 const char *scree_nearest_name(const char *word, const char *const *names, size_t count);
-
-#endif

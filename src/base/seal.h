@@ -1,8 +1,7 @@
 /* What stands before the bytes of scree's own files, so that a foreign, cut or damaged one is
  * known: magic (8 bytes), version and byte order mark (u32), count of the bytes that follow and
  * their XXH3-128 (u64, high half first). */
-#ifndef SCREE_BASE_SEAL_H
-#define SCREE_BASE_SEAL_H
+#pragma once
 
 #include "base/codec.h"
 #include "base/error.h"
@@ -36,5 +35,3 @@ scree_status scree_seal_refuse(const scree_codec *codec, const scree_seal *seal,
 /* Writes these bytes, whole or not at all. */
 scree_status scree_seal_write(const unsigned char *bytes, size_t byte_count, const char *path,
                               bool overwrite, scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Compensated summation (Neumaier 1974): the error does not grow with the number of terms. */
-#ifndef SCREE_BASE_SUM_H
-#define SCREE_BASE_SUM_H
+#pragma once
 
 #include <math.h>
 
@@ -20,5 +19,3 @@ static inline void scree_sum_merge(scree_sum *s, scree_sum other) {
 static inline double scree_sum_value(scree_sum s) {
   return s.sum + s.carry;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Symmetric 3x3 matrices. */
-#ifndef SCREE_BASE_SYM3_H
-#define SCREE_BASE_SYM3_H
+#pragma once
 
 #include "base/vec.h"
 
@@ -59,5 +58,3 @@ static inline sym3 sym3_inverse(const sym3 *m) {
   return (sym3){scale * c[0].x, scale * c[0].y, scale * c[0].z,
                 scale * c[1].y, scale * c[1].z, scale * c[2].z};
 }
-
-#endif

@@ -1,8 +1,7 @@
 /* Values over a coordinate that rises from row to row: straight lines between rows, held before the
  * first and after the last. A row begins with the coordinate and the value and is `width` numbers
  * long. */
-#ifndef SCREE_BASE_TABLE_H
-#define SCREE_BASE_TABLE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -31,5 +30,3 @@ static inline double scree_rows_at(const scree_rows *t, double x, double *slope)
   *slope = (next[1] - row[1]) / (next[0] - row[0]);
   return row[1] + *slope * (x - row[0]);
 }
-
-#endif

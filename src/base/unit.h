@@ -1,6 +1,5 @@
 /* Units behind numbers: `10 mm`, `60 rpm`, `0.2 t/h`. */
-#ifndef SCREE_BASE_UNIT_H
-#define SCREE_BASE_UNIT_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -15,5 +14,3 @@ typedef enum scree_unit_answer {
  * `wanted`, a unit too ("": a pure number). Angles are a dimension: 60 rpm are 6.28 rad/s, and no
  * rate in Hz or 1/s. */
 scree_unit_answer scree_unit_convert(const char *unit, const char *wanted, double *value);
-
-#endif

@@ -1,6 +1,5 @@
 /* Small vectors, 3x3 matrices and quaternions, in double. Everything inline; nothing contracts. */
-#ifndef SCREE_BASE_VEC_H
-#define SCREE_BASE_VEC_H
+#pragma once
 
 #include "base/math.h"
 
@@ -171,5 +170,3 @@ static inline mat3 quat_to_mat3(quat q) {
                  {2 * (xy + wz), 1 - 2 * (xx + zz), 2 * (yz - wx)},
                  {2 * (xz - wy), 2 * (yz + wx), 1 - 2 * (xx + yy)}}};
 }
-
-#endif

@@ -1,8 +1,7 @@
 /* A YAML file (JSON is YAML) as a small tree whose every node knows its line and column. Only what
  * configuration needs: one document of mappings, sequences and scalars; no anchors, aliases or
  * tags. */
-#ifndef SCREE_BASE_YAML_H
-#define SCREE_BASE_YAML_H
+#pragma once
 
 #include "base/error.h"
 
@@ -48,5 +47,3 @@ scree_status scree_yaml_set(scree_yaml *root, const char *keys, const char *valu
 /* Puts all of `over`, which is freed, over what is there: mappings key by key, all else as it is.
  */
 scree_status scree_yaml_merge(scree_yaml *root, scree_yaml *over, scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* A calibration: what its file says, its folder, its runs, and the model of them. */
-#ifndef SCREE_CALIBRATE_CALIBRATION_H
-#define SCREE_CALIBRATE_CALIBRATION_H
+#pragma once
 
 #include "base/schema.h"
 #include "calibrate/model.h"
@@ -204,5 +203,3 @@ scree_status scree_search_next(const scree_calibration *c, const scree_calibrati
 scree_status scree_search_describe(const scree_calibration *c, const scree_calibration_model *m,
                                    const scree_answers *gathered, scree_arena *arena,
                                    scree_calibration_result *result, scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Samples of a density known but for its constant, in the box [-1, 1]^d. */
-#ifndef SCREE_CALIBRATE_ENSEMBLE_H
-#define SCREE_CALIBRATE_ENSEMBLE_H
+#pragma once
 
 #include "base/alloc.h"
 
@@ -23,5 +22,3 @@ static inline size_t scree_ensemble_count(const scree_ensemble *e) {
 /* scree_ensemble_count x d samples; the same bits for any number of threads. */
 scree_status scree_ensemble_sample(const scree_ensemble *ensemble, double *samples,
                                    scree_error *error);
-
-#endif

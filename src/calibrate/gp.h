@@ -1,7 +1,6 @@
 /* A Gaussian process for one answer of a noisy simulation: what the answer is on the mean at every
  * setting of the parameters, how sure that is, and how much single runs scatter there. */
-#ifndef SCREE_CALIBRATE_GP_H
-#define SCREE_CALIBRATE_GP_H
+#pragma once
 
 #include "base/alloc.h"
 
@@ -55,5 +54,3 @@ double scree_gp_member(const scree_gp *gp, size_t index, double settings[SCREE_G
 /* Log posterior density of settings, but for a constant, and its gradient. -INFINITY: the matrix is
  * not positive definite. */
 double scree_gp_log_density(const scree_gp *gp, const double *settings, double *gradient);
-
-#endif

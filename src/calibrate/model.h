@@ -1,8 +1,7 @@
 /* All answers of a calibration as Gaussian processes, what was measured of them, and what follows:
  * the density of the parameters, where the next runs tell most, what another measurement would
  * tell. Parameters are coordinates in [-1, 1], each as likely as any other before. */
-#ifndef SCREE_CALIBRATE_MODEL_H
-#define SCREE_CALIBRATE_MODEL_H
+#pragma once
 
 #include "calibrate/gp.h"
 
@@ -74,5 +73,3 @@ double scree_response_share(const scree_response *response, const double *x);
 scree_status scree_model_expect(const scree_model *model, const double *samples,
                                 size_t sample_count, const size_t *chosen, size_t chosen_count,
                                 double repeat_count, double *sd, scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* One table of options per verb drives parsing, help, the man page and shell completion. */
-#ifndef SCREE_CLI_ARGS_H
-#define SCREE_CLI_ARGS_H
+#pragma once
 
 #include "base/platform.h"
 #include "scree.h"
@@ -146,5 +145,3 @@ enum { CLI_NUMBER_BYTES = 32 };
 const char *cli_si_text(cli_kind kind, const char *text, char buffer[CLI_NUMBER_BYTES]);
 /* A length, all of the text, as in 0.27mm, or in metres; false otherwise. */
 bool cli_length_from_text(const char *text, double *metres);
-
-#endif

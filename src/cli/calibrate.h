@@ -1,6 +1,5 @@
 /* The verbs `calibrate` and `optimise`. */
-#ifndef SCREE_CLI_CALIBRATE_H
-#define SCREE_CLI_CALIBRATE_H
+#pragma once
 
 #include "cli/study.h"
 
@@ -12,5 +11,3 @@ int calibrate_run(const cli_call *call);
   .options = study_options, .option_count = STUDY_OPTIONS - 1, .defaults = &study_defaults,        \
   .options_size = sizeof study_defaults, .input_minimum = 1, .input_maximum = 2,                   \
   .partners = "tasks:slurm dry-run:slurm", .run = calibrate_run
-
-#endif

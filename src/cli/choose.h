@@ -1,6 +1,5 @@
 /* What the files of the verb `choose` share. */
-#ifndef SCREE_CLI_CHOOSE_H
-#define SCREE_CLI_CHOOSE_H
+#pragma once
 
 #include "cli/args.h"
 #include "cli/input.h"
@@ -65,5 +64,3 @@ scree_status choose_write_meshes(const choose_run *run, size_t index, const scre
  * or nothing where the call was cancelled before. */
 scree_status choose_write_reports(choose_run *run, const scree_choice_report *report,
                                   scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Clumps of spheres from tables. */
-#ifndef SCREE_CLI_CLUMP_H
-#define SCREE_CLI_CLUMP_H
+#pragma once
 
 #include "scree.h"
 
@@ -8,5 +7,3 @@
 static inline bool cli_is_clump(const char *word) {
   return scree_is_clump_table(word);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What `scree clump` works with, and the files it leaves. */
-#ifndef SCREE_CLI_CLUMP_FILES_H
-#define SCREE_CLI_CLUMP_FILES_H
+#pragma once
 
 #include "cli/clump_surface.h"
 #include "report/program.h"
@@ -50,5 +49,3 @@ scree_status clump_write_files(clump_run *run, const scree_clump_report *report,
 
 /* The answer for people. */
 void clump_print(FILE *out, const clump_run *run);
-
-#endif

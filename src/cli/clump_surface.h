@@ -1,6 +1,5 @@
 /* Surfaces that clumps are fitted to. */
-#ifndef SCREE_CLI_CLUMP_SURFACE_H
-#define SCREE_CLI_CLUMP_SURFACE_H
+#pragma once
 
 #include "cli/input.h"
 
@@ -20,5 +19,3 @@ typedef struct cli_clump_surface {
 scree_status cli_load_for_clump(const char *word, const cli_input_options *input,
                                 const scree_progress *progress, cli_clump_surface *surface,
                                 scree_error *error);
-
-#endif

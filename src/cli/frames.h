@@ -1,6 +1,5 @@
 /* The frames that a verb writes for ParaView into its folder, and when each was. */
-#ifndef SCREE_CLI_FRAMES_H
-#define SCREE_CLI_FRAMES_H
+#pragma once
 
 #include "scree.h"
 
@@ -22,5 +21,3 @@ scree_status cli_frames_recall(cli_frames *frames, double interval, const scree_
 /* The collection of those of a kind, where there are any; it may replace an earlier one. */
 scree_status cli_frames_list(const cli_frames *frames, const char *kind, const char *path,
                              scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* --grid: the levels of a table. */
-#ifndef SCREE_CLI_GRID_H
-#define SCREE_CLI_GRID_H
+#pragma once
 
 #include "cli/args.h"
 
@@ -20,5 +19,3 @@ typedef struct cli_grid {
 
 /* 0, or 2 after telling what is wrong with the text. */
 int cli_parse_grid(const cli_verb *verb, const char *text, cli_grid *grid);
-
-#endif

@@ -1,6 +1,5 @@
 /* What a verb is given: a file, standard input, or a built-in sample by "sample:NAME". */
-#ifndef SCREE_CLI_INPUT_H
-#define SCREE_CLI_INPUT_H
+#pragma once
 
 #include "base/platform.h"
 #include "cli/args.h"
@@ -76,5 +75,3 @@ void cli_print_cell(FILE *stream, const char *text, size_t least, size_t most);
 
 /* 12345678 as 12,345,678 */
 const char *cli_count_text(size_t count, char buffer[32]);
-
-#endif

@@ -1,6 +1,5 @@
 /* The one table of options: what a name means, in every verb that has it, and its letter. */
-#ifndef SCREE_CLI_OPTIONS_H
-#define SCREE_CLI_OPTIONS_H
+#pragma once
 
 #include "cli/args.h"
 
@@ -29,5 +28,3 @@ bool cli_has_option(const cli_verb *verb, const char *name);
 void cli_option_hint(const cli_verb *verb, const char *name, char *buffer, size_t size);
 /* "; did you mean 'choose'?" or "". */
 void cli_verb_hint(const char *word, char *buffer, size_t size);
-
-#endif

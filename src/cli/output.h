@@ -1,6 +1,5 @@
 /* What a verb may write to. */
-#ifndef SCREE_CLI_OUTPUT_H
-#define SCREE_CLI_OUTPUT_H
+#pragma once
 
 #include "cli/args.h"
 
@@ -54,5 +53,3 @@ scree_status cli_join_path(const char *folder, const char *before, const char *n
  * not fit. */
 scree_status cli_beside(const char *path, const char *ending, char *buffer, size_t size,
                         scree_error *error);
-
-#endif

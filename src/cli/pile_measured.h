@@ -1,6 +1,5 @@
 /* `scree pile` of what users have: a scan of a heap, its outline, a picture of it. */
-#ifndef SCREE_CLI_PILE_MEASURED_H
-#define SCREE_CLI_PILE_MEASURED_H
+#pragma once
 
 #include "cli/args.h"
 
@@ -25,5 +24,3 @@ typedef struct cli_measured_pile {
 
 /* Measures and prints it; the exit code. */
 int cli_measure_pile(const cli_call *call, const cli_measured_pile *what);
-
-#endif

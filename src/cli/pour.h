@@ -1,6 +1,5 @@
 /* Verbs that pour shapes into a template and run it: words as shapes, levels, settings, runs. */
-#ifndef SCREE_CLI_POUR_H
-#define SCREE_CLI_POUR_H
+#pragma once
 
 #include "cli/scene_run.h"
 
@@ -85,5 +84,3 @@ typedef struct cli_pour_kind {
 
 /* The exit code. */
 int cli_pour_run(const cli_call *call, const cli_pour_kind *kind);
-
-#endif

@@ -1,6 +1,5 @@
 /* Running a scene in a folder: what the verbs run, repose and drop do alike. */
-#ifndef SCREE_CLI_SCENE_RUN_H
-#define SCREE_CLI_SCENE_RUN_H
+#pragma once
 
 #include "cli/frames.h"
 #include "cli/input.h"
@@ -69,5 +68,3 @@ scree_status cli_pour_shapes(scree_scene_file *file, const cli_poured *poured,
 /* Sets a field of all shapes that are made from scans. */
 scree_status cli_set_scans(scree_scene_file *file, const cli_poured *poured, const char *field,
                            const char *value, scree_error *error);
-
-#endif

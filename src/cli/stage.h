@@ -1,7 +1,6 @@
 /* A folder that is there whole or not at all: its files are written into another one and moved when
  * all is written. */
-#ifndef SCREE_CLI_STAGE_H
-#define SCREE_CLI_STAGE_H
+#pragma once
 
 #include "cli/args.h"
 
@@ -21,5 +20,3 @@ scree_status cli_stage_rename(cli_stage *stage, scree_error *error);
 void cli_stage_discard(cli_stage *stage);
 /* Has an error name the folder that was asked for. */
 void cli_stage_hide(const cli_stage *stage, scree_error *error);
-
-#endif

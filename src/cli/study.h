@@ -1,6 +1,5 @@
 /* What the parts of the verb `study` share. */
-#ifndef SCREE_CLI_STUDY_H
-#define SCREE_CLI_STUDY_H
+#pragma once
 
 #include "cli/args.h"
 
@@ -63,5 +62,3 @@ int study_run_crew(const study_crew *crew, bool worker);
 
 /* Number of this process among those that mpirun or srun started together, 0 without these. */
 size_t study_rank(void);
-
-#endif

@@ -1,6 +1,5 @@
 /* Surfaces that are checked and repaired before use, and what check and repair say about one. */
-#ifndef SCREE_CLI_SURFACE_H
-#define SCREE_CLI_SURFACE_H
+#pragma once
 
 #include "cli/input.h"
 
@@ -71,5 +70,3 @@ double cli_volume_lost(const scree_mesh *mesh, const char *path, double unit);
 #define CLI_NOTABLE_LOSS 1e-6
 /* So is what a repair changes the volume by. */
 #define CLI_NOTABLE_CHANGE 1e-3
-
-#endif

@@ -1,6 +1,5 @@
 /* Progress on the terminal, and Ctrl-C. */
-#ifndef SCREE_CLI_TERMINAL_H
-#define SCREE_CLI_TERMINAL_H
+#pragma once
 
 #include "scree.h"
 
@@ -35,5 +34,3 @@ void cli_terminal_release(void);
  * program as the signal would have done, so that the shell sees it. */
 bool cli_interrupted(void);
 void cli_terminal_reraise(void);
-
-#endif

@@ -1,10 +1,7 @@
 /* Shared by what measures heaps; the interface is in scree/heap.h. */
-#ifndef SCREE_HEAP_REPOSE_H
-#define SCREE_HEAP_REPOSE_H
+#pragma once
 
 #include "base/error.h"
 
 /* That of no heap: all angles and lengths NaN, all counts 0. */
 scree_repose scree_no_repose(void);
-
-#endif

@@ -1,6 +1,5 @@
 /* Comma-separated values by RFC 4180, with '\n' line ends. */
-#ifndef SCREE_REPORT_CSV_H
-#define SCREE_REPORT_CSV_H
+#pragma once
 
 #include "base/error.h"
 
@@ -8,5 +7,3 @@
 void scree_csv_text(FILE *stream, const char *text);
 /* The shortest form that reads back the same; nothing for NaN and infinities. */
 void scree_csv_number(FILE *stream, double value);
-
-#endif

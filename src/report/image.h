@@ -1,7 +1,6 @@
 /* Where ray-traced pictures are seen from, and what is drawn onto them: captions, the scale bar of
  * the colour map, the map itself. */
-#ifndef SCREE_REPORT_IMAGE_H
-#define SCREE_REPORT_IMAGE_H
+#pragma once
 
 #include "base/error.h"
 #include "base/vec.h"
@@ -19,5 +18,3 @@ scree_status scree_image_caption(scree_image *image, const char *text, size_t x,
 /* The colour map with its ends, middle and label along the right edge. */
 scree_status scree_image_scale_bar(scree_image *image, const scree_render_options *options,
                                    scree_error *error);
-
-#endif

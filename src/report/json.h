@@ -9,8 +9,7 @@
  * that reads back as the same double; NaN and infinities, which JSON lacks, as null. Texts that are
  * not UTF-8 keep their good parts; each bad byte becomes U+FFFD. Write errors stay in the stream
  * (ferror). */
-#ifndef SCREE_REPORT_JSON_H
-#define SCREE_REPORT_JSON_H
+#pragma once
 
 #include "base/error.h"
 
@@ -49,5 +48,3 @@ void scree_json_source(scree_json *json, const char *format, scree_checksum chec
 void scree_json_maker(scree_json *json, const char *command_line);
 /* heap_json.c: a heap's angles and lengths. */
 void scree_json_repose(scree_json *json, const scree_repose *repose);
-
-#endif

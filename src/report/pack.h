@@ -1,8 +1,7 @@
 /* Meshes and tables for the report's page, small: positions on a grid of 16 bits, and what
  * meshoptimizer's codecs make of them, which web/src/packed.js reads with the same library's
  * JavaScript. docs/reference/formats.md has the layout. */
-#ifndef SCREE_REPORT_PACK_H
-#define SCREE_REPORT_PACK_H
+#pragma once
 
 #include "base/codec.h"
 #include "base/error.h"
@@ -31,5 +30,3 @@ scree_status scree_pack_vertices(scree_packing *p, const void *vertices, size_t 
 /* A mesh in an order that packs well, or its own (keeps_order); place (vertex_count, may be NULL)
  * gets each vertex's index in it. The counts, then vertices, then triangles. */
 scree_status scree_pack_mesh(scree_packing *p, const scree_mesh *mesh, uint32_t *place);
-
-#endif

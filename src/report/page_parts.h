@@ -1,8 +1,7 @@
 /* What stands in the report's page as base64, behind the data that name it: levels, piles,
  * pictures. Together they keep to a number of bytes: what does not fit is made smaller, then left
  * out, and the script says so of an id that it does not find. */
-#ifndef SCREE_REPORT_PAGE_PARTS_H
-#define SCREE_REPORT_PAGE_PARTS_H
+#pragma once
 
 #include "base/error.h"
 
@@ -38,5 +37,3 @@ void scree_page_parts_free(scree_page_parts *parts);
 
 /* The page's script in pieces, NULL behind the last. */
 extern const char *const scree_page_script[];
-
-#endif

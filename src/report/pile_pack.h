@@ -1,6 +1,5 @@
 /* The pile of a run or a pour for the report's page: its shapes, and where its bodies were. */
-#ifndef SCREE_REPORT_PILE_PACK_H
-#define SCREE_REPORT_PILE_PACK_H
+#pragma once
 
 #include "base/error.h"
 
@@ -11,5 +10,3 @@
  */
 scree_status scree_pile_pack(const char *path, size_t byte_limit, unsigned char **bytes,
                              size_t *byte_count, scree_error *error);
-
-#endif

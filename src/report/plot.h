@@ -3,8 +3,7 @@
  * script that draws the same. The legend stands below the panels, where no data is.
  *
  * Texts are UTF-8 with two marks, _{below} and ^{above}; nothing else is interpreted. */
-#ifndef SCREE_REPORT_PLOT_H
-#define SCREE_REPORT_PLOT_H
+#pragma once
 
 #include "base/error.h"
 
@@ -103,5 +102,3 @@ typedef struct scree_ticks {
  * (labels thin out beyond eight decades; below two decades 2 and 5 are labelled too); on a linear
  * axis majors lie at steps of 1, 2 or 5. */
 void scree_ticks_make(scree_scale scale, double low, double high, scree_ticks *ticks);
-
-#endif

@@ -1,6 +1,5 @@
 /* Between the plot's drawing and its files. */
-#ifndef SCREE_REPORT_PLOT_DRAW_H
-#define SCREE_REPORT_PLOT_DRAW_H
+#pragma once
 
 #include "report/plot.h"
 
@@ -15,5 +14,3 @@ scree_status scree_figure_paint(const scree_figure *figure, scree_paint paint, F
 void scree_figure_extent(const scree_figure *figure, double *width, double *height);
 /* Draws in points from the origin, background included. */
 void scree_figure_draw(const scree_figure *figure, struct _cairo *cr);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the program writes and draws, of what the public interface gives. */
-#ifndef SCREE_REPORT_PROGRAM_H
-#define SCREE_REPORT_PROGRAM_H
+#pragma once
 
 #include "scree.h"
 
@@ -311,5 +310,3 @@ scree_status scree_calibration_csv_write(const scree_calibration_result *result,
 
 /* "surfaces", "points", "contacts" or "walls"; NULL beyond. */
 const char *scree_world_view_name(scree_world_view view);
-
-#endif

@@ -1,6 +1,5 @@
 /* Where and when some work was done, for the files of the program's verbs. */
-#ifndef SCREE_REPORT_PROVENANCE_H
-#define SCREE_REPORT_PROVENANCE_H
+#pragma once
 
 #include "scree.h"
 
@@ -15,5 +14,3 @@ scree_work_start scree_work_started(void);
  * how many threads. Kept apart from results, which do not change from run to run. */
 scree_status scree_provenance_write(const scree_work_start *start, const char *command_line,
                                     const char *path, bool overwrite, scree_error *error);
-
-#endif

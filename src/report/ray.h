@@ -1,7 +1,6 @@
 /* Ray queries against instanced triangle meshes, in single precision, for pictures only. The one
  * file that knows Embree is ray.c; a build without it answers SCREE_UNSUPPORTED. */
-#ifndef SCREE_REPORT_RAY_H
-#define SCREE_REPORT_RAY_H
+#pragma once
 
 #include "base/error.h"
 
@@ -30,5 +29,3 @@ scree_ray_hit scree_ray_first(const scree_ray_scene *scene, const float origin[3
 /* Whether anything lies between the origin and origin + direction * reach; thread-safe. */
 bool scree_ray_blocked(const scree_ray_scene *scene, const float origin[3],
                        const float direction[3], float reach);
-
-#endif

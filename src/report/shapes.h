@@ -1,6 +1,5 @@
 /* The distinct particles of a world, numbered in the order of their first body. */
-#ifndef SCREE_REPORT_SHAPES_H
-#define SCREE_REPORT_SHAPES_H
+#pragma once
 
 #include "report/json.h"
 
@@ -33,5 +32,3 @@ scree_status scree_spheres_mesh(const scree_particle *particle, int level, scree
  * off where the bodies end. Free with scree_mesh_free. */
 scree_status scree_wall_mesh(const scree_world *world, size_t index, scree_mesh *mesh,
                              scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Text with _{below} and ^{above} on a cairo context. */
-#ifndef SCREE_REPORT_TEXT_H
-#define SCREE_REPORT_TEXT_H
+#pragma once
 
 #include <stddef.h>
 
@@ -24,5 +23,3 @@ const char *scree_text_run_next(const char *text, scree_text_run *run);
 
 /* The text without its marks, for files that know none, into buffer of size bytes. */
 void scree_text_plain(const char *text, char *buffer, size_t size);
-
-#endif

@@ -1,6 +1,5 @@
 /* File names are bytes; JSON and pictures want UTF-8. */
-#ifndef SCREE_REPORT_UTF8_H
-#define SCREE_REPORT_UTF8_H
+#pragma once
 
 #include <stddef.h>
 
@@ -19,5 +18,3 @@ static inline size_t scree_utf8_length(const char *text) {
   if (t[0] == 0xf4 && t[1] > 0x8f) return 0;
   return length;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Filling: where the next layer of particles enters. */
-#ifndef SCREE_SCENE_FILL_H
-#define SCREE_SCENE_FILL_H
+#pragma once
 
 #include "base/error.h"
 #include "base/vec.h"
@@ -63,5 +62,3 @@ size_t scree_fill_next_shape(const double *shares, size_t shape_count, const siz
  * room for count. */
 scree_status scree_fill_order(uint64_t seed, const double *shares, size_t shape_count,
                               uint32_t *order, size_t count, scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Fields over the cells of a grid. */
-#ifndef SCREE_SCENE_GRID_H
-#define SCREE_SCENE_GRID_H
+#pragma once
 
 #include "scene/scene.h"
 
@@ -39,5 +38,3 @@ scree_status scree_grid_sample_mixing(const scree_scene *scene, const scree_scen
                                       scree_error *error);
 /* Counted along x, y, z, or outward, around, along. */
 vec3 scree_grid_corner(const scree_plan_grid *plan, size_t i, size_t j, size_t k);
-
-#endif

@@ -1,6 +1,5 @@
 /* Impacts of a scene: counts, sums and spectra of the energies of contacts, by class. */
-#ifndef SCREE_SCENE_IMPACTS_H
-#define SCREE_SCENE_IMPACTS_H
+#pragma once
 
 #include "scene/scene.h"
 
@@ -38,5 +37,3 @@ void scree_impact_class_names(const scree_scene *scene, const scree_scene_sensor
                               size_t index, const char *names[2]);
 /* J, where the bin begins; bin 0 begins at 0. */
 double scree_impact_bin(const scree_plan_impacts *plan, size_t bin);
-
-#endif

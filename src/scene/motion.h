@@ -1,7 +1,6 @@
 /* The motion of a scene on disk (docs/reference/formats.md): frames are appended while it
  * goes on, each with its own checksum, so that one that was killed leaves whole ones. */
-#ifndef SCREE_SCENE_MOTION_H
-#define SCREE_SCENE_MOTION_H
+#pragma once
 
 #include "base/error.h"
 
@@ -24,5 +23,3 @@ scree_status scree_motion_put(scree_motion_file *file, const scree_world *world,
                               scree_error *error);
 /* Does nothing for one that was never opened. */
 void scree_motion_close(scree_motion_file *file);
-
-#endif

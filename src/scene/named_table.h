@@ -1,7 +1,6 @@
 /* Tables as text: a line of names, then a line for each row, between commas; blank lines and those
  * that begin with # are passed over. Behind a name its unit may stand: `x [mm]`. */
-#ifndef SCREE_SCENE_NAMED_TABLE_H
-#define SCREE_SCENE_NAMED_TABLE_H
+#pragma once
 
 #include "base/error.h"
 
@@ -32,5 +31,3 @@ scree_status scree_named_open(scree_named_table *table, const char *name, char *
  * one. */
 scree_status scree_named_row(scree_named_table *table, double *values, const char **words,
                              bool *there, scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* What a scene's file says: plain records, in an arena. */
-#ifndef SCREE_SCENE_PLAN_H
-#define SCREE_SCENE_PLAN_H
+#pragma once
 
 #include "base/schema.h"
 
@@ -416,5 +415,3 @@ scree_status scree_plan_read(const scree_reader *reader, const scree_yaml *root,
 size_t scree_plan_find(const scree_records *records, size_t size, const char *name);
 /* Metres of the unit. */
 double scree_plan_unit(int unit);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the tables of fields of a scene share. */
-#ifndef SCREE_SCENE_PLAN_FIELDS_H
-#define SCREE_SCENE_PLAN_FIELDS_H
+#pragma once
 
 #include "scene/plan.h"
 
@@ -31,5 +30,3 @@ scree_status scree_plan_check_window(const scree_reader *r, const scree_place *p
 extern const scree_record scree_plan_box_record, scree_plan_cylinder_record;
 /* plan_sensors.c */
 extern const scree_record scree_plan_sensor_record;
-
-#endif

@@ -1,6 +1,5 @@
 /* A scene at work: what its parts share. */
-#ifndef SCREE_SCENE_SCENE_H
-#define SCREE_SCENE_SCENE_H
+#pragma once
 
 #include "scene/fill.h"
 #include "scene/motion.h"
@@ -463,5 +462,3 @@ static inline quat scree_body_turn(const scree_body *body) {
  * drawn, not continued. */
 scree_status scree_scene_save_frame(const scree_scene *scene, const char *path, bool overwrite,
                                     scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Meshes of geometry that a scene describes by numbers, about its origin. */
-#ifndef SCREE_SCENE_SOLIDS_H
-#define SCREE_SCENE_SOLIDS_H
+#pragma once
 
 #include "scene/plan.h"
 #include "scree.h"
@@ -11,5 +10,3 @@ scree_status scree_loop_mesh(const scree_plan_loop *loop, scree_mesh *mesh, scre
 scree_status scree_screw_mesh(const scree_plan_screw *screw, scree_mesh *mesh, scree_error *error);
 /* One solid, its upper face at z = 0; as many whole pitches as its size holds. */
 scree_status scree_sieve_mesh(const scree_plan_sieve *sieve, scree_mesh *mesh, scree_error *error);
-
-#endif

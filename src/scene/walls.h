@@ -1,6 +1,5 @@
 /* Mesh walls of a scene from any triangle soup. */
-#ifndef SCREE_SCENE_WALLS_H
-#define SCREE_SCENE_WALLS_H
+#pragma once
 
 #include "mesh/repair/soup.h"
 #include "scene/scene.h"
@@ -23,5 +22,3 @@ void scree_scene_walls_free(scree_scene_walls *walls);
  * where one is not closed about the axis, or solid with an inner face. */
 scree_status scree_scene_wind_belts(const scree_plan_belt *belt, scree_pieces *pieces,
                                     const bool *solid, scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* study.sqlite: opened, checked, and asked. */
-#ifndef SCREE_STUDY_DATABASE_H
-#define SCREE_STUDY_DATABASE_H
+#pragma once
 
 #include "study/study.h"
 
@@ -25,5 +24,3 @@ scree_status scree_database_prepare(scree_database *database, const char *sql,
 /* One step of a statement: *row whether it gave a row. */
 scree_status scree_database_step(scree_database *database, struct sqlite3_stmt *statement,
                                  bool *row, scree_error *error);
-
-#endif

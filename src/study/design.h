@@ -1,6 +1,5 @@
 /* Designs: points of the unit cube that fill it evenly. */
-#ifndef SCREE_STUDY_DESIGN_H
-#define SCREE_STUDY_DESIGN_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -19,5 +18,3 @@ void scree_design_sobol(uint64_t seed, size_t point_count, size_t dimension_coun
 
 /* Point `index` of the sequence without the shift, as 32 binary digits. */
 uint32_t scree_sobol_digits(size_t index, size_t dimension);
-
-#endif

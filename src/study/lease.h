@@ -1,8 +1,7 @@
 /* Leases: files that say who works on what, in a folder that several machines may share. A lease
  * only saves work: results are the same whoever makes them, so that nothing is lost or wrong where
  * two hold the same one for a moment. */
-#ifndef SCREE_STUDY_LEASE_H
-#define SCREE_STUDY_LEASE_H
+#pragma once
 
 #include "base/error.h"
 
@@ -44,5 +43,3 @@ void scree_lease_forget_deaths(const char *folder, const char *name);
 
 /* "host.pid", for a worker that was given no name. */
 void scree_lease_default_worker(char worker[SCREE_LEASE_NAME]);
-
-#endif

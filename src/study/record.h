@@ -1,6 +1,5 @@
 /* The result of one run as a file: what the database is made from. */
-#ifndef SCREE_STUDY_RECORD_H
-#define SCREE_STUDY_RECORD_H
+#pragma once
 
 #include "study/study.h"
 
@@ -79,5 +78,3 @@ scree_status scree_study_record_write(const scree_study_record *record, const ch
 scree_status scree_study_record_read(const char *path, scree_study_record *record,
                                      scree_error *error);
 void scree_study_record_free(scree_study_record *record);
-
-#endif

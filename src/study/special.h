@@ -1,6 +1,5 @@
 /* Distribution functions for the statistics of few runs. */
-#ifndef SCREE_STUDY_SPECIAL_H
-#define SCREE_STUDY_SPECIAL_H
+#pragma once
 
 /* P(T <= t) for Student's t with `degrees` > 0, not necessarily whole, degrees of freedom. */
 double scree_student_cdf(double t, double degrees);
@@ -10,5 +9,3 @@ double scree_student_quantile(double p, double degrees);
 /* P(X <= x) for chi-square, and its inverse for p in (0, 1). */
 double scree_chi_square_cdf(double x, double degrees);
 double scree_chi_square_quantile(double p, double degrees);
-
-#endif

@@ -1,6 +1,5 @@
 /* A study: what its file says, the points and runs that follow from it, and its folder. */
-#ifndef SCREE_STUDY_STUDY_H
-#define SCREE_STUDY_STUDY_H
+#pragma once
 
 #include "base/schema.h"
 #include "choice/criterion.h"
@@ -177,5 +176,3 @@ scree_status scree_fit_power(const double *x, const double *y, size_t count, dou
  */
 scree_status scree_fit_polynomial(const double *x, const double *y, size_t count, int degree,
                                   scree_polynomial *fit, scree_error *error);
-
-#endif
