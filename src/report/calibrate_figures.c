@@ -1,57 +1,20 @@
 /* Figures of a calibration: every pair of parameters, answers beside what was measured, and how
  * intervals narrowed. */
-#include "base/arena.h"
 #include "base/file.h"
-#include "report/plot.h"
+#include "report/drawing.h"
 #include "report/program.h"
 
 #include <math.h>
-#include <string.h>
 
-enum { MOST_DRAWN = 6, MOST_POINTS = 600, BINS = 24, MOST_PANELS = 36, MOST_SERIES = 160 };
+enum { MOST_DRAWN = 6, MOST_POINTS = 600, BINS = 24, MOST_PANELS = 36 };
 
-typedef struct drawing {
-  const scree_calibration_result *r;
-  scree_arena arena;
-  scree_panel panels[MOST_PANELS];
-  scree_series series[MOST_SERIES];
-  size_t panel_count, series_count;
-  char note[256];
-  bool good; /* memory is not out */
-} drawing;
-
-static double *take(drawing *d, size_t count) {
-  double *room = scree_arena_take(&d->arena, count + 1, sizeof *room);
-  d->good = d->good && room;
-  return room;
-}
-
-static void start_panel(drawing *d, const char *title, scree_axis x, scree_axis y) {
-  d->panels[d->panel_count++] = (scree_panel){
-      .title = title, .x = x, .y = y, .series = d->series + d->series_count, .series_count = 0};
-}
-
-static void add_series(drawing *d, scree_series series) {
-  if (d->series_count == MOST_SERIES) return;
-  d->series[d->series_count++] = series;
-  d->panels[d->panel_count - 1].series_count++;
-}
-
-static scree_status finish(drawing *d, size_t columns, double width, double height,
+static scree_status finish(scree_drawing *d, const scree_calibration_result *r, scree_figure figure,
                            const char *stem, scree_error *error) {
-  const scree_calibration_result *r = d->r;
-  snprintf(d->note, sizeof d->note, "scree %s, %.100s, %zu runs, seed %llu", r->version, r->title,
+  char note[256];
+  snprintf(note, sizeof note, "scree %s, %.100s, %zu runs, seed %llu", r->version, r->title,
            r->progress.done, (unsigned long long)r->seed);
-  scree_figure figure = {.panels = d->panels,
-                         .panel_count = d->panel_count,
-                         .columns = columns,
-                         .panel_width = width,
-                         .panel_height = height,
-                         .note = d->note};
-  scree_status status = d->good ? scree_figure_write_all(&figure, stem, true, error)
-                                : scree_fail_memory(error, 0, "a figure");
-  scree_arena_free(&d->arena);
-  return status;
+  figure.note = note;
+  return scree_drawing_write_all(d, figure, stem, error);
 }
 
 static scree_axis axis_of(const scree_parameter_result *p) {
@@ -64,112 +27,108 @@ static scree_axis axis_of(const scree_parameter_result *p) {
 /* ---- pairs ---- */
 
 /* Shares of the samples in equal parts of the range, as steps. */
-static void add_histogram(drawing *d, size_t k) {
-  const scree_calibration_result *r = d->r;
+static void add_histogram(scree_drawing *d, const scree_calibration_result *r, size_t k) {
   const scree_parameter_result *p = &r->parameters[k];
-  double *x = take(d, 2 * BINS), *y = take(d, 2 * BINS);
-  if (!d->good) return;
+  scree_curve_room at = scree_drawing_add(d, 2 * BINS, (scree_series){.draw = SCREE_DRAW_LINE});
+  if (!at.x) return;
   double low = p->logarithmic ? log(p->from) : p->from, high = p->logarithmic ? log(p->to) : p->to,
          step = (high - low) / BINS;
   for (size_t b = 0; b < 2 * BINS; b++) {
-    double at = low + step * (double)((b + 1) / 2);
-    x[b] = p->logarithmic ? exp(at) : at;
-    y[b] = 0;
+    double edge = low + step * (double)((b + 1) / 2);
+    at.x[b] = p->logarithmic ? exp(edge) : edge;
+    at.y[b] = 0;
   }
   for (size_t i = 0; i < r->sample_count; i++) {
     double value = r->samples[i * r->parameter_count + k];
     double bin = ((p->logarithmic ? log(value) : value) - low) / step;
     size_t b = bin < 0 ? 0 : bin >= BINS ? BINS - 1 : (size_t)bin;
-    y[2 * b] += 1.0 / (double)r->sample_count;
-    y[2 * b + 1] = y[2 * b];
+    at.y[2 * b] += 1.0 / (double)r->sample_count;
+    at.y[2 * b + 1] = at.y[2 * b];
   }
-  add_series(d, (scree_series){.x = x, .y = y, .count = 2 * BINS, .draw = SCREE_DRAW_LINE});
 }
 
-static void add_pair(drawing *d, size_t across, size_t up) {
-  const scree_calibration_result *r = d->r;
+static void add_pair(scree_drawing *d, const scree_calibration_result *r, size_t across,
+                     size_t up) {
   size_t count = r->sample_count < MOST_POINTS ? r->sample_count : MOST_POINTS;
-  double *x = take(d, count), *y = take(d, count);
-  for (size_t i = 0; d->good && i < count; i++) {
+  scree_curve_room at = scree_drawing_add(
+      d, count,
+      (scree_series){.marker = SCREE_MARKER_PLUS, .draw = SCREE_DRAW_MARKERS | SCREE_DRAW_FAINT});
+  for (size_t i = 0; at.x && i < count; i++) {
     const double *row = r->samples + i * r->sample_count / count * r->parameter_count;
-    x[i] = row[across];
-    y[i] = row[up];
+    at.x[i] = row[across];
+    at.y[i] = row[up];
   }
-  add_series(d, (scree_series){.x = x,
-                               .y = y,
-                               .count = d->good ? count : 0,
-                               .marker = SCREE_MARKER_PLUS,
-                               .draw = SCREE_DRAW_MARKERS | SCREE_DRAW_FAINT});
 }
 
 static scree_status draw_corner(const scree_calibration_result *r, const char *stem,
                                 scree_error *error) {
-  drawing d = {.r = r, .good = true};
+  scree_drawing d = {0};
   size_t n = r->parameter_count < MOST_DRAWN ? r->parameter_count : MOST_DRAWN;
   for (size_t up = 0; up < n; up++)
     for (size_t across = 0; across < n; across++) {
       bool same = up == across;
-      start_panel(&d, NULL, axis_of(&r->parameters[across]),
-                  same ? (scree_axis){.label = "share"} : axis_of(&r->parameters[up]));
+      scree_drawing_panel(&d, NULL, axis_of(&r->parameters[across]),
+                          same ? (scree_axis){.label = "share"} : axis_of(&r->parameters[up]));
       if (same)
-        add_histogram(&d, up);
+        add_histogram(&d, r, up);
       else
-        add_pair(&d, across, up);
+        add_pair(&d, r, across, up);
     }
-  return finish(&d, n, 230, 210, stem, error);
+  scree_figure figure = {.columns = n, .panel_width = 230, .panel_height = 210};
+  return finish(&d, r, figure, stem, error);
 }
 
 /* ---- answers ---- */
 
-static void add_point(drawing *d, const char *label, double x, double y, double low, double high,
-                      int style) {
-  double *room = take(d, 4);
-  if (!d->good) return;
-  memcpy(room, (double[]){x, y, low, high}, 4 * sizeof *room);
-  add_series(d, (scree_series){.label = label,
-                               .x = room,
-                               .y = room + 1,
-                               .low = room + 2,
-                               .high = room + 3,
-                               .count = 1,
-                               .style = style,
-                               .draw = SCREE_DRAW_MARKERS | SCREE_DRAW_BARS});
+static void add_point(scree_drawing *d, const char *label, int place, double y, double low,
+                      double high) {
+  scree_curve_room at = scree_drawing_add(
+      d, 1,
+      (scree_series){
+          .label = label, .style = place - 1, .draw = SCREE_DRAW_MARKERS | SCREE_DRAW_BARS});
+  if (!at.x) return;
+  *at.x = place;
+  *at.y = y;
+  *at.low = low;
+  *at.high = high;
 }
 
-static void draw_answer(drawing *d, const scree_answer_result *a) {
+static void draw_answer(scree_drawing *d, const scree_answer_result *a) {
   bool curve = a->point_count > 0;
-  start_panel(d, a->name,
-              curve ? (scree_axis){.label = "x"}
-                    : (scree_axis){.label = a->experiment, .minimum = 0, .maximum = 4},
-              (scree_axis){.label = a->answer});
+  scree_drawing_panel(d, a->name,
+                      curve ? (scree_axis){.label = "x"}
+                            : (scree_axis){.label = a->experiment, .minimum = 0, .maximum = 4},
+                      (scree_axis){.label = a->answer});
   if (curve) {
-    add_series(d, (scree_series){.label = "simulated, interval",
-                                 .x = a->x,
-                                 .y = a->curve_mean,
-                                 .low = a->curve_low,
-                                 .high = a->curve_high,
-                                 .count = a->point_count,
-                                 .style = 1,
-                                 .draw = SCREE_DRAW_LINE | SCREE_DRAW_BAND});
-    add_series(d, (scree_series){.label = "measured",
-                                 .x = a->x,
-                                 .y = a->y,
-                                 .count = a->point_count,
-                                 .draw = SCREE_DRAW_MARKERS});
+    scree_drawing_put(d, (scree_series){.label = "simulated, interval",
+                                        .x = a->x,
+                                        .y = a->curve_mean,
+                                        .low = a->curve_low,
+                                        .high = a->curve_high,
+                                        .count = a->point_count,
+                                        .style = 1,
+                                        .draw = SCREE_DRAW_LINE | SCREE_DRAW_BAND});
+    scree_drawing_put(d, (scree_series){.label = "measured",
+                                        .x = a->x,
+                                        .y = a->y,
+                                        .count = a->point_count,
+                                        .draw = SCREE_DRAW_MARKERS});
     return;
   }
   double half = a->uncertainty;
   if (isfinite(a->scatter)) half = hypot(half, a->scatter / sqrt(a->repeat_count));
-  if (a->measured) add_point(d, "measured", 1, a->value, a->value - half, a->value + half, 0);
-  add_point(d, "simulated, interval", 2, a->mean, a->low, a->high, 1);
-  add_point(d, "a single one, interval", 3, a->mean, a->single_low, a->single_high, 2);
+  if (a->measured) add_point(d, "measured", 1, a->value, a->value - half, a->value + half);
+  add_point(d, "simulated, interval", 2, a->mean, a->low, a->high);
+  add_point(d, "a single one, interval", 3, a->mean, a->single_low, a->single_high);
 }
 
 static scree_status draw_answers(const scree_calibration_result *r, const char *stem,
                                  scree_error *error) {
-  drawing d = {.r = r, .good = true};
+  scree_drawing d = {0};
   for (size_t i = 0; i < r->answer_count && i < MOST_PANELS; i++) draw_answer(&d, &r->answers[i]);
-  return finish(&d, d.panel_count < 3 ? d.panel_count : 3, 260, 260, stem, error);
+  scree_figure figure = {
+      .columns = d.panels.count < 3 ? d.panels.count : 3, .panel_width = 260, .panel_height = 260};
+  return finish(&d, r, figure, stem, error);
 }
 
 /* ---- history ---- */
@@ -177,31 +136,29 @@ static scree_status draw_answers(const scree_calibration_result *r, const char *
 static scree_status draw_history(const scree_calibration_result *r, const char *stem,
                                  scree_error *error) {
   static const scree_guide half = {"identified", 0.5, true};
-  drawing d = {.r = r, .good = true};
+  scree_drawing d = {0};
   size_t lines = r->is_search ? 1 : r->parameter_count, width = 1 + lines;
-  start_panel(&d, NULL, (scree_axis){.label = "runs"},
-              r->is_search ? (scree_axis){.label = r->sought}
-                           : (scree_axis){.label = "width of the interval beside the range",
-                                          .minimum = 0,
-                                          .maximum = 1.05});
+  scree_panel *panel = scree_drawing_panel(
+      &d, NULL, (scree_axis){.label = "runs"},
+      r->is_search ? (scree_axis){.label = r->sought}
+                   : (scree_axis){.label = "width of the interval beside the range",
+                                  .minimum = 0,
+                                  .maximum = 1.05});
+  if (panel && !r->is_search) panel->guides = &half;
+  if (panel && !r->is_search) panel->guide_count = 1;
   for (size_t k = 0; k < lines; k++) {
-    double *x = take(&d, r->history_count), *y = take(&d, r->history_count);
-    for (size_t i = 0; d.good && i < r->history_count; i++) {
-      x[i] = r->history[i * width];
-      y[i] = r->history[i * width + 1 + k];
+    scree_curve_room at = scree_drawing_add(
+        &d, r->history_count,
+        (scree_series){.label = r->is_search ? "best so far" : r->parameters[k].name,
+                       .style = (int)k,
+                       .draw = SCREE_DRAW_LINE | SCREE_DRAW_MARKERS});
+    for (size_t i = 0; at.x && i < r->history_count; i++) {
+      at.x[i] = r->history[i * width];
+      at.y[i] = r->history[i * width + 1 + k];
     }
-    add_series(&d, (scree_series){.label = r->is_search ? "best so far" : r->parameters[k].name,
-                                  .x = x,
-                                  .y = y,
-                                  .count = d.good ? r->history_count : 0,
-                                  .style = (int)k,
-                                  .draw = SCREE_DRAW_LINE | SCREE_DRAW_MARKERS});
   }
-  if (!r->is_search) {
-    d.panels[0].guides = &half;
-    d.panels[0].guide_count = 1;
-  }
-  return finish(&d, 1, 380, 300, stem, error);
+  scree_figure figure = {.columns = 1, .panel_width = 380, .panel_height = 300};
+  return finish(&d, r, figure, stem, error);
 }
 
 /* ---- all files ---- */
@@ -209,8 +166,7 @@ static scree_status draw_history(const scree_calibration_result *r, const char *
 static scree_status write_text(const scree_calibration_result *r, const char *path,
                                scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, true, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, true, &output, error));
   scree_calibration_print(r, output.stream);
   return scree_output_commit(&output, error);
 }

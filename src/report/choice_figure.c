@@ -4,79 +4,54 @@
  * criterion is drawn too. */
 #include "base/number.h"
 #include "report/choice.h"
-#include "report/plot.h"
+#include "report/drawing.h"
 #include "report/program.h"
 
-#include "base/alloc.h"
-
 #include <math.h>
-#include <string.h>
 
 static const double PANEL_WIDTH = 350, PANEL_HEIGHT = 310;
 /* eps_s crosses zero; below this part of the largest error nothing is to be read. */
 static const double ERROR_FLOOR = 1e-4;
 
-enum { SERIES_PER_ENTRY = 2, EXTRA_SERIES = 4, NOTE_BYTES = 256 };
+enum { NOTE_BYTES = 256 };
 
-typedef struct panel_data {
-  scree_series *series;
-  double *values; /* all the arrays below */
-  size_t series_count, used;
-} panel_data;
-
-static double *take(panel_data *data, size_t count) {
-  double *block = data->values + data->used;
-  data->used += count;
-  return block;
-}
-
-static void copy_levels(panel_data *data, const scree_choice_level *levels, size_t count,
-                        bool criterion, scree_series *series) {
-  double *x = take(data, count), *y = take(data, count);
-  for (size_t i = 0; i < count; i++) {
-    x[i] = fmax(levels[i].rp, levels[i].rp_reached);
-    y[i] = criterion ? levels[i].ip : levels[i].eps_s;
+static void add_levels(scree_drawing *d, const scree_choice_level *levels, size_t count,
+                       bool criterion, scree_series series) {
+  scree_curve_room at = scree_drawing_add(d, count, series);
+  for (size_t i = 0; at.x && i < count; i++) {
+    at.x[i] = fmax(levels[i].rp, levels[i].rp_reached);
+    at.y[i] = criterion ? levels[i].ip : levels[i].eps_s;
     /* a level that stands for several Rp below the floor is drawn once, where it is */
     bool repeated = i + 1 < count && levels[i].level_index == levels[i + 1].level_index;
-    if (repeated && !levels[i].reached) y[i] = NAN;
-  }
-  *series = (scree_series){.x = x, .y = y, .count = count};
-}
-
-static void add_entries(const scree_choice_report *report, bool criterion, panel_data *data) {
-  for (size_t e = 0; e < report->entry_count; e++) {
-    const scree_choice_entry *entry = &report->entries[e];
-    scree_series *line = &data->series[data->series_count++];
-    copy_levels(data, entry->choice->trace, entry->choice->trace_count, criterion, line);
-    line->style = (int)e;
-    line->draw = SCREE_DRAW_LINE | SCREE_DRAW_FAINT | SCREE_DRAW_UNFITTED;
-  }
-  for (size_t e = 0; e < report->entry_count; e++) {
-    const scree_choice_entry *entry = &report->entries[e];
-    scree_series *points = &data->series[data->series_count++];
-    copy_levels(data, entry->choice->levels, entry->choice->level_count, criterion, points);
-    points->label = entry->name;
-    points->style = (int)e;
-    points->draw = SCREE_DRAW_MARKERS;
+    if (repeated && !levels[i].reached) at.y[i] = NAN;
   }
 }
 
-static void add_robust_line(const scree_choice *choice, bool criterion, panel_data *data) {
-  size_t count = choice->trace_count;
-  double *x = take(data, count), *y = take(data, count);
-  for (size_t i = 0; i < count; i++) {
-    x[i] = choice->trace[i].rp;
-    y[i] = choice->trace[i].reached
-               ? (criterion ? choice->trace[i].robust_ip : choice->trace[i].worst_eps_s)
-               : NAN;
+static void add_entries(scree_drawing *d, const scree_choice_report *report, bool criterion) {
+  for (size_t e = 0; e < report->entry_count; e++) {
+    const scree_choice *choice = report->entries[e].choice;
+    add_levels(d, choice->trace, choice->trace_count, criterion,
+               (scree_series){.style = (int)e,
+                              .draw = SCREE_DRAW_LINE | SCREE_DRAW_FAINT | SCREE_DRAW_UNFITTED});
   }
-  data->series[data->series_count++] =
+  for (size_t e = 0; e < report->entry_count; e++) {
+    const scree_choice_entry *entry = &report->entries[e];
+    add_levels(d, entry->choice->levels, entry->choice->level_count, criterion,
+               (scree_series){.label = entry->name, .style = (int)e, .draw = SCREE_DRAW_MARKERS});
+  }
+}
+
+static void add_robust_line(scree_drawing *d, const scree_choice *choice, bool criterion) {
+  scree_curve_room at = scree_drawing_add(
+      d, choice->trace_count,
       (scree_series){.label = "worst at this or finer levels",
-                     .x = x,
-                     .y = y,
-                     .count = count,
                      .style = SCREE_STYLE_INK,
-                     .draw = SCREE_DRAW_LINE | SCREE_DRAW_DASHED | SCREE_DRAW_UNFITTED};
+                     .draw = SCREE_DRAW_LINE | SCREE_DRAW_DASHED | SCREE_DRAW_UNFITTED});
+  for (size_t i = 0; at.x && i < choice->trace_count; i++) {
+    const scree_choice_level *level = &choice->trace[i];
+    at.x[i] = level->rp;
+    at.y[i] = !level->reached ? NAN : criterion ? level->robust_ip : level->worst_eps_s;
+  }
 }
 
 /* The grid's Rp, or the level's own where the grid's was not reached. */
@@ -102,25 +77,21 @@ static double pick_value(const scree_choice_report *report, const scree_choice *
   return pick->level_eps_s + (criterion ? penalty : 0);
 }
 
-static void add_picks(const scree_choice_report *report, size_t which, bool criterion,
-                      panel_data *data) {
-  size_t count = report->entry_count;
-  double *x = take(data, count), *y = take(data, count);
-  for (size_t e = 0; e < count; e++) {
+static void add_picks(scree_drawing *d, const scree_choice_report *report, size_t which,
+                      bool criterion) {
+  scree_curve_room at =
+      scree_drawing_add(d, report->entry_count,
+                        (scree_series){.label = picks[which].label,
+                                       .style = SCREE_STYLE_INK,
+                                       .draw = SCREE_DRAW_MARKERS | SCREE_DRAW_UNFITTED,
+                                       .marker = picks[which].marker});
+  for (size_t e = 0; at.x && e < report->entry_count; e++) {
     const scree_choice *choice = report->entries[e].choice;
     const scree_pick *pick = scree_choice_pick(choice, picks[which].rule);
-    x[e] = pick_rp(choice, pick);
     bool known = picks[which].rule != SCREE_RULE_RECOMMENDED || choice->fidelity;
-    y[e] = known ? pick_value(report, choice, pick, criterion) : NAN;
+    at.x[e] = pick_rp(choice, pick);
+    at.y[e] = known ? pick_value(report, choice, pick, criterion) : NAN;
   }
-  data->series[data->series_count++] =
-      (scree_series){.label = picks[which].label,
-                     .x = x,
-                     .y = y,
-                     .count = count,
-                     .style = SCREE_STYLE_INK,
-                     .draw = SCREE_DRAW_MARKERS | SCREE_DRAW_UNFITTED,
-                     .marker = picks[which].marker};
 }
 
 /* Up to the grid's end, or to a choice behind it. */
@@ -167,32 +138,20 @@ static void fit_errors(const scree_choice_report *report, bool criterion, scree_
   axis->maximum = high * 1.4;
 }
 
-static scree_status allocate(const scree_choice_report *report, panel_data *data,
-                             scree_error *error) {
-  size_t points = 2 * PICKS * report->entry_count;
-  for (size_t e = 0; e < report->entry_count; e++)
-    points += 2 * (report->entries[e].choice->level_count + report->entries[e].choice->trace_count);
-  points += 2 * report->entries[0].choice->trace_count;
-  size_t series = SERIES_PER_ENTRY * report->entry_count + EXTRA_SERIES;
-  data->series = scree_alloc_zero(series, sizeof *data->series);
-  data->values = scree_alloc(points, sizeof *data->values);
-  if (!data->series || !data->values)
-    return scree_fail_memory(error, points * sizeof *data->values, "a figure's data");
-  return SCREE_OK;
-}
-
-static scree_panel make_panel(const scree_choice_report *report, bool criterion, panel_data *data) {
-  scree_panel panel = {.title = criterion ? "(b) criterion" : "(a) surface error",
-                       .x = {"percentage reduction  R_{p} = N^{r}/N^{m}", SCREE_SCALE_LOG,
-                             0.75 * report->options->rp_min, largest_rp(report)},
-                       .y = {criterion ? "I_{p}" : "\u03b5_{s}", SCREE_SCALE_LOG, 0, 0}};
-  add_entries(report, criterion, data);
-  if (report->entry_count == 1) add_robust_line(report->entries[0].choice, criterion, data);
-  for (size_t k = 0; k < PICKS; k++) add_picks(report, k, criterion, data);
-  fit_errors(report, criterion, &panel.y);
-  panel.series = data->series;
-  panel.series_count = data->series_count;
-  return panel;
+/* guides: room for one, which a set has. */
+static void add_panel(scree_drawing *d, const scree_choice_report *report, bool criterion,
+                      const scree_guide *guides, size_t guide_count) {
+  scree_axis x = {"percentage reduction  R_{p} = N^{r}/N^{m}", SCREE_SCALE_LOG,
+                  0.75 * report->options->rp_min, largest_rp(report)},
+             y = {criterion ? "I_{p}" : "\u03b5_{s}", SCREE_SCALE_LOG, 0, 0};
+  fit_errors(report, criterion, &y);
+  scree_panel *panel =
+      scree_drawing_panel(d, criterion ? "(b) criterion" : "(a) surface error", x, y);
+  if (panel) panel->guides = guides;
+  if (panel) panel->guide_count = guide_count;
+  add_entries(d, report, criterion);
+  if (report->entry_count == 1) add_robust_line(d, report->entries[0].choice, criterion);
+  for (size_t k = 0; k < PICKS; k++) add_picks(d, report, k, criterion);
 }
 
 /* The set's one Rp as a line, as the text names it. */
@@ -244,33 +203,14 @@ scree_status scree_choice_figure_write(const scree_choice_report *report, const 
                                        bool overwrite, scree_error *error) {
   if (report->entry_count == 0)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: no object to draw", path);
-  panel_data data[2] = {{0}, {0}};
-  scree_panel panels[2];
+  scree_drawing d = {0};
   char guide_text[64], missing[64], note[NOTE_BYTES];
   scree_guide guide;
   size_t guide_count = set_guide(report, guide_text, sizeof guide_text, &guide);
-  scree_status status = SCREE_OK;
-  for (int p = 0; p < 2 && status == SCREE_OK; p++) {
-    status = allocate(report, &data[p], error);
-    if (status != SCREE_OK) break;
-    panels[p] = make_panel(report, p == 1, &data[p]);
-    panels[p].guides = &guide;
-    panels[p].guide_count = guide_count;
-  }
-  if (status == SCREE_OK) {
-    snprintf(note, sizeof note, "scree %s, method %s, w = %g, reference area: %s%s",
-             scree_version(), scree_method_name(report->method), report->options->weight,
-             reference_text(report), missing_text(report, missing));
-    scree_figure figure = {.panels = panels,
-                           .panel_count = 2,
-                           .panel_width = PANEL_WIDTH,
-                           .panel_height = PANEL_HEIGHT,
-                           .note = note};
-    status = scree_figure_write(&figure, path, overwrite, error);
-  }
-  for (int p = 0; p < 2; p++) {
-    scree_free(data[p].series);
-    scree_free(data[p].values);
-  }
-  return status;
+  for (int p = 0; p < 2; p++) add_panel(&d, report, p == 1, &guide, guide_count);
+  snprintf(note, sizeof note, "scree %s, method %s, w = %g, reference area: %s%s", scree_version(),
+           scree_method_name(report->method), report->options->weight, reference_text(report),
+           missing_text(report, missing));
+  scree_figure figure = {.panel_width = PANEL_WIDTH, .panel_height = PANEL_HEIGHT, .note = note};
+  return scree_drawing_write(&d, figure, path, overwrite, error);
 }
