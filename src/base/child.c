@@ -167,10 +167,10 @@ static scree_status judge(const collection *c, int ended) {
                       c->what, WEXITSTATUS(ended));
   int number = WTERMSIG(ended);
   if (number == SIGXCPU || number == SIGKILL)
-    return scree_fail(c->error, SCREE_LIMIT,
-                      "%s was stopped: it took more than %d s of processor time, or the system "
-                      "killed it",
-                      c->what, c->limits->processor_s);
+    return scree_fail(
+        c->error, SCREE_LIMIT,
+        "%s was stopped: it took more than %d s of processor time, or the system killed it",
+        c->what, c->limits->processor_s);
   return scree_fail(c->error, SCREE_BAD_FILE,
                     "%s crashed (signal %d, %s; it had %zu MB): the file is damaged or means harm",
                     c->what, number, strsignal(number), c->limits->memory_bytes >> 20);

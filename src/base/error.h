@@ -17,6 +17,13 @@ static inline scree_status scree_status_after(scree_status told, scree_status st
   return status;
 }
 
+/* A call that fails ends the function with its status. For functions that hold nothing by then. */
+#define SCREE_TRY(call)                                                                            \
+  do {                                                                                             \
+    scree_status tried_ = (call);                                                                  \
+    if (tried_ != SCREE_OK) return tried_;                                                         \
+  } while (0)
+
 /* The one sentence for a failed allocation of byte_count bytes (0: not said) needed for `what`, or
  * for the C expression that they were for; at the limit of memory it names that. */
 void scree_tell_memory(scree_error *error, size_t byte_count, const char *what,

@@ -194,9 +194,9 @@ scree_status scree_file_read_judged(const char *path, size_t max_bytes, scree_fi
                                     char **bytes, size_t *byte_count, size_t *whole_count,
                                     scree_error *error) {
   ending end = {judge, 0};
-  scree_status status = read_file(path, max_bytes, &end, bytes, byte_count, error);
-  if (status == SCREE_OK) *whole_count = end.whole_count ? end.whole_count : *byte_count;
-  return status;
+  SCREE_TRY(read_file(path, max_bytes, &end, bytes, byte_count, error));
+  *whole_count = end.whole_count ? end.whole_count : *byte_count;
+  return SCREE_OK;
 }
 
 bool scree_stream_open(const char *path, scree_stream *stream) {
@@ -485,8 +485,7 @@ const char *scree_checksum_text(scree_checksum checksum, char text[SCREE_CHECKSU
 scree_status scree_text_write(const char *text, const char *path, bool overwrite,
                               scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   fputs(text, output.stream);
   return scree_output_commit(&output, error);
 }

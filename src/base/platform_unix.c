@@ -8,7 +8,6 @@
 #include <pthread.h>
 #include <signal.h>
 #include <spawn.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
@@ -159,10 +158,10 @@ unsigned long long scree_process_start(long process) {
   snprintf(path, sizeof path, "/proc/%ld/stat", process);
   if (!read_small(path, text, sizeof text)) return 0;
   const char *after = strrchr(text, ')'); /* the name may hold anything */
-  if (!after || sscanf(after + 1,
-                       " %c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %*u %*u %*d %*d %*d %*d %*d "
-                       "%*d %llu",
-                       &state, &start) != 2)
+  if (!after ||
+      sscanf(after + 1,
+             " %c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %*u %*u %*d %*d %*d %*d %*d %*d %llu",
+             &state, &start) != 2)
     return 0;
   return state == 'Z' || state == 'X' ? 0 : start;
 }

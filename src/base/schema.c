@@ -89,7 +89,7 @@ const char *scree_nearest_name(const char *word, const char *const *names, size_
   size_t least = strlen(word) / 3 + 2;
   for (size_t i = 0; i < count; i++) {
     size_t distance = edit_distance(word, names[i]);
-    if (distance >= least) continue;
+    if (distance >= least || distance >= strlen(names[i])) continue;
     least = distance;
     nearest = names[i];
   }
@@ -171,8 +171,7 @@ static scree_status read_column(const scree_reader *r, const scree_yaml *node, c
   double number;
   unit_of(f, column, unit);
   if (node->kind != SCREE_YAML_SCALAR) return fail_at(r, node, "must be one number");
-  scree_status status = read_number(r, node, unit, &number);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(read_number(r, node, unit, &number));
   if ((f->minimum != 0 || f->maximum != 0) && !(number >= f->minimum && number <= f->maximum))
     return fail_at(r, node, "%g: must be %g to %g%s%s", number, f->minimum, f->maximum,
                    *unit ? " " : "", unit);
@@ -247,8 +246,7 @@ static scree_status read_texts(const scree_reader *r, const scree_yaml *node, sc
   value->items = scree_arena_take(r->arena, value->count, sizeof *value->items);
   if (!value->items) return fail_memory(r);
   for (size_t i = 0; i < value->count; i++) {
-    scree_status status = read_text(r, one ? node : &node->items[i], &value->items[i]);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(read_text(r, one ? node : &node->items[i], &value->items[i]));
   }
   return SCREE_OK;
 }
@@ -263,8 +261,7 @@ static scree_status read_reals(const scree_reader *r, const scree_yaml *node, co
   for (size_t i = 0; i < count; i++) {
     scree_yaml item = node->items[i];
     item.key = node->key;
-    scree_status status = read_real(r, &item, f, &read[i]);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(read_real(r, &item, f, &read[i]));
   }
   memcpy(values, read, count * sizeof *values);
   return SCREE_OK;
@@ -285,8 +282,7 @@ static scree_status read_table(const scree_reader *r, const scree_yaml *node, co
     for (size_t k = 0; k < 2; k++) {
       scree_yaml item = row.items[k];
       item.key = node->key;
-      scree_status status = read_column(r, &item, f, k, &value->items[i][k]);
-      if (status != SCREE_OK) return status;
+      SCREE_TRY(read_column(r, &item, f, k, &value->items[i][k]));
     }
     if (i && !(value->items[i][0] > value->items[i - 1][0]))
       return fail_at(r, &row, "the first number of rows must rise: %g after %g", value->items[i][0],
@@ -339,8 +335,7 @@ static scree_status read_values(const scree_reader *r, const scree_yaml *node,
   for (size_t i = 0; i < value->count; i++) {
     value->names[i] = keep_text(r, node->items[i].key);
     if (!value->names[i]) return fail_memory(r);
-    scree_status status = read_text(r, &node->items[i], &value->texts[i]);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(read_text(r, &node->items[i], &value->texts[i]));
   }
   return SCREE_OK;
 }
@@ -379,8 +374,7 @@ static scree_status read_records(const scree_reader *r, const scree_yaml *node,
       snprintf(key, sizeof key, "%s.%s", node->key, node->items[i].key);
     else
       snprintf(key, sizeof key, "%s.%zu", node->key, i);
-    scree_status status = read_inner(r, &node->items[i], path_of(r, key, path), f->record, record);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(read_inner(r, &node->items[i], path_of(r, key, path), f->record, record));
     scree_place *place = record;
     place->name = named ? keep_text(r, node->items[i].key) : NULL;
     if (named && !place->name) return fail_memory(r);
@@ -461,15 +455,13 @@ scree_status scree_record_read(const scree_reader *reader, const scree_yaml *nod
                                const scree_record *kind, void *record) {
   memcpy(record, kind->defaults, kind->size);
   *(scree_place *)record = (scree_place){NULL, reader->path, node->line, node->column};
-  scree_status status = check_commas(reader, node);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(check_commas(reader, node));
   for (size_t i = 0; i < node->item_count; i++) {
     const scree_field *field = NULL;
     for (size_t k = 0; k < kind->field_count; k++)
       if (!strcmp(kind->fields[k].key, node->items[i].key)) field = &kind->fields[k];
     if (!field) return fail_unknown(reader, &node->items[i], kind);
-    status = scree_field_read(reader, &node->items[i], field, record);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(scree_field_read(reader, &node->items[i], field, record));
   }
   return kind->check ? kind->check(reader, record) : SCREE_OK;
 }

@@ -70,11 +70,10 @@ scree_status scree_seal_check(scree_codec *codec, const scree_seal *seal, const 
 scree_status scree_seal_read(const char *path, const scree_seal *seal, char **bytes,
                              scree_codec *codec, const char **name, scree_error *error) {
   size_t count;
-  scree_status status = scree_file_read(path, 0, bytes, &count, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_file_read(path, 0, bytes, &count, error));
   *codec = (scree_codec){.source = (unsigned char *)*bytes, .count = count, .loading = true};
   *name = strcmp(path, "-") != 0 ? path : "standard input";
-  status = scree_seal_check(codec, seal, *name, error);
+  scree_status status = scree_seal_check(codec, seal, *name, error);
   if (status != SCREE_OK) scree_free(*bytes);
   return status;
 }

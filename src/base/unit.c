@@ -1,6 +1,5 @@
 #include "base/unit.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

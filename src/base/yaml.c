@@ -139,9 +139,8 @@ static scree_status read_pair(reader *r, yaml_event_t *event, int depth, scree_y
   item->key_line = event->start_mark.line + 1;
   item->key_column = event->start_mark.column + 1;
   yaml_event_t value;
-  scree_status status = next_event(r, &value);
-  if (status != SCREE_OK) return status;
-  status = read_node(r, &value, depth + 1, item);
+  SCREE_TRY(next_event(r, &value));
+  scree_status status = read_node(r, &value, depth + 1, item);
   yaml_event_delete(&value);
   return status;
 }
@@ -224,9 +223,8 @@ scree_status scree_yaml_parse(const char *bytes, size_t byte_count, const char *
 scree_status scree_yaml_read(const char *path, scree_yaml *root, scree_error *error) {
   char *bytes;
   size_t byte_count;
-  scree_status status = scree_file_read(path, LARGEST_FILE, &bytes, &byte_count, error);
-  if (status != SCREE_OK) return status;
-  status = scree_yaml_parse(bytes, byte_count, path, root, error);
+  SCREE_TRY(scree_file_read(path, LARGEST_FILE, &bytes, &byte_count, error));
+  scree_status status = scree_yaml_parse(bytes, byte_count, path, root, error);
   scree_free(bytes);
   return status;
 }
@@ -335,14 +333,13 @@ static scree_status merge(scree_yaml *root, scree_yaml *over, scree_error *error
     take_node(root, over);
     return SCREE_OK;
   }
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < over->item_count; i++) {
+  for (size_t i = 0; i < over->item_count; i++) {
     scree_yaml *node = root;
     const char *key = over->items[i].key;
-    status = step_into(&node, key, strlen(key), key, error);
-    if (status == SCREE_OK) status = merge(node, &over->items[i], error);
+    SCREE_TRY(step_into(&node, key, strlen(key), key, error));
+    SCREE_TRY(merge(node, &over->items[i], error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_yaml_merge(scree_yaml *root, scree_yaml *over, scree_error *error) {

@@ -211,24 +211,23 @@ static scree_status make_basis(fitting *f, size_t quantity, scree_error *error) 
 static scree_status lay_out(fitting *f, scree_error *error) {
   const scree_calibration *c = f->c;
   scree_calibration_model *m = f->m;
-  scree_status status = SCREE_OK;
-  for (size_t q = 0; status == SCREE_OK && q < c->quantity_count; q++) {
+  for (size_t q = 0; q < c->quantity_count; q++) {
     const scree_quantity *quantity = &c->quantities[q];
     m->first[q] = m->model.count;
     m->count[q] = 1;
     if (quantity->x) {
-      status = make_basis(f, q, error);
+      SCREE_TRY(make_basis(f, q, error));
       m->count[q] = m->bases[q].component_count;
     }
-    for (size_t k = 0; status == SCREE_OK && k < m->count[q]; k++) {
+    for (size_t k = 0; k < m->count[q]; k++) {
       scree_response *r = &m->model.items[m->model.count];
       describe(quantity, r);
       if (quantity->x) r->value = scree_curve_score(&m->bases[q], k, quantity->y);
-      status = take_answers(f, q, k, &f->y[m->model.count], error);
+      SCREE_TRY(take_answers(f, q, k, &f->y[m->model.count], error));
       m->model.count++;
     }
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* Names the quantity that cannot be fitted. */

@@ -302,24 +302,21 @@ static scree_status read_experiments(const reader *r) {
   bool anywhere[SCREE_MOST_PARAMETERS] = {false};
   c->experiments = scree_arena_take(&c->arena, c->experiment_count, sizeof *c->experiments);
   if (!c->experiments) return fail_memory(r);
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < c->experiment_count; i++) {
+  for (size_t i = 0; i < c->experiment_count; i++) {
     scree_experiment_plan *e = &c->experiments[i];
     *e = (scree_experiment_plan){.plan = ITEM(c->plan.experiments, scree_plan_experiment, i)};
-    status = check_experiment(r, e->plan);
-    if (status == SCREE_OK && !is_command(e->plan) &&
-        !(e->scene_path = full_path(r, e->plan->scene)))
-      status = fail_memory(r);
+    SCREE_TRY(check_experiment(r, e->plan));
+    if (!is_command(e->plan) && !(e->scene_path = full_path(r, e->plan->scene)))
+      return fail_memory(r);
   }
-  for (size_t i = 0; status == SCREE_OK && i < c->parameter_count; i++)
-    status = check_parameter(r, &c->parameters[i]);
-  if (status == SCREE_OK) status = find_active(r, why, anywhere);
-  for (size_t p = 0; status == SCREE_OK && p < c->parameter_count; p++)
+  for (size_t i = 0; i < c->parameter_count; i++) SCREE_TRY(check_parameter(r, &c->parameters[i]));
+  SCREE_TRY(find_active(r, why, anywhere));
+  for (size_t p = 0; p < c->parameter_count; p++)
     if (!anywhere[p])
-      status = scree_fail_place(&r->in, &c->parameters[p].place,
-                                why[p].message[0] ? "%s" : "no experiment has such a parameter%s",
-                                why[p].message);
-  return status;
+      return scree_fail_place(&r->in, &c->parameters[p].place,
+                              why[p].message[0] ? "%s" : "no experiment has such a parameter%s",
+                              why[p].message);
+  return SCREE_OK;
 }
 
 /* ---- quantities ---- */
@@ -329,9 +326,8 @@ static scree_status read_repeats(const reader *r, scree_quantity *q) {
   scree_place place = {NULL, q->plan->place.path, list->line, list->column};
   double sum = 0, squares = 0;
   if (list->kind != SCREE_YAML_SEQUENCE || list->item_count < 2)
-    return scree_fail_place(&r->in, &place,
-                            "measured: must be a list of two numbers or more; a "
-                            "single one is a value");
+    return scree_fail_place(
+        &r->in, &place, "measured: must be a list of two numbers or more; a single one is a value");
   for (size_t i = 0; i < list->item_count; i++) {
     double number;
     const scree_yaml *item = &list->items[i];
@@ -409,8 +405,7 @@ static scree_status check_answer(const reader *r, const scree_quantity *q) {
   const char *names[MOST_NAMES];
   size_t count = 0;
   bool found = false;
-  scree_status status = read_scene(r, e, &file);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(read_scene(r, e, &file));
   while (!found && count < MOST_NAMES &&
          scree_scene_file_column(file, count, name, NULL, NULL) == SCREE_OK && *name) {
     found = !strcmp(name, p->answer);
@@ -461,13 +456,12 @@ static scree_status add_answers(const reader *r, scree_quantity *q) {
 
 static scree_status read_quantity(const reader *r, scree_quantity *q) {
   if (!q->plan->answer) return scree_fail_place(&r->in, &q->plan->place, "needs its answer");
-  scree_status status = find_experiment(r, q);
-  if (status == SCREE_OK) status = read_measured(r, q);
-  if (status == SCREE_OK) status = check_answer(r, q);
-  if (status == SCREE_OK && q->kind == SCREE_QUANTITY_LIMIT && isnan(q->plan->at_most) &&
-      isnan(q->plan->at_least))
-    status = scree_fail_place(&r->in, &q->plan->place, "needs at_most or at_least");
-  return status == SCREE_OK ? add_answers(r, q) : status;
+  SCREE_TRY(find_experiment(r, q));
+  SCREE_TRY(read_measured(r, q));
+  SCREE_TRY(check_answer(r, q));
+  if (q->kind == SCREE_QUANTITY_LIMIT && isnan(q->plan->at_most) && isnan(q->plan->at_least))
+    return scree_fail_place(&r->in, &q->plan->place, "needs at_most or at_least");
+  return add_answers(r, q);
 }
 
 static void list_quantities(scree_calibration *c, scree_quantity_kind kind,
@@ -491,22 +485,19 @@ static scree_status read_quantities(const reader *r) {
   list_quantities(c, SCREE_QUANTITY_TARGET, &p->targets);
   list_quantities(c, SCREE_QUANTITY_PREDICTION, &p->predict);
   bool measured = false, used[64] = {false};
-  scree_status status = SCREE_OK;
   size_t responses = 0;
-  for (size_t i = 0; status == SCREE_OK && i < c->quantity_count; i++) {
+  for (size_t i = 0; i < c->quantity_count; i++) {
     scree_quantity *q = &c->quantities[i];
-    status = read_quantity(r, q);
+    SCREE_TRY(read_quantity(r, q));
     measured = measured || (q->measured && q->kind == SCREE_QUANTITY_TARGET);
     used[q->experiment] = true;
     responses += q->x ? SCREE_MOST_COMPONENTS : 1;
   }
-  if (status != SCREE_OK) return status;
   if (!sought && !measured)
     return scree_fail_place(&r->in, &p->place, "needs a target with a value, measured or curve");
   if (responses > SCREE_MOST_RESPONSES)
     return scree_fail_place(&r->in, &p->place,
-                            "too many targets: %zu, a curve counting %d times, "
-                            "at most %d",
+                            "too many targets: %zu, a curve counting %d times, at most %d",
                             responses, SCREE_MOST_COMPONENTS, SCREE_MOST_RESPONSES);
   for (size_t e = 0; e < c->experiment_count; e++)
     if (!used[e])
@@ -523,8 +514,7 @@ static scree_status check_whole(const reader *r) {
     return scree_fail_place(&r->in, &p->place, "minimise or maximise, not both");
   if (search && (p->targets.count || p->predict.count))
     return scree_fail_place(&r->in, &p->place,
-                            "targets and predict are of a calibration, which "
-                            "has no %s",
+                            "targets and predict are of a calibration, which has no %s",
                             p->minimise ? "minimise" : "maximise");
   if (!search && p->limits.count)
     return scree_fail_place(&r->in, &p->place, "limits are of minimise or maximise");
@@ -562,22 +552,20 @@ static scree_status check_budget(const reader *r) {
 static scree_status read_all(scree_calibration *c, scree_error *error) {
   static const scree_plan_budget no_budget = {.runs = 100, .time = NAN};
   reader r = {c, {c->path, &c->arena, error, ""}};
-  scree_status status = scree_yaml_parse(c->text, c->text_size, c->path, &c->root, error);
-  if (status == SCREE_OK && c->root.kind != SCREE_YAML_MAPPING)
+  SCREE_TRY(scree_yaml_parse(c->text, c->text_size, c->path, &c->root, error));
+  if (c->root.kind != SCREE_YAML_MAPPING)
     return scree_fail(error, SCREE_BAD_FILE, "%s: a calibration is `key: value` lines", c->path);
-  if (status == SCREE_OK)
-    status = scree_record_read(&r.in, &c->root, &calibration_record, &c->plan);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_record_read(&r.in, &c->root, &calibration_record, &c->plan));
   if (!c->plan.budget && (c->plan.budget = scree_arena_take(&c->arena, 1, sizeof no_budget)))
     *c->plan.budget = no_budget;
   if (!c->plan.budget) return fail_memory(&r);
   c->experiment_count = c->plan.experiments.count;
   c->parameter_count = c->plan.parameters.count;
   c->parameters = c->plan.parameters.items;
-  status = check_whole(&r);
-  if (status == SCREE_OK) status = read_experiments(&r);
-  if (status == SCREE_OK) status = read_quantities(&r);
-  return status == SCREE_OK ? check_budget(&r) : status;
+  SCREE_TRY(check_whole(&r));
+  SCREE_TRY(read_experiments(&r));
+  SCREE_TRY(read_quantities(&r));
+  return check_budget(&r);
 }
 
 scree_status scree_calibration_read(const char *path, scree_calibration **calibration,
@@ -644,9 +632,8 @@ scree_status scree_quantity_read_curve(scree_calibration *c, scree_quantity *q, 
                                        scree_error *error) {
   bool outline = !strcmp(q->plan->answer, "outline");
   scree_curve_file read;
-  scree_status status = scree_curve_file_read(path, &read, error);
-  if (status != SCREE_OK) return status;
-  status = scree_curve_file_convert(&read, 0, outline ? "m" : "s", 1, path, error);
+  SCREE_TRY(scree_curve_file_read(path, &read, error));
+  scree_status status = scree_curve_file_convert(&read, 0, outline ? "m" : "s", 1, path, error);
   if (status == SCREE_OK && outline)
     status = scree_curve_file_convert(&read, 1, "m", 1, path, error);
   double *x = scree_arena_take(&c->arena, read.count, sizeof *x);

@@ -433,15 +433,15 @@ static scree_status expect(analysis *a, size_t quantity, size_t repeats, const d
   size_t d = a->c->parameter_count, chosen[SCREE_MOST_COMPONENTS];
   double sd[SCREE_MOST_PARAMETERS];
   for (size_t k = 0; k < a->model.count[quantity]; k++) chosen[k] = a->model.first[quantity] + k;
-  scree_status status = scree_model_expect(&a->model.model, thinned, count, chosen,
-                                           a->model.count[quantity], (double)repeats, sd, a->error);
+  SCREE_TRY(scree_model_expect(&a->model.model, thinned, count, chosen, a->model.count[quantity],
+                               (double)repeats, sd, a->error));
   out->repeat_count = repeats;
   out->identified = 0;
-  for (size_t k = 0; status == SCREE_OK && k < d; k++) {
+  for (size_t k = 0; k < d; k++) {
     out->narrowed[k] = now[k] > 0 ? a->r->parameters[k].narrowed * sd[k] / now[k] : 0;
     out->identified += out->narrowed[k] <= identified_share;
   }
-  return status;
+  return SCREE_OK;
 }
 
 static double mean_of(const double *values, size_t count) {
@@ -509,9 +509,8 @@ static scree_status look_back(analysis *a, size_t rounds, double *row) {
   size_t d = a->c->parameter_count, count;
   scree_calibration_model model;
   double *samples = NULL, *scratch = NULL;
-  scree_status status = scree_calibration_fit(a->c, &a->gathered, rounds, &model, a->error);
-  if (status != SCREE_OK) return status;
-  status = scree_calibration_sample(a->c, &model.model, 0, &samples, &count, a->error);
+  SCREE_TRY(scree_calibration_fit(a->c, &a->gathered, rounds, &model, a->error));
+  scree_status status = scree_calibration_sample(a->c, &model.model, 0, &samples, &count, a->error);
   if (status == SCREE_OK && !(scratch = scree_alloc(count, sizeof *scratch)))
     status = fail_memory(a);
   row[0] = 0;
@@ -576,24 +575,21 @@ static scree_status start(analysis *a, scree_calibration *c) {
 }
 
 static scree_status calibrate(analysis *a) {
-  scree_status status = scree_calibration_sample(a->c, &a->model.model, 1, &a->samples,
-                                                 &a->r->sample_count, a->error);
-  if (status == SCREE_OK && !(a->column = scree_alloc(a->r->sample_count, sizeof *a->column)))
-    status = fail_memory(a);
-  if (status == SCREE_OK) a->unanswered = find_unanswered(a);
-  if (status == SCREE_OK) status = describe_parameters(a);
-  if (status == SCREE_OK) status = find_trades(a);
-  if (status == SCREE_OK) status = describe_answers(a);
-  if (status == SCREE_OK) status = advise_all(a);
-  return status == SCREE_OK ? describe_history(a) : status;
+  SCREE_TRY(scree_calibration_sample(a->c, &a->model.model, 1, &a->samples, &a->r->sample_count,
+                                     a->error));
+  if (!(a->column = scree_alloc(a->r->sample_count, sizeof *a->column))) return fail_memory(a);
+  a->unanswered = find_unanswered(a);
+  SCREE_TRY(describe_parameters(a));
+  SCREE_TRY(find_trades(a));
+  SCREE_TRY(describe_answers(a));
+  SCREE_TRY(advise_all(a));
+  return describe_history(a);
 }
 
 static scree_status search(analysis *a) {
-  scree_status status = describe_parameters(a);
-  if (status == SCREE_OK) status = describe_answers(a);
-  return status == SCREE_OK
-             ? scree_search_describe(a->c, &a->model, &a->gathered, &a->arena, a->r, a->error)
-             : status;
+  SCREE_TRY(describe_parameters(a));
+  SCREE_TRY(describe_answers(a));
+  return scree_search_describe(a->c, &a->model, &a->gathered, &a->arena, a->r, a->error);
 }
 
 scree_status scree_calibration_analyse(scree_calibration *calibration,

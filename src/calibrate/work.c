@@ -7,7 +7,6 @@
 #include "study/design.h"
 #include "study/lease.h"
 
-#include <math.h>
 #include <string.h>
 
 /* More runs do not narrow a posterior whose width is that of the measurements: it ends when this
@@ -85,8 +84,7 @@ static scree_status ask(const scree_calibration *c, const scree_calibration_mode
                         scree_error *error) {
   size_t d = c->parameter_count, sample_count;
   double *samples;
-  scree_status status = scree_calibration_sample(c, &m->model, 0, &samples, &sample_count, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_calibration_sample(c, &m->model, 0, &samples, &sample_count, error));
   if (sample_count > REFERENCE) { /* those of the last steps, which have forgotten the start */
     memmove(samples, samples + (sample_count - REFERENCE) * d, REFERENCE * d * sizeof *samples);
     sample_count = REFERENCE;
@@ -97,7 +95,7 @@ static scree_status ask(const scree_calibration *c, const scree_calibration_mode
                            .places = (const double *const *)g->x,
                            .place_counts = g->run_counts,
                            .costs = g->costs};
-  status = scree_model_next(&m->model, &q, count, picks, left, error);
+  scree_status status = scree_model_next(&m->model, &q, count, picks, left, error);
   scree_free(samples);
   return status;
 }

@@ -1,5 +1,6 @@
 #include "cli/args.h"
 #include "base/error.h"
+#include "base/number.h"
 #include "base/platform.h"
 #include "cli/options.h"
 #include "cli/terminal.h"
@@ -52,16 +53,10 @@ const char *cli_unit_name(double metres) {
   return "?";
 }
 
-/* strtod for decimal numbers alone: *end is text where it begins with blanks, is hexadecimal, or
- * spells out infinity. */
-static double parse_decimal(const char *text, const char **end) {
-  const char *digits = text + (*text == '+' || *text == '-');
-  char *behind;
-  double value = strtod(text, &behind);
-  bool decimal = *digits == '.' || (*digits >= '0' && *digits <= '9');
-  bool hexadecimal = digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X');
-  *end = decimal && !hexadecimal ? behind : text;
-  return value;
+/* The number that the text begins with, and what is behind; NULL: it begins with none. */
+static const char *parse_decimal(const char *text, double *value) {
+  const char *end = scree_number_parse(text, text + strlen(text), value);
+  return end && isfinite(*value) ? end : NULL;
 }
 
 const char *cli_plural(size_t count) {
@@ -69,15 +64,12 @@ const char *cli_plural(size_t count) {
 }
 
 bool cli_real_from_text(const char *text, double *value) {
-  const char *end;
-  *value = parse_decimal(text, &end);
-  return end != text && *end == 0 && isfinite(*value);
+  return scree_number_read(text, value);
 }
 
 bool cli_fraction_from_text(const char *text, double *value) {
-  const char *end;
-  *value = parse_decimal(text, &end);
-  if (end == text || !isfinite(*value)) return false;
+  const char *end = parse_decimal(text, value);
+  if (!end) return false;
   if (*end == '%') *value /= 100;
   return end[*end == '%'] == 0;
 }
@@ -215,10 +207,10 @@ int cli_parse_size(const cli_verb *verb, const char *text, size_t *width, size_t
 
 static int parse_bytes(const cli_verb *verb, const cli_option *option, const char *text,
                        void *value) {
-  const char *end;
-  double parsed = parse_decimal(text, &end);
-  const char *suffixes = "KMG", *suffix = *end ? strchr(suffixes, *end) : NULL;
-  if (end == text || !(parsed >= 0) || (*end && (!suffix || end[1])))
+  double parsed;
+  const char *end = parse_decimal(text, &parsed);
+  const char *suffixes = "KMG", *suffix = end && *end ? strchr(suffixes, *end) : NULL;
+  if (!end || !(parsed >= 0) || (*end && (!suffix || end[1])))
     return cli_misuse(verb, "--%s %s: not a size such as 500M or 4G", option->name, text);
   for (const char *s = suffixes; suffix && s <= suffix; s++) parsed *= 1024;
   if (parsed > 1e18) return cli_misuse(verb, "--%s %s: too large", option->name, text);
@@ -227,9 +219,9 @@ static int parse_bytes(const cli_verb *verb, const cli_option *option, const cha
 }
 
 bool cli_length_from_text(const char *text, double *metres) {
-  const char *end;
-  double number = parse_decimal(text, &end), unit = 1;
-  if (end == text || !isfinite(number)) return false;
+  double number, unit = 1;
+  const char *end = parse_decimal(text, &number);
+  if (!end) return false;
   if (*end && !cli_unit_from_text(end, &unit)) return false;
   *metres = number * unit;
   return true;
@@ -238,10 +230,10 @@ bool cli_length_from_text(const char *text, double *metres) {
 static int parse_length(const cli_verb *verb, const cli_option *option, const char *text,
                         double *metres) {
   if (!cli_length_from_text(text, metres))
-    return cli_misuse(verb,
-                      "--%s %s: not a length such as 0.27mm (m, cm, mm, um, km, inch, ft; without "
-                      "a unit, m)%s",
-                      option->name, text, cli_comma_hint(text));
+    return cli_misuse(
+        verb,
+        "--%s %s: not a length such as 0.27mm (m, cm, mm, um, km, inch, ft; without a unit, m)%s",
+        option->name, text, cli_comma_hint(text));
   return in_range(option, *metres) ? 0 : out_of_range(verb, option, text);
 }
 
@@ -345,8 +337,6 @@ typedef struct found_option {
   void *base;
 } found_option;
 
-enum { MOST_OPTIONS = 128 };
-
 typedef struct parser {
   const cli_verb *verb;
   void *options;
@@ -354,8 +344,8 @@ typedef struct parser {
   int word_count;
   char **words;
   int next;
-  bool given[MOST_OPTIONS];        /* of the verb's */
-  const char *texts[MOST_OPTIONS]; /* what stood behind them */
+  bool given[CLI_MOST_OPTIONS];        /* of the verb's */
+  const char *texts[CLI_MOST_OPTIONS]; /* what stood behind them */
   const char **inputs;
   size_t input_count;
 } parser;
@@ -374,22 +364,22 @@ static found_option find_option(const parser *p, const char *name, size_t length
 
 static size_t index_of(const parser *p, const char *name, size_t length) {
   found_option found = find_option(p, name, length, 0);
-  return found.base == p->options ? (size_t)(found.option - p->verb->options) : MOST_OPTIONS;
+  return found.base == p->options ? (size_t)(found.option - p->verb->options) : CLI_MOST_OPTIONS;
 }
 
 static bool is_given(const parser *p, const char *name, size_t length) {
   size_t index = index_of(p, name, length);
-  return index < MOST_OPTIONS && p->given[index];
+  return index < CLI_MOST_OPTIONS && p->given[index];
 }
 
 static void mark_given(parser *p, found_option found) {
   size_t index = (size_t)(found.option - p->verb->options);
-  if (found.base == p->options && index < MOST_OPTIONS) p->given[index] = true;
+  if (found.base == p->options && index < CLI_MOST_OPTIONS) p->given[index] = true;
 }
 
 static int take_value(parser *p, found_option found, const char *text) {
   size_t index = (size_t)(found.option - p->verb->options);
-  if (found.base == p->options && index < MOST_OPTIONS) p->texts[index] = text;
+  if (found.base == p->options && index < CLI_MOST_OPTIONS) p->texts[index] = text;
   return store(p->verb, found.option, text, found.base);
 }
 
@@ -500,7 +490,7 @@ static int check_input_count(const cli_verb *verb, const char *const *inputs, si
 
 /* Names what is given and cannot be meant, on stderr. */
 static void remark_values(const parser *p) {
-  for (size_t i = 0; i < p->verb->option_count && i < MOST_OPTIONS; i++) {
+  for (size_t i = 0; i < p->verb->option_count && i < CLI_MOST_OPTIONS; i++) {
     const cli_option *option = &p->verb->options[i];
     const cli_meaning *meaning = cli_find_meaning(option->name);
     const void *value = (const char *)p->options + option->offset;
@@ -520,17 +510,17 @@ static void remark_values(const parser *p) {
 static void remark_lengths(const parser *p) {
   static const double far_apart = 100;
   size_t unit_index = index_of(p, "unit", strlen("unit"));
-  if (unit_index == MOST_OPTIONS || p->verb->options[unit_index].kind != CLI_UNIT) return;
+  if (unit_index == CLI_MOST_OPTIONS || p->verb->options[unit_index].kind != CLI_UNIT) return;
   double number,
       unit = *(const double *)((const char *)p->options + p->verb->options[unit_index].offset);
   if (unit < far_apart && unit * far_apart > 1) return;
-  for (size_t i = 0; i < p->verb->option_count && i < MOST_OPTIONS; i++) {
+  for (size_t i = 0; i < p->verb->option_count && i < CLI_MOST_OPTIONS; i++) {
     const cli_option *option = &p->verb->options[i];
     if ((option->kind != CLI_LENGTH && option->kind != CLI_LENGTH_TEXT) || !p->texts[i]) continue;
     if (!cli_real_from_text(p->texts[i], &number) || number == 0) continue;
     fprintf(stderr,
-            "scree: --%s %s is in m, as lengths without a unit are, and the files are in %s: "
-            "write %s%s or %sm\n",
+            "scree: --%s %s is in m, as lengths without a unit are, and the files are in %s: write "
+            "%s%s or %sm\n",
             option->name, p->texts[i], cli_unit_name(unit), p->texts[i], cli_unit_name(unit),
             p->texts[i]);
   }

@@ -1,7 +1,7 @@
 /* One table of options per verb drives parsing, help, the man page and shell completion. */
 #pragma once
 
-#include "base/platform.h"
+#include "base/error.h"
 #include "scree.h"
 
 typedef enum cli_kind {
@@ -62,7 +62,7 @@ typedef struct cli_verb {
 #define CLI_OPTIONS(table, usual)                                                                  \
   .options = table, .option_count = sizeof table / sizeof *table, .defaults = &usual,              \
   .options_size = sizeof usual
-enum { CLI_OPTIONS_BYTES = 4096 };
+enum { CLI_OPTIONS_BYTES = 4096, CLI_MOST_OPTIONS = 128 };
 
 /* What a verb is called with. */
 typedef struct cli_call {

@@ -64,19 +64,17 @@ typedef scree_status visit_file(const choose_run *run, const char *before, const
 static scree_status check_file(const choose_run *run, const char *before, const char *name,
                                const char *after, scree_error *error) {
   char path[CHOOSE_PATH_BYTES];
-  scree_status status = join_in(run->arguments->output, before, name, after, path, error);
-  return status == SCREE_OK ? cli_check_output(run->call, path, run->arguments->overwrite, error)
-                            : status;
+  SCREE_TRY(join_in(run->arguments->output, before, name, after, path, error));
+  return cli_check_output(run->call, path, run->arguments->overwrite, error);
 }
 
 static scree_status move_file(const choose_run *run, const char *before, const char *name,
                               const char *after, scree_error *error) {
   char from[CHOOSE_PATH_BYTES], to[CHOOSE_PATH_BYTES];
-  scree_status status = join(run, before, name, after, from, error);
-  if (status == SCREE_OK) status = join_in(run->arguments->output, before, name, after, to, error);
-  if (status == SCREE_OK && !scree_path_rename(from, to))
-    status = cli_refuse(error, SCREE_IO, to, strerror(errno));
-  return status;
+  SCREE_TRY(join(run, before, name, after, from, error));
+  SCREE_TRY(join_in(run->arguments->output, before, name, after, to, error));
+  if (!scree_path_rename(from, to)) return cli_refuse(error, SCREE_IO, to, strerror(errno));
+  return SCREE_OK;
 }
 
 /* A build without pictures leaves out those that come first. */
@@ -102,10 +100,8 @@ static scree_status visit_parts(const choose_run *run, visit_file *visit, scree_
 }
 
 static scree_status visit_answer(const choose_run *run, visit_file *visit, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (int i = 0; i < SINGLE_FILE_COUNT && status == SCREE_OK; i++)
-    status = visit(run, "", SINGLE_FILES[i], "", error);
-  return status;
+  for (int i = 0; i < SINGLE_FILE_COUNT; i++) SCREE_TRY(visit(run, "", SINGLE_FILES[i], "", error));
+  return SCREE_OK;
 }
 
 /* ---- what an earlier choice left ---- */
@@ -129,16 +125,14 @@ static bool has_object(const choose_run *run, const char *name) {
 static scree_status visit_stale(const choose_run *run, const char *name, visit_file *visit,
                                 scree_error *error) {
   char path[CHOOSE_PATH_BYTES];
-  scree_status status = SCREE_OK;
   bool stays = has_object(run, name);
-  for (int k = 0; k < OBJECT_FILE_COUNT && status == SCREE_OK; k++) {
+  for (int k = 0; k < OBJECT_FILE_COUNT; k++) {
     const char *before = OBJECT_FILES[k].before, *after = OBJECT_FILES[k].after;
     if (stays && (run->count > 1 || !in_set(before))) continue;
-    status = join_in(run->arguments->output, before, name, after, path, error);
-    if (status == SCREE_OK && begins_with(path, OBJECT_FILES[k].begin))
-      status = visit(run, before, name, after, error);
+    SCREE_TRY(join_in(run->arguments->output, before, name, after, path, error));
+    if (begins_with(path, OBJECT_FILES[k].begin)) SCREE_TRY(visit(run, before, name, after, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* Objects of earlier choices are known by their levels, which nothing else writes. */
@@ -162,48 +156,44 @@ static scree_status visit_earlier(const choose_run *run, visit_file *visit, scre
 static scree_status remove_file(const choose_run *run, const char *before, const char *name,
                                 const char *after, scree_error *error) {
   char path[CHOOSE_PATH_BYTES];
-  scree_status status = join_in(run->arguments->output, before, name, after, path, error);
-  if (status == SCREE_OK && !scree_path_remove(path))
-    return cli_refuse(error, SCREE_IO, path, strerror(errno));
-  if (status == SCREE_OK && in_set(before)) {
-    status = join_in(run->arguments->output, before, "", "", path, error);
-    if (status == SCREE_OK) (void)scree_folder_remove(path); /* where it was the last */
+  SCREE_TRY(join_in(run->arguments->output, before, name, after, path, error));
+  if (!scree_path_remove(path)) return cli_refuse(error, SCREE_IO, path, strerror(errno));
+  if (in_set(before)) {
+    SCREE_TRY(join_in(run->arguments->output, before, "", "", path, error));
+    (void)scree_folder_remove(path); /* where it was the last */
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status check_files(const choose_run *run, scree_error *error) {
-  scree_status status = visit_parts(run, check_file, error);
-  if (status == SCREE_OK) status = visit_answer(run, check_file, error);
-  if (status == SCREE_OK && run->arguments->overwrite)
-    status = visit_earlier(run, check_file, error);
-  return status;
+  SCREE_TRY(visit_parts(run, check_file, error));
+  SCREE_TRY(visit_answer(run, check_file, error));
+  if (run->arguments->overwrite) SCREE_TRY(visit_earlier(run, check_file, error));
+  return SCREE_OK;
 }
 
 static scree_status move_files(const choose_run *run, scree_error *error) {
-  scree_status status = visit_parts(run, move_file, error);
-  if (status == SCREE_OK && run->arguments->overwrite)
-    status = visit_earlier(run, remove_file, error);
-  return status == SCREE_OK ? visit_answer(run, move_file, error) : status;
+  SCREE_TRY(visit_parts(run, move_file, error));
+  if (run->arguments->overwrite) SCREE_TRY(visit_earlier(run, remove_file, error));
+  return visit_answer(run, move_file, error);
 }
 
 static scree_status make_subfolders(const choose_run *run, const char *folder, scree_error *error) {
   char path[CHOOSE_PATH_BYTES];
-  scree_status status = SCREE_OK;
-  for (int i = 0; i < (run->count > 1 ? 2 : 1) && status == SCREE_OK; i++) {
-    status = join_in(folder, SUBFOLDERS[i], "", "", path, error);
-    if (status == SCREE_OK) status = cli_make_folder(path, error);
+  for (int i = 0; i < (run->count > 1 ? 2 : 1); i++) {
+    SCREE_TRY(join_in(folder, SUBFOLDERS[i], "", "", path, error));
+    SCREE_TRY(cli_make_folder(path, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 scree_status choose_prepare_folder(choose_run *run, scree_error *error) {
-  scree_status status = cli_stage_open(run->arguments->output, &run->stage, error);
-  if (status == SCREE_OK && run->stage.existed) {
-    status = make_subfolders(run, run->arguments->output, error);
-    if (status == SCREE_OK) status = check_files(run, error);
+  SCREE_TRY(cli_stage_open(run->arguments->output, &run->stage, error));
+  if (run->stage.existed) {
+    SCREE_TRY(make_subfolders(run, run->arguments->output, error));
+    SCREE_TRY(check_files(run, error));
   }
-  return status == SCREE_OK ? make_subfolders(run, run->stage.path, error) : status;
+  return make_subfolders(run, run->stage.path, error);
 }
 
 /* A file that came into the folder meanwhile is spared, unless it may be overwritten. */
@@ -214,8 +204,8 @@ static scree_status put_in_place(choose_run *run, scree_error *error) {
   if (run->count == 1 && join(run, "set", "", "", empty, error) == SCREE_OK)
     (void)scree_folder_remove(empty); /* the others failed */
   if (!run->stage.existed) return cli_stage_rename(&run->stage, error);
-  scree_status status = check_files(run, error);
-  return status == SCREE_OK ? move_files(run, error) : status;
+  SCREE_TRY(check_files(run, error));
+  return move_files(run, error);
 }
 
 /* ---- the files ---- */
@@ -273,10 +263,8 @@ scree_status choose_write_meshes(const choose_run *run, size_t index, const scre
 static scree_status write_text(const choose_run *run, scree_error *error) {
   char path[CHOOSE_PATH_BYTES];
   scree_output output;
-  scree_status status = join(run, "", "choice.txt", "", path, error);
-  if (status != SCREE_OK) return status;
-  status = scree_output_open(path, run->arguments->overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(join(run, "", "choice.txt", "", path, error));
+  SCREE_TRY(scree_output_open(path, run->arguments->overwrite, &output, error));
   choose_print(output.stream, run);
   return scree_output_commit(&output, error);
 }
@@ -285,35 +273,29 @@ static scree_status write_text(const choose_run *run, scree_error *error) {
 static scree_status write_page(const choose_run *run, scree_error *error) {
   char path[CHOOSE_PATH_BYTES];
   bool overwrite = run->arguments->overwrite;
-  scree_status status = write_text(run, error);
-  if (status == SCREE_OK) status = join(run, "", "provenance.json", "", path, error);
-  if (status == SCREE_OK)
-    status = scree_provenance_write(&run->start, run->call->command_line, path, overwrite, error);
-  if (status == SCREE_OK) status = join(run, "", "report.html", "", path, error);
-  if (status == SCREE_OK)
-    status =
-        scree_page_write_named(run->stage.path, run->arguments->output, path, overwrite, error);
-  return status;
+  SCREE_TRY(write_text(run, error));
+  SCREE_TRY(join(run, "", "provenance.json", "", path, error));
+  SCREE_TRY(scree_provenance_write(&run->start, run->call->command_line, path, overwrite, error));
+  SCREE_TRY(join(run, "", "report.html", "", path, error));
+  return scree_page_write_named(run->stage.path, run->arguments->output, path, overwrite, error);
 }
 
 scree_status choose_write_reports(choose_run *run, const scree_choice_report *report,
                                   scree_error *error) {
   bool overwrite = run->arguments->overwrite;
   char path[CHOOSE_PATH_BYTES];
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < run->count && status == SCREE_OK; i++) {
-    status = join(run, "", run->objects[i].name, ".curve.csv", path, error);
-    if (status == SCREE_OK)
-      status = scree_choice_curve_csv_write(&report->entries[i], path, overwrite, error);
+  for (size_t i = 0; i < run->count; i++) {
+    SCREE_TRY(join(run, "", run->objects[i].name, ".curve.csv", path, error));
+    SCREE_TRY(scree_choice_curve_csv_write(&report->entries[i], path, overwrite, error));
   }
-  for (int i = first_figure(); i < FIGURE_COUNT && status == SCREE_OK; i++) {
-    status = join(run, "", FIGURES[i], "", path, error);
-    if (status == SCREE_OK) status = scree_choice_figure_write(report, path, overwrite, error);
+  for (int i = first_figure(); i < FIGURE_COUNT; i++) {
+    SCREE_TRY(join(run, "", FIGURES[i], "", path, error));
+    SCREE_TRY(scree_choice_figure_write(report, path, overwrite, error));
   }
-  if (status == SCREE_OK) status = join(run, "", "choice.csv", "", path, error);
-  if (status == SCREE_OK) status = scree_choice_csv_write(report, path, overwrite, error);
-  if (status == SCREE_OK) status = join(run, "", "choice.json", "", path, error);
-  if (status == SCREE_OK) status = scree_choice_json_write(report, path, overwrite, error);
-  if (status == SCREE_OK) status = write_page(run, error);
-  return status == SCREE_OK ? put_in_place(run, error) : status;
+  SCREE_TRY(join(run, "", "choice.csv", "", path, error));
+  SCREE_TRY(scree_choice_csv_write(report, path, overwrite, error));
+  SCREE_TRY(join(run, "", "choice.json", "", path, error));
+  SCREE_TRY(scree_choice_json_write(report, path, overwrite, error));
+  SCREE_TRY(write_page(run, error));
+  return put_in_place(run, error);
 }

@@ -6,7 +6,6 @@
 #include "report/provenance.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static const char *const figures[] = {"clump.png", "clump.svg", "clump.pdf"};
 static const char *const others[] = {"clump.json", "clump.csv", "clump.txt", "provenance.json",
@@ -36,20 +35,18 @@ static scree_status check(const clump_run *run, const char *name, const char *en
                           scree_error *error) {
   const clump_arguments *a = run->call->options;
   char path[CLUMP_PATH_BYTES];
-  scree_status status = join(run, name, ending, path, error);
-  return status == SCREE_OK ? cli_check_output(run->call, path, a->overwrite, error) : status;
+  SCREE_TRY(join(run, name, ending, path, error));
+  return cli_check_output(run->call, path, a->overwrite, error);
 }
 
 scree_status clump_check_files(const clump_run *run, scree_error *error) {
   const clump_arguments *a = run->call->options;
-  scree_status status = cli_make_folder(a->output, error);
-  for (size_t i = 0; i < run->count && status == SCREE_OK; i++)
-    status = check(run, run->objects[i].name, ".csv", error);
-  for (int i = 0; i < figure_count() && status == SCREE_OK; i++)
-    status = check(run, figures[i], "", error);
-  for (int i = 0; i < OTHER_COUNT && status == SCREE_OK; i++)
-    status = check(run, others[i], "", error);
-  return status;
+  SCREE_TRY(cli_make_folder(a->output, error));
+  for (size_t i = 0; i < run->count; i++)
+    SCREE_TRY(check(run, run->objects[i].name, ".csv", error));
+  for (int i = 0; i < figure_count(); i++) SCREE_TRY(check(run, figures[i], "", error));
+  for (int i = 0; i < OTHER_COUNT; i++) SCREE_TRY(check(run, others[i], "", error));
+  return SCREE_OK;
 }
 
 scree_status clump_report_make(const clump_run *run, scree_clump_report *report,
@@ -86,10 +83,8 @@ static scree_status write_text(const clump_run *run, scree_error *error) {
   const clump_arguments *a = run->call->options;
   char path[CLUMP_PATH_BYTES];
   scree_output output;
-  scree_status status = join(run, "clump.txt", "", path, error);
-  if (status != SCREE_OK) return status;
-  status = scree_output_open(path, a->overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(join(run, "clump.txt", "", path, error));
+  SCREE_TRY(scree_output_open(path, a->overwrite, &output, error));
   clump_print(output.stream, run);
   return scree_output_commit(&output, error);
 }
@@ -98,29 +93,24 @@ scree_status clump_write_files(clump_run *run, const scree_clump_report *report,
                                scree_error *error) {
   const clump_arguments *a = run->call->options;
   char path[CLUMP_PATH_BYTES];
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < run->count && status == SCREE_OK; i++) {
+  for (size_t i = 0; i < run->count; i++) {
     const clump_object *o = &run->objects[i];
-    status = join(run, o->name, ".csv", path, error);
-    if (status == SCREE_OK)
-      status =
-          scree_spheres_write(&o->clumps, o->chosen, o->surface.unit_m, path, a->overwrite, error);
+    SCREE_TRY(join(run, o->name, ".csv", path, error));
+    SCREE_TRY(
+        scree_spheres_write(&o->clumps, o->chosen, o->surface.unit_m, path, a->overwrite, error));
   }
-  for (int i = 0; i < figure_count() && status == SCREE_OK; i++) {
-    status = join(run, figures[i], "", path, error);
-    if (status == SCREE_OK) status = scree_clump_figure_write(report, path, a->overwrite, error);
+  for (int i = 0; i < figure_count(); i++) {
+    SCREE_TRY(join(run, figures[i], "", path, error));
+    SCREE_TRY(scree_clump_figure_write(report, path, a->overwrite, error));
   }
-  if (status == SCREE_OK) status = join(run, "clump.json", "", path, error);
-  if (status == SCREE_OK) status = scree_clump_json_write(report, path, a->overwrite, error);
-  if (status == SCREE_OK) status = join(run, "clump.csv", "", path, error);
-  if (status == SCREE_OK) status = scree_clump_csv_write(report, path, a->overwrite, error);
-  if (status == SCREE_OK) status = write_text(run, error);
-  if (status == SCREE_OK) status = join(run, "provenance.json", "", path, error);
-  if (status == SCREE_OK)
-    status =
-        scree_provenance_write(&run->start, run->call->command_line, path, a->overwrite, error);
-  if (status == SCREE_OK) status = join(run, "report.html", "", path, error);
-  return status == SCREE_OK
-             ? scree_page_write_named(a->output, a->output, path, a->overwrite, error)
-             : status;
+  SCREE_TRY(join(run, "clump.json", "", path, error));
+  SCREE_TRY(scree_clump_json_write(report, path, a->overwrite, error));
+  SCREE_TRY(join(run, "clump.csv", "", path, error));
+  SCREE_TRY(scree_clump_csv_write(report, path, a->overwrite, error));
+  SCREE_TRY(write_text(run, error));
+  SCREE_TRY(join(run, "provenance.json", "", path, error));
+  SCREE_TRY(
+      scree_provenance_write(&run->start, run->call->command_line, path, a->overwrite, error));
+  SCREE_TRY(join(run, "report.html", "", path, error));
+  return scree_page_write_named(a->output, a->output, path, a->overwrite, error);
 }

@@ -10,10 +10,8 @@ static scree_status decimate(scree_scan *scan, double scale, size_t triangles,
   scree_curve *curve;
   scree_simplify_options simplify = scree_default_simplify_options();
   simplify.stop_count = triangles;
-  scree_status status =
-      scree_curve_build_scaled(&scan->mesh, scale, &simplify, progress, &curve, error);
-  if (status != SCREE_OK) return status;
-  status = scree_curve_mesh(curve, scree_curve_find(curve, triangles), mesh, error);
+  SCREE_TRY(scree_curve_build_scaled(&scan->mesh, scale, &simplify, progress, &curve, error));
+  scree_status status = scree_curve_mesh(curve, scree_curve_find(curve, triangles), mesh, error);
   scree_curve_free(curve);
   return status;
 }

@@ -28,14 +28,12 @@ scree_status cli_frames_note(cli_frames *frames, double time, scree_error *error
 scree_status cli_frames_recall(cli_frames *frames, double interval, const scree_world *world,
                                scree_error *error) {
   double now = scree_world_time(world), step = scree_world_time_step(world, NULL), next = 0;
-  scree_status status = SCREE_OK;
-  for (double time = 0; interval > 0 && status == SCREE_OK && time < now - 0.5 * step;
-       time += step) {
+  for (double time = 0; interval > 0 && time < now - 0.5 * step; time += step) {
     if (time < next) continue;
-    status = cli_frames_note(frames, time, error);
+    SCREE_TRY(cli_frames_note(frames, time, error));
     next = (floor(time / interval) + 1) * interval;
   }
-  return status;
+  return SCREE_OK;
 }
 
 scree_status cli_frames_list(const cli_frames *frames, const char *kind, const char *path,

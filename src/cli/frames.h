@@ -1,7 +1,7 @@
 /* The frames that a verb writes for ParaView into its folder, and when each was. */
 #pragma once
 
-#include "scree.h"
+#include "base/error.h"
 
 typedef struct cli_frames {
   double *times; /* s; free them */

@@ -22,10 +22,10 @@ int cli_parse_grid(const cli_verb *verb, const char *text, cli_grid *grid) {
   double n[3];
   if (!split(text, n) || !(n[0] >= 1e-12 && n[0] <= n[1] && n[1] <= 1) ||
       !(n[2] >= 1 && n[2] <= 1000) || n[2] != (double)(int)n[2])
-    return cli_misuse(verb,
-                      "--grid '%s': must be MIN:MAX:N with 1e-12 <= MIN <= MAX <= 1 and a whole "
-                      "N from 1 to 1000",
-                      text);
+    return cli_misuse(
+        verb,
+        "--grid '%s': must be MIN:MAX:N with 1e-12 <= MIN <= MAX <= 1 and a whole N from 1 to 1000",
+        text);
   *grid = (cli_grid){n[0], n[1], (int)n[2]};
   return 0;
 }

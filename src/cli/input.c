@@ -129,8 +129,7 @@ scree_status cli_load(const char *word, const cli_input_options *options,
     hint_sample(word, error);
     return status;
   }
-  status = scree_sample_make(name, &options->sample, progress, &made.mesh, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_sample_make(name, &options->sample, progress, &made.mesh, error));
   made.facet_count = made.mesh.triangle_count;
   *scan = made;
   return SCREE_OK;

@@ -43,10 +43,9 @@ static void print_man_overview(FILE *stream) {
         "# OPTIONS OF EVERY VERB\n\n",
         stream);
   print_man_options(stream, cli_common_options, cli_common_option_count);
-  fputs(
-      "# VALUES\n\nA length may carry its unit (0.27mm); without one it is in metres. A share may "
-      "be in percent (0.5%). Sizes of memory take the suffixes K, M and G.\n\n",
-      stream);
+  fputs("# VALUES\n\nA length may carry its unit (0.27mm); without one it is in metres. A share "
+        "may be in percent (0.5%). Sizes of memory take the suffixes K, M and G.\n\n",
+        stream);
   fputs(man_end, stream);
 }
 

@@ -1,4 +1,5 @@
 #include "cli/options.h"
+#include "base/schema.h"
 
 #include <string.h>
 
@@ -209,39 +210,6 @@ char cli_letter(const char *name) {
 
 /* ---- words that are none ---- */
 
-/* Levenshtein distance, for "did you mean". */
-static size_t edit_distance(const char *a, const char *b) {
-  enum { LONGEST = 40 };
-  size_t row[LONGEST + 1], n = strlen(a), m = strlen(b);
-  if (n > LONGEST || m > LONGEST) return LONGEST;
-  for (size_t j = 0; j <= m; j++) row[j] = j;
-  for (size_t i = 1; i <= n; i++) {
-    size_t diagonal = row[0];
-    row[0] = i;
-    for (size_t j = 1; j <= m; j++) {
-      size_t best = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      if (row[j] + 1 < best) best = row[j] + 1;
-      if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
-      row[j] = best;
-    }
-  }
-  return row[m];
-}
-
-/* The nearest name so far; farther than two edits is nothing that was meant. */
-typedef struct nearest {
-  const char *name;
-  size_t distance;
-} nearest;
-#define NOTHING_NEAR                                                                               \
-  { NULL, 3 }
-
-static void compare(nearest *n, const char *word, const char *name) {
-  size_t distance = edit_distance(word, name);
-  if (distance < n->distance && distance < strlen(name)) *n = (nearest){name, distance};
-}
-
 bool cli_has_option(const cli_verb *verb, const char *name) {
   for (size_t i = 0; i < verb->option_count; i++)
     if (!strcmp(verb->options[i].name, name)) return true;
@@ -256,24 +224,29 @@ static const char *new_name(const cli_verb *verb, const char *old) {
   return NULL;
 }
 
-void cli_option_hint(const cli_verb *verb, const char *name, char *buffer, size_t size) {
-  const char *now = new_name(verb, name);
-  nearest found = NOTHING_NEAR;
+/* Of the names the one that was meant, as "; did you mean '--NAME'?", or nothing. */
+static void hint_nearest(const char *word, const char *const *names, size_t count,
+                         const char *dashes, char *buffer, size_t size) {
+  const char *nearest = strlen(word) < 2 ? NULL : scree_nearest_name(word, names, count);
   *buffer = 0;
+  if (nearest) snprintf(buffer, size, "; did you mean '%s%s'?", dashes, nearest);
+}
+
+void cli_option_hint(const cli_verb *verb, const char *name, char *buffer, size_t size) {
+  const char *now = new_name(verb, name), *names[CLI_MOST_OPTIONS];
+  size_t count = 0;
   if (now) {
     snprintf(buffer, size, "; it is now '--%s'", now);
     return;
   }
-  if (strlen(name) < 2) return;
-  for (size_t i = 0; i < verb->option_count; i++) compare(&found, name, verb->options[i].name);
-  for (size_t i = 0; i < cli_common_option_count; i++)
-    compare(&found, name, cli_common_options[i].name);
-  if (found.name) snprintf(buffer, size, "; did you mean '--%s'?", found.name);
+  for (size_t i = 0; i < verb->option_count; i++) names[count++] = verb->options[i].name;
+  for (size_t i = 0; i < cli_common_option_count; i++) names[count++] = cli_common_options[i].name;
+  hint_nearest(name, names, count, "--", buffer, size);
 }
 
 void cli_verb_hint(const char *word, char *buffer, size_t size) {
-  nearest found = NOTHING_NEAR;
-  *buffer = 0;
-  for (const cli_verb *const *verb = cli_verbs; *verb; verb++) compare(&found, word, (*verb)->name);
-  if (found.name) snprintf(buffer, size, "; did you mean '%s'?", found.name);
+  const char *names[CLI_MOST_OPTIONS];
+  size_t count = 0;
+  for (const cli_verb *const *verb = cli_verbs; *verb; verb++) names[count++] = (*verb)->name;
+  hint_nearest(word, names, count, "", buffer, size);
 }

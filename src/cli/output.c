@@ -164,10 +164,9 @@ static scree_status remove_file(const cli_call *call, const char *path, scree_er
 
 scree_status cli_clear_run_output(const cli_call *call, const char *folder,
                                   const cli_run_files *files, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < files->count && status == SCREE_OK; i++)
-    status = visit_files(call, folder, files->names[i], remove_file, error);
-  return status;
+  for (size_t i = 0; i < files->count; i++)
+    SCREE_TRY(visit_files(call, folder, files->names[i], remove_file, error));
+  return SCREE_OK;
 }
 
 /* ---- folders and names ---- */

@@ -35,9 +35,8 @@ static scree_status measure_scan(const cli_call *call, const cli_measured_pile *
   scree_height_field field;
   scree_scan scan;
   input.remarked = true; /* a heap is larger than a particle */
-  scree_status status = cli_load(call->inputs[0], &input, call->progress, &scan, error);
-  if (status != SCREE_OK) return status;
-  status = scree_height_field_scan(&scan.mesh, what->cell, &f->ground, &field, error);
+  SCREE_TRY(cli_load(call->inputs[0], &input, call->progress, &scan, error));
+  scree_status status = scree_height_field_scan(&scan.mesh, what->cell, &f->ground, &field, error);
   scree_scan_free(&scan);
   if (status != SCREE_OK) return status;
   status = scree_repose_measure(&field, &what->how, &f->repose, error);
@@ -50,10 +49,9 @@ static scree_status measure_scan(const cli_call *call, const cli_measured_pile *
 static scree_status measure_picture(const cli_call *call, const cli_measured_pile *what, found *f,
                                     scree_error *error) {
   scree_image image;
-  scree_status status = scree_image_read_png(call->inputs[0], &image, error);
-  if (status != SCREE_OK) return status;
-  status = scree_outline_trace(image.pixels, image.width, image.height,
-                               what->scale / (double)image.width, &f->outline, error);
+  SCREE_TRY(scree_image_read_png(call->inputs[0], &image, error));
+  scree_status status = scree_outline_trace(image.pixels, image.width, image.height,
+                                            what->scale / (double)image.width, &f->outline, error);
   scree_image_free(&image);
   return status;
 }
@@ -61,12 +59,10 @@ static scree_status measure_picture(const cli_call *call, const cli_measured_pil
 static scree_status find(const cli_call *call, const cli_measured_pile *what, found *f,
                          scree_error *error) {
   if (what->kind == CLI_PILE_SCAN) return measure_scan(call, what, f, error);
-  scree_status status = what->kind == CLI_PILE_PICTURE
-                            ? measure_picture(call, what, f, error)
-                            : scree_outline_read(call->inputs[0], what->unit, &f->outline, error);
-  if (status == SCREE_OK)
-    status = scree_outline_measure(&f->outline, what->cell, &what->how, &f->repose, error);
-  return status;
+  SCREE_TRY(what->kind == CLI_PILE_PICTURE
+                ? measure_picture(call, what, f, error)
+                : scree_outline_read(call->inputs[0], what->unit, &f->outline, error));
+  return scree_outline_measure(&f->outline, what->cell, &what->how, &f->repose, error);
 }
 
 static void print_outline(const scree_outline *o) {

@@ -167,11 +167,10 @@ static bool is_level_name(const char *name) {
 static int take_levels(cli_pour *r) {
   const cli_pour_arguments *a = r->arguments;
   if (a->rp && !parse_levels(r, a->rp))
-    return cli_misuse(
-        r->call->verb,
-        "--rp %s: must be up to %d different numbers in (0, 1], recommended, or clumps of 1 to "
-        "300 spheres, as 1e-4,recommended,clump:20",
-        a->rp, MOST_LEVELS);
+    return cli_misuse(r->call->verb,
+                      "--rp %s: must be up to %d different numbers in (0, 1], recommended, or "
+                      "clumps of 1 to 300 spheres, as 1e-4,recommended,clump:20",
+                      a->rp, MOST_LEVELS);
   if (a->spheres) snprintf(r->levels[r->level_count++], LEVEL_BYTES, "spheres");
   if (r->level_count == 0) r->level_count = 1;
   for (size_t i = 0; i < r->level_count; i++) name_level(r, i);
@@ -185,10 +184,9 @@ static scree_status read_checkpoint(cli_pour *r, const char *path) {
   scree_scene *scene;
   if (!scree_path_exists(path))
     return cli_refuse(&r->error, SCREE_IO, path, "no checkpoint to go on from");
-  scree_status status = scree_scene_load(path, &scene, &r->error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_load(path, &scene, &r->error));
   const char *text = scree_scene_text(scene);
-  status = scree_scene_file_parse(text, strlen(text), path, &r->file, &r->error);
+  scree_status status = scree_scene_file_parse(text, strlen(text), path, &r->file, &r->error);
   scree_scene_free(scene);
   return status;
 }
@@ -226,27 +224,27 @@ static scree_status set_number(cli_pour *r, const char *field, double value, boo
 static scree_status pour_words(cli_pour *r) {
   const cli_pour_arguments *a = r->arguments;
   if (!r->poured.count) return SCREE_OK;
-  scree_status status = cli_pour_shapes(r->file, &r->poured, &a->source, a->no_repair, &r->error);
-  if (status == SCREE_OK && a->method == SCREE_METHOD_QECD)
-    status = cli_set_scans(r->file, &r->poured, "method", "qecd", &r->error);
-  if (status == SCREE_OK) status = set_number(r, "triangles", (double)a->triangles, true);
-  if (status == SCREE_OK) status = set_number(r, "clump", (double)a->clump, true);
-  return status == SCREE_OK ? set_number(r, "particles", r->particles, false) : status;
+  SCREE_TRY(cli_pour_shapes(r->file, &r->poured, &a->source, a->no_repair, &r->error));
+  if (a->method == SCREE_METHOD_QECD)
+    SCREE_TRY(cli_set_scans(r->file, &r->poured, "method", "qecd", &r->error));
+  SCREE_TRY(set_number(r, "triangles", (double)a->triangles, true));
+  SCREE_TRY(set_number(r, "clump", (double)a->clump, true));
+  return set_number(r, "particles", r->particles, false);
 }
 
 /* The scene of a level; of clumps in tables only spheres are another. */
 static scree_status set_level(cli_pour *r, size_t index) {
   const char *level = r->levels[index];
   if (!*level || !r->poured.count) return SCREE_OK;
-  scree_status status = cli_set_scans(r->file, &r->poured, "rp", level, &r->error);
-  for (size_t i = 0; status == SCREE_OK && i < r->poured.count; i++) {
+  SCREE_TRY(cli_set_scans(r->file, &r->poured, "rp", level, &r->error));
+  for (size_t i = 0; i < r->poured.count; i++) {
     char field[200];
     if (strcmp(r->poured.shapes[i].kind, "clump") != 0) continue;
     snprintf(field, sizeof field, "shapes.%s.rp", r->poured.shapes[i].name);
-    status =
-        scree_scene_file_set(r->file, field, strcmp(level, "spheres") ? "scan" : level, &r->error);
+    SCREE_TRY(
+        scree_scene_file_set(r->file, field, strcmp(level, "spheres") ? "scan" : level, &r->error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- one level ---- */

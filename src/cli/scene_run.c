@@ -79,8 +79,7 @@ static scree_status write_view(const cli_scene_run *r, const scree_scene *scene,
                                            SCREE_VIEW_CONTACTS};
   char name[CLI_FRAME_NAME], path[PATH_BYTES];
   cli_frame_name(r->frames.count, kinds[kind], name);
-  scree_status status = path_of(r, name, path, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(path_of(r, name, path, error));
   if (1u << kind == CLI_GEOMETRY) return scree_scene_walls_vtp_write(scene, path, true, error);
   if (1u << kind == CLI_BODIES && r->forecast.frames_are_instances)
     return scree_scene_bodies_vtp_write(scene, path, true, error);
@@ -88,40 +87,36 @@ static scree_status write_view(const cli_scene_run *r, const scree_scene *scene,
 }
 
 static scree_status write_collections(const cli_scene_run *r, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (int kind = 0; status == SCREE_OK && kind < CLI_FRAME_KINDS; kind++) {
+  for (int kind = 0; kind < CLI_FRAME_KINDS; kind++) {
     char path[PATH_BYTES];
     if (!(r->views & 1u << kind)) continue;
-    status = path_of(r, collections[kind], path, error);
-    if (status == SCREE_OK) status = cli_frames_list(&r->frames, kinds[kind], path, error);
+    SCREE_TRY(path_of(r, collections[kind], path, error));
+    SCREE_TRY(cli_frames_list(&r->frames, kinds[kind], path, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status on_frame(void *context, scree_scene *scene, size_t index, scree_error *error) {
   cli_scene_run *r = context;
-  scree_status status = SCREE_OK;
-  for (int kind = 0; status == SCREE_OK && kind < CLI_FRAME_KINDS; kind++)
-    if (r->views & 1u << kind) status = write_view(r, scene, kind, error);
+  for (int kind = 0; kind < CLI_FRAME_KINDS; kind++)
+    if (r->views & 1u << kind) SCREE_TRY(write_view(r, scene, kind, error));
   (void)index;
-  if (status == SCREE_OK)
-    status = cli_frames_note(&r->frames, scree_world_time(scree_scene_view(scene)), error);
-  return status == SCREE_OK ? write_collections(r, error) : status;
+  SCREE_TRY(cli_frames_note(&r->frames, scree_world_time(scree_scene_view(scene)), error));
+  return write_collections(r, error);
 }
 
 /* Each shape once, for frames of instances. */
 static scree_status write_shapes(const cli_scene_run *r, const scree_scene *scene,
                                  scree_error *error) {
-  scree_status status = SCREE_OK;
   if (!r->output || !(r->forecast.frame_interval > 0) || !r->forecast.frames_are_instances)
     return SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && scree_scene_shape_name(scene, i); i++) {
+  for (size_t i = 0; scree_scene_shape_name(scene, i); i++) {
     char name[32], path[PATH_BYTES];
     snprintf(name, sizeof name, "shape-%zu.vtp", i);
-    status = path_of(r, name, path, error);
-    if (status == SCREE_OK) status = scree_scene_shape_vtp_write(scene, i, path, true, error);
+    SCREE_TRY(path_of(r, name, path, error));
+    SCREE_TRY(scree_scene_shape_vtp_write(scene, i, path, true, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* Names values of the scene that no material has, as those of options are. */
@@ -350,8 +345,7 @@ static scree_status write_json(const cli_scene_run *r, const char *stopped, doub
                                const char *path, scree_error *error) {
   char kept[PATH_BYTES]; /* what one goes on with that no file was given for */
   const bool given = r->file_name != NULL;
-  scree_status status = given || !r->output ? SCREE_OK : path_of(r, "scene.yaml", kept, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(given || !r->output ? SCREE_OK : path_of(r, "scene.yaml", kept, error));
   scree_scene_entry entry = {.scene = r->scene,
                              .file = given       ? r->file_name
                                      : r->output ? kept
@@ -392,26 +386,26 @@ static scree_status write_page(const cli_scene_run *r, scree_error *error) {
   if (status == SCREE_OK)
     status = scree_provenance_write(&r->start, r->call->command_line, path, true, error);
   if (status != SCREE_OK || r->common_page) return status;
-  status = path_of(r, "report.html", path, error);
-  return status == SCREE_OK ? scree_page_write(&r->output, 1, path, true, error) : status;
+  SCREE_TRY(path_of(r, "report.html", path, error));
+  return scree_page_write(&r->output, 1, path, true, error);
 }
 
 static scree_status write_all(const cli_scene_run *r, const char *stopped, double seconds,
                               const char *text, scree_error *error) {
   char path[PATH_BYTES];
-  scree_status status = write_collections(r, error);
-  if (status == SCREE_OK) status = path_of(r, "result.json", path, error);
-  if (status == SCREE_OK) status = write_json(r, stopped, seconds, path, error);
-  if (status == SCREE_OK) status = path_of(r, "bodies.csv", path, error);
-  if (status == SCREE_OK) status = scree_scene_bodies_write(r->scene, path, true, error);
-  if (status == SCREE_OK && scree_scene_has_maps(r->scene)) {
-    status = path_of(r, "walls.vtp", path, error);
-    if (status == SCREE_OK) status = scree_scene_walls_vtp_write(r->scene, path, true, error);
+  SCREE_TRY(write_collections(r, error));
+  SCREE_TRY(path_of(r, "result.json", path, error));
+  SCREE_TRY(write_json(r, stopped, seconds, path, error));
+  SCREE_TRY(path_of(r, "bodies.csv", path, error));
+  SCREE_TRY(scree_scene_bodies_write(r->scene, path, true, error));
+  if (scree_scene_has_maps(r->scene)) {
+    SCREE_TRY(path_of(r, "walls.vtp", path, error));
+    SCREE_TRY(scree_scene_walls_vtp_write(r->scene, path, true, error));
   }
-  if (status == SCREE_OK) status = path_of(r, "result.txt", path, error);
-  if (status == SCREE_OK) status = scree_text_write(text, path, true, error);
-  if (status == SCREE_OK) status = draw(r, error);
-  return status == SCREE_OK ? write_page(r, error) : status;
+  SCREE_TRY(path_of(r, "result.txt", path, error));
+  SCREE_TRY(scree_text_write(text, path, true, error));
+  SCREE_TRY(draw(r, error));
+  return write_page(r, error);
 }
 
 static scree_status tell(cli_scene_run *r, const char *stopped, double seconds,
@@ -438,10 +432,10 @@ static scree_status tell(cli_scene_run *r, const char *stopped, double seconds,
 }
 
 scree_status cli_check_scene_output(const cli_scene_run *r, scree_error *error) {
-  scree_status status = cli_make_folder(r->output, error);
-  if (status == SCREE_OK && !r->resume)
-    status = cli_check_run_output(r->call, r->output, &run_files, r->overwrite, error);
-  return status;
+  SCREE_TRY(cli_make_folder(r->output, error));
+  if (!r->resume)
+    SCREE_TRY(cli_check_run_output(r->call, r->output, &run_files, r->overwrite, error));
+  return SCREE_OK;
 }
 
 scree_status cli_clear_scene_output(const cli_call *call, const char *folder, scree_error *error) {
@@ -597,28 +591,25 @@ scree_status cli_pour_shapes(scree_scene_file *file, const cli_poured *p, const 
                              bool no_repair, scree_error *error) {
   const cli_source usual = CLI_SOURCE_DEFAULTS;
   cli_input_options input = cli_source_options(source);
-  scree_status status = scree_scene_file_pour(file, p->shapes, p->count, error);
-  for (size_t i = 0; status == SCREE_OK && i < p->count; i++) {
+  SCREE_TRY(scree_scene_file_pour(file, p->shapes, p->count, error));
+  for (size_t i = 0; i < p->count; i++) {
     const scree_poured *s = &p->shapes[i];
     bool sample = !strcmp(s->kind, "sample"), read = is_scan(s) || !strcmp(s->kind, "clump");
     if (read && !sample && input.read.ignore_comment_unit)
-      status = set_shape(file, s, "unit", cli_unit_name(source->unit), error);
-    if (status == SCREE_OK && sample)
-      status = set_length(file, s, "resolution", source->resolution, usual.resolution, error);
-    if (status == SCREE_OK && sample)
-      status = set_length(file, s, "noise", source->noise, -1, error);
-    if (status == SCREE_OK && sample)
-      status = set_length(file, s, "sample_seed", (double)source->seed, 1, error);
-    if (status == SCREE_OK && no_repair && !strcmp(s->kind, "file"))
-      status = set_shape(file, s, "repair", "false", error);
+      SCREE_TRY(set_shape(file, s, "unit", cli_unit_name(source->unit), error));
+    if (sample)
+      SCREE_TRY(set_length(file, s, "resolution", source->resolution, usual.resolution, error));
+    if (sample) SCREE_TRY(set_length(file, s, "noise", source->noise, -1, error));
+    if (sample) SCREE_TRY(set_length(file, s, "sample_seed", (double)source->seed, 1, error));
+    if (no_repair && !strcmp(s->kind, "file"))
+      SCREE_TRY(set_shape(file, s, "repair", "false", error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 scree_status cli_set_scans(scree_scene_file *file, const cli_poured *p, const char *field,
                            const char *value, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < p->count; i++)
-    if (is_scan(&p->shapes[i])) status = set_shape(file, &p->shapes[i], field, value, error);
-  return status;
+  for (size_t i = 0; i < p->count; i++)
+    if (is_scan(&p->shapes[i])) SCREE_TRY(set_shape(file, &p->shapes[i], field, value, error));
+  return SCREE_OK;
 }

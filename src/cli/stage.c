@@ -44,9 +44,9 @@ scree_status cli_stage_open(const char *folder, cli_stage *stage, scree_error *e
   if (length >= CLI_STAGE_BYTES)
     return cli_refuse(error, SCREE_LIMIT, folder, "the path is too long");
   while (length > 1 && folder[length - 1] == '/') length--;
-  scree_status status = stage->existed || length == 0 ? scree_folder_create(folder, error)
-                                                      : make_parent(folder, length, error);
-  return status == SCREE_OK ? make_beside(folder, length, stage, error) : status;
+  SCREE_TRY(stage->existed || length == 0 ? scree_folder_create(folder, error)
+                                          : make_parent(folder, length, error));
+  return make_beside(folder, length, stage, error);
 }
 
 scree_status cli_stage_rename(cli_stage *stage, scree_error *error) {

@@ -9,8 +9,7 @@ scree_status cli_recommended_level(const scree_curve *curve, const scree_mesh *m
                                    const scree_progress *progress, size_t *level,
                                    scree_error *error) {
   scree_choice choice;
-  scree_status status = scree_choose(curve, mesh, NULL, progress, &choice, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_choose(curve, mesh, NULL, progress, &choice, error));
   *level = choice.recommended.level_index;
   scree_choice_free(&choice);
   return SCREE_OK;
@@ -51,8 +50,7 @@ static scree_status load_unscaled(const char *word, const cli_input_options *opt
   cli_input_options used = *options;
   used.read.unit_m = scree_default_read_options().unit_m;
   used.read.ignore_comment_unit = used.remarked = true;
-  scree_status status = cli_load(word, &used, progress, scan, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(cli_load(word, &used, progress, scan, error));
   bool commented = scan->comment_unit_m > 0 && !options->read.ignore_comment_unit;
   if (!scan->states_unit) scan->unit_m = commented ? scan->comment_unit_m : options->read.unit_m;
   *scale = scan->states_unit ? 1 : scan->unit_m / used.read.unit_m;
@@ -108,9 +106,7 @@ scree_status cli_into_metres(const char *word, const cli_input_options *options,
     scree_mesh_scale(mesh, scale);
     return SCREE_OK;
   }
-  scree_status status =
-      cli_load_closed(word, &used, no_repair, progress, &again, NULL, NULL, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(cli_load_closed(word, &used, no_repair, progress, &again, NULL, NULL, error));
   scree_mesh_free(mesh);
   *mesh = again.mesh;
   return SCREE_OK;
@@ -124,9 +120,8 @@ scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
   char note[1024], shown[CLI_PRINTABLE_BYTES];
   const char *word = call->inputs[0];
   if (how->unchecked) return load_unscaled(word, &input, call->progress, scan, scale, error);
-  scree_status status =
-      cli_load_closed(word, &input, how->no_repair, call->progress, scan, scale, &report, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(
+      cli_load_closed(word, &input, how->no_repair, call->progress, scan, scale, &report, error));
   cli_repair_text(&report, note, sizeof note);
   cli_terminal_end();
   if (note[0] && !call->quiet) fprintf(stderr, "%s: %s\n", cli_printable(word, shown), note);
@@ -152,8 +147,7 @@ void cli_print_check(FILE *stream, const scree_check *check) {
               scree_defect_text((scree_defect)i, check->defects[i]));
   if (check->too_many_pairs)
     fprintf(stream,
-            "more than %d pairs of facets meet: neither their kinds are told, nor how shells "
-            "lie\n",
+            "more than %d pairs of facets meet: neither their kinds are told, nor how shells lie\n",
             SCREE_PAIR_LIMIT);
   if (check->volume_known)
     fprintf(stream, "%10.6g cm3 volume\n", check->volume * 1e6);
@@ -249,10 +243,7 @@ static bool fits_single(const scree_mesh *mesh, double unit) {
 static scree_status round_mesh(const scree_mesh *mesh, double unit, scree_mesh *read,
                                scree_error *error) {
   double *corners = malloc((9 * mesh->triangle_count + 1) * sizeof *corners);
-  if (!corners) {
-    *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the rounded surface"};
-    return SCREE_OUT_OF_MEMORY;
-  }
+  if (!corners) return scree_fail_memory(error, 0, "the rounded surface");
   for (size_t i = 0; i < 9 * mesh->triangle_count; i++)
     corners[i] = rounded(mesh->positions[3 * (size_t)mesh->triangles[i / 3] + i % 3], unit);
   scree_status status = scree_mesh_weld(corners, mesh->triangle_count, 0, read, NULL, error);
@@ -284,16 +275,14 @@ scree_status cli_check_rounded(const scree_mesh *mesh, const char *path, double 
   scree_mesh read;
   scree_check check;
   if (!is_single(path) || fits_single(mesh, unit)) return SCREE_OK;
-  scree_status status = round_mesh(mesh, unit, &read, error);
-  if (status != SCREE_OK) return status;
-  status = scree_mesh_check(&read, how, progress, &check, error);
+  SCREE_TRY(round_mesh(mesh, unit, &read, error));
+  scree_status status = scree_mesh_check(&read, how, progress, &check, error);
   scree_mesh_free(&read);
   if (status != SCREE_OK || check.usable) return status;
   error->status = SCREE_BAD_MESH;
   snprintf(error->message, sizeof error->message,
            "%.300s: rounded to the file's precision, the surface is %.500s; a .ply or .obj, as "
-           "`scree simplify` "
-           "writes, would hold it",
+           "`scree simplify` writes, would hold it",
            path, check.verdict);
   return SCREE_BAD_MESH;
 }

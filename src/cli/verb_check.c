@@ -5,7 +5,6 @@
 #include "report/program.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct check_arguments {
   cli_source source;
@@ -35,10 +34,9 @@ static scree_status check_one(const cli_call *call, const char *path, checked *c
   cli_input_options input = cli_source_options(&arguments->source);
   scree_check_options how = scree_default_check_options();
   how.intersections = !arguments->fast;
-  scree_status status = cli_load(path, &input, call->progress, &c->scan, &c->error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(cli_load(path, &input, call->progress, &c->scan, &c->error));
   c->read = true;
-  status = scree_mesh_check(&c->scan.mesh, &how, call->progress, &c->check, &c->error);
+  scree_status status = scree_mesh_check(&c->scan.mesh, &how, call->progress, &c->check, &c->error);
   scree_mesh_free(&c->scan.mesh); /* the counts are enough */
   return status == SCREE_OK ? status : cli_name_in_error(path, &c->error);
 }
@@ -111,8 +109,8 @@ const cli_verb cli_verb_check = {
         "Counts what is wrong with each surface (holes, non-manifold edges and vertices, facets "
         "wound unlike, inside-out shells, duplicate and degenerate facets, facets that cross, "
         "touch or overlap, shells in shells) and says whether it can serve as a particle: closed, "
-        "manifold, outward, nowhere meeting itself. Cavities and separate bodies are counted, "
-        "but are no defects. Facets that meet are found exactly, without tolerances.\n\n"
+        "manifold, outward, nowhere meeting itself. Cavities and separate bodies are counted, but "
+        "are no defects. Facets that meet are found exactly, without tolerances.\n\n"
         "Exit code 0 where every file can serve, 1 where one cannot or could not be read.",
     .examples = "scree check scan.stl\n"
                 "scree check --json -u m *.ply\n",

@@ -30,14 +30,12 @@ static const cli_option options[] = {
      NULL},
     {"rule", CLI_CHOICE, AT(rule), "RULE",
      "Whose choice is told first and written: recommended (keeps tolerances), robust or paper "
-     "(least "
-     "Ip). Default: recommended.",
+     "(least Ip). Default: recommended.",
      0, 0, "recommended|robust|paper"},
     {"tolerance", CLI_TEXT, AT(tolerance), "LIST",
      "What the recommended level keeps, instead of the defaults, as shares or, of distances, "
      "lengths: mean=0.3%,hausdorff=4%,inertia=2%,widths=3%,thickness=3% are the defaults; also "
-     "area, "
-     "volume, thinnest, convexity, normals; none: does not count.",
+     "area, volume, thinnest, convexity, normals; none: does not count.",
      0, 0, NULL},
     {"method", CLI_CHOICE, AT(method), "NAME",
      "How to decimate: volume (keeps the volume) or qecd (as the paper). Default: volume.", 0, 0,
@@ -46,8 +44,8 @@ static const cli_option options[] = {
      "Weight of the penalty: Ip = eps_s + W Nr/Nm. Default: 1, as the paper.", 1e-9, 1e9, NULL},
     CLI_GRID_OPTION(choose_arguments, grid),
     {"area", CLI_CHOICE, AT(reference), "AREA",
-     "Area that eps_s is measured against: scan (the paper's) or smooth (past the scanner's "
-     "noise, measured on the curve). Default: scan.",
+     "Area that eps_s is measured against: scan (the paper's) or smooth (past the scanner's noise, "
+     "measured on the curve). Default: scan.",
      0, 0, "scan|smooth"},
     {"errors", CLI_FLAG, AT(errors), NULL,
      "Also the count that each other error alone would choose on the grid, of which levels above "
@@ -149,9 +147,8 @@ static scree_status load(void *context, size_t index, const scree_progress *prog
   scree_scan scan;
   char repaired[CHOOSE_NOTE_BYTES];
   input.remarked = true; /* with the other warnings */
-  scree_status status = cli_load_closed(object->word, &input, run->arguments->no_repair, progress,
-                                        &scan, scale, &report, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(cli_load_closed(object->word, &input, run->arguments->no_repair, progress, &scan, scale,
+                            &report, error));
   memcpy(object->format, scan.format, sizeof object->format);
   object->unit_m = scan.unit_m;
   object->checksum = scan.checksum;
@@ -212,10 +209,7 @@ static void note_all(choose_run *run) {
 static scree_status write_output(choose_run *run, scree_error *error) {
   const choose_arguments *a = run->arguments;
   scree_choice_entry *entries = calloc(run->count + 1, sizeof *entries);
-  if (!entries) {
-    *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the report"};
-    return SCREE_OUT_OF_MEMORY;
-  }
+  if (!entries) return scree_fail_memory(error, 0, "the report");
   for (size_t i = 0; i < run->count; i++) {
     const choose_object *o = &run->objects[i];
     bool is_sample = cli_is_sample(o->word, NULL);
@@ -279,8 +273,8 @@ static int run_choose(const cli_call *call) {
   if (a->tolerance && !parse_tolerances(a->tolerance, &run.options))
     return cli_misuse(
         call->verb,
-        "--tolerance '%s': must be a list of NAME=BOUND as in mean=0.3%%,hausdorff=2mm, "
-        "bounds above 0 and up to 100%%, lengths with a unit and of mean and hausdorff alone%s",
+        "--tolerance '%s': must be a list of NAME=BOUND as in mean=0.3%%,hausdorff=2mm, bounds "
+        "above 0 and up to 100%%, lengths with a unit and of mean and hausdorff alone%s",
         a->tolerance, cli_comma_hint(a->tolerance));
   if (a->paper && a->rule != RULE_UNSET && a->rule != SCREE_RULE_PAPER)
     return cli_misuse(call->verb, "--paper is --rule paper");
@@ -330,8 +324,8 @@ const cli_verb cli_verb_choose = {
         "robust choice, which takes the worst eps_s at a count or any finer one, over every count. "
         "Several scans also get the paper's one Rp for all.\n\n"
         "Scans that are no closed surface are repaired first. One that cannot be used is told on "
-        "stderr and left out; the exit code is then 1. sample:NAME stands for a built-in "
-        "sample. Nothing is written without -o.",
+        "stderr and left out; the exit code is then 1. sample:NAME stands for a built-in sample. "
+        "Nothing is written without -o.",
     .examples = "scree choose phone.stl -o phone\n"
                 "scree choose *.stl -o devices --tolerance mean=0.2%,hausdorff=1mm\n"
                 "scree choose --samples --paper\n"

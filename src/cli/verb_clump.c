@@ -6,7 +6,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define AT(field) offsetof(clump_arguments, field)
 static const cli_option options[] = {
@@ -207,11 +206,10 @@ static void print_wrong_shape(FILE *out, const clump_object *object) {
 
 static void print_advice(FILE *out, const clump_object *object) {
   const scree_clump *chosen = object->chosen;
-  fprintf(
-      out,
-      "%zu sphere%s: the union's volume is %.4g of the body's; mass, centre and inertia that go "
-      "with the clump are the body's own.\n",
-      chosen->sphere_count, cli_plural(chosen->sphere_count), 1 + chosen->volume_error);
+  fprintf(out,
+          "%zu sphere%s: the union's volume is %.4g of the body's; mass, centre and inertia that "
+          "go with the clump are the body's own.\n",
+          chosen->sphere_count, cli_plural(chosen->sphere_count), 1 + chosen->volume_error);
   if (object->mesh_count) print_wrong_shape(out, object);
 }
 
@@ -306,18 +304,16 @@ const cli_verb cli_verb_clump = {
     .inputs = "FILE|sample:NAME...",
     .description =
         "Makes of each scan (repaired first where it is no closed surface) the clumps of 1 to "
-        "--max "
-        "spheres whose union covers the body best, and prints for each number: the intersection "
-        "over union of the volumes (IoU), mean and greatest distance between both surfaces, how "
-        "far volume and principal moments of the union are off, the mean angle between the "
-        "surfaces' normals (roughness that acts as friction), and the criterion of Katagiri and "
-        "Koyanaka (2020) with spheres in place of triangles. The number with the least "
-        "1 - IoU + n/200 is recommended.\n\n"
+        "--max spheres whose union covers the body best, and prints for each number: the "
+        "intersection over union of the volumes (IoU), mean and greatest distance between both "
+        "surfaces, how far volume and principal moments of the union are off, the mean angle "
+        "between the surfaces' normals (roughness that acts as friction), and the criterion of "
+        "Katagiri and Koyanaka (2020) with spheres in place of triangles. The number with the "
+        "least 1 - IoU + n/200 is recommended.\n\n"
         "The mass, centre and inertia handed over are those of the surface, whatever the union's. "
         "The folder gets NAME.csv with x, y, z and radius of every sphere in the file's unit, "
-        "which "
-        "`scree drop`, `scree repose` and `scree export` take in place of a scan, and report.html "
-        "with the clump over the scan in 3D.",
+        "which `scree drop`, `scree repose` and `scree export` take in place of a scan, and "
+        "report.html with the clump over the scan in 3D.",
     .examples = "scree clump phone.stl\n"
                 "scree clump phone.stl -n 20 -o clumps\n"
                 "scree clump rock.ply -u m --tolerance 0.02 --json\n"

@@ -137,10 +137,7 @@ static scree_status make_rows(table *t) {
   size_t rows = (size_t)floor((scree_log10(t->grid.most) - bottom) * steps + GRID_SLACK) + 1;
   size_t last = SIZE_MAX;
   t->rows = calloc(rows, sizeof *t->rows);
-  if (!t->rows) {
-    t->error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the table"};
-    return SCREE_OUT_OF_MEMORY;
-  }
+  if (!t->rows) return scree_fail_memory(&t->error, 0, "the table");
   for (size_t i = 0; i < rows; i++) {
     double rp = scree_power_of_ten(bottom + (double)(rows - 1 - i) / steps);
     size_t target = (size_t)(rp * (double)t->first.triangle_count * (1 + 1e-12));
@@ -150,8 +147,7 @@ static scree_status make_rows(table *t) {
     double part = (1 - LOAD_PART - CURVE_PART) / (double)rows;
     const scree_progress *progress =
         cli_share_enter(&t->share, 1 - part * (double)(rows - i), part);
-    scree_status status = make_row(t, index, progress, &t->rows[t->row_count]);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(make_row(t, index, progress, &t->rows[t->row_count]));
     if (!arguments->json) print_row(t, &t->rows[t->row_count]);
     t->row_count++;
   }
@@ -251,9 +247,9 @@ const cli_verb cli_verb_curve = {
     .inputs = "FILE|sample:NAME",
     .description =
         "Decimates a scan once (repaired first where it is no closed surface, which is said) and "
-        "prints, on a logarithmic grid of the percentage reduction Rp = "
-        "N/Nm: the triangle count, Rp, the area S, the volume V, eps_s = |S - Sm|/Sm, eps_v alike, "
-        "the criterion Ip = eps_s + Rp of Katagiri and Koyanaka (2020), and the quadric error.",
+        "prints, on a logarithmic grid of the percentage reduction Rp = N/Nm: the triangle count, "
+        "Rp, the area S, the volume V, eps_s = |S - Sm|/Sm, eps_v alike, the criterion Ip = eps_s "
+        "+ Rp of Katagiri and Koyanaka (2020), and the quadric error.",
     .examples = "scree curve phone.stl\n"
                 "scree curve phone.stl --distance --csv > phone.csv\n"
                 "scree curve phone.stl -m qecd --grid 1e-4:1e-1:20\n",

@@ -33,9 +33,8 @@ static const cli_option options[] = {
 static scree_status read_two(const cli_call *call, scree_scan scans[2], scree_error *error) {
   const distance_arguments *arguments = call->options;
   cli_input_options input = cli_source_options(&arguments->source);
-  scree_status status = cli_load(call->inputs[0], &input, call->progress, &scans[0], error);
-  if (status != SCREE_OK) return status;
-  status = cli_load(call->inputs[1], &input, call->progress, &scans[1], error);
+  SCREE_TRY(cli_load(call->inputs[0], &input, call->progress, &scans[0], error));
+  scree_status status = cli_load(call->inputs[1], &input, call->progress, &scans[1], error);
   if (status != SCREE_OK) scree_scan_free(&scans[0]);
   return status;
 }
@@ -86,11 +85,10 @@ const cli_verb cli_verb_distance = {
     .name = "distance",
     .summary = "mean, RMS and Hausdorff distance between two surfaces",
     .inputs = "A B",
-    .description =
-        "Measures how far the points of A lie from the surface of B, and back: mean and root mean "
-        "square over the area, the largest found, and a bound that no point exceeds. As Metro "
-        "does, but nothing is random: the same files give the same digits. sample:NAME stands for "
-        "a built-in sample. Text is in the files' unit.",
+    .description = "Measures how far the points of A lie from the surface of B, and back: mean and "
+                   "root mean square over the area, the largest found, and a bound that no point "
+                   "exceeds. As Metro does, but nothing is random: the same files give the same "
+                   "digits. sample:NAME stands for a built-in sample. Text is in the files' unit.",
     .examples = "scree distance scan.stl simplified.stl\n"
                 "scree distance --gap 0.001 --json scan.stl simplified.stl\n",
     CLI_OPTIONS(options, defaults),

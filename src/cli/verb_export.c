@@ -29,10 +29,8 @@ static const export_arguments defaults = {
 static const cli_option options[] = {
     {"output", CLI_TEXT, AT(output), "OUT",
      "What to write (required). Of a surface: .stl, .ply, .obj, .off or .3mf, with a .json of the "
-     "same "
-     "name beside it, or .vtp. Of a checkpoint: .vtp, .csv, or a folder. Of several: .pvd or "
-     ".vtp.series, "
-     "with a .vtp each beside it.",
+     "same name beside it, or .vtp. Of a checkpoint: .vtp, .csv, or a folder. Of several: .pvd or "
+     ".vtp.series, with a .vtp each beside it.",
      0, 0, NULL},
     {"to", CLI_TEXT, AT(to), "UNIT|CODE",
      "Unit of the meshes written; default: the input's; mm for samples and checkpoints. Or the DEM "
@@ -187,10 +185,9 @@ static scree_status make_clump(const cli_call *call, scree_particle **particle,
   cli_clump_surface surface = {.triangles = SCREE_CLUMP_TRIANGLES};
   scree_clump_options o = scree_default_clump_options();
   scree_clumps clumps;
-  scree_status status = cli_load_for_clump(word, &input, call->progress, &surface, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(cli_load_for_clump(word, &input, call->progress, &surface, error));
   if (a->count) o.most = a->count;
-  status = scree_clumps_make(&surface.mesh, &o, call->progress, &clumps, error);
+  scree_status status = scree_clumps_make(&surface.mesh, &o, call->progress, &clumps, error);
   scree_mesh_free(&surface.mesh);
   if (status != SCREE_OK) return cli_name_in_error(word, error);
   const scree_clump *clump =
@@ -239,9 +236,9 @@ typedef struct checkpoint {
 static scree_status load_checkpoint(const char *word, checkpoint *c, scree_error *error) {
   *c = (checkpoint){0};
   if (kind_of(word) == WORLD) return scree_world_load(word, &c->world, error);
-  scree_status status = scree_scene_load(word, &c->scene, error);
-  if (status == SCREE_OK) c->world = scree_scene_world(c->scene);
-  return status;
+  SCREE_TRY(scree_scene_load(word, &c->scene, error));
+  c->world = scree_scene_world(c->scene);
+  return SCREE_OK;
 }
 
 static void free_checkpoint(checkpoint *c) {
@@ -298,10 +295,9 @@ static scree_status name_file(const char *output, size_t index, char name[NAME_B
 static scree_status write_frame(const cli_call *call, size_t index, const char *name, double *time,
                                 scree_error *error) {
   checkpoint c;
-  scree_status status = load_checkpoint(call->inputs[index], &c, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(load_checkpoint(call->inputs[index], &c, error));
   *time = scree_world_time(c.world);
-  status = write_view(call, &c, call->inputs[index], name, error);
+  scree_status status = write_view(call, &c, call->inputs[index], name, error);
   free_checkpoint(&c);
   return status;
 }
@@ -366,10 +362,10 @@ static int check_call(const cli_call *call, bool world) {
                       "-o %s: of a surface, .stl, .ply, .obj, .off, .3mf or .vtp is written",
                       a->output);
   if (world && known && !vtp)
-    return cli_misuse(call->verb,
-                      "-o %s: of a checkpoint, a .vtp or .csv is written, or a folder with a mesh "
-                      "per shape",
-                      a->output);
+    return cli_misuse(
+        call->verb,
+        "-o %s: of a checkpoint, a .vtp or .csv is written, or a folder with a mesh per shape",
+        a->output);
   if (a->reference && (world || !vtp))
     return cli_misuse(call->verb, "--reference is for a surface written as .vtp");
   if (a->view && !(world && vtp))
@@ -385,11 +381,10 @@ static int check_clump_call(const cli_call *call) {
   if (call->input_count > 1 || kind_of(call->inputs[0]) != SURFACE)
     return cli_misuse(call->verb, "--to %s is for one surface or clump", a->to);
   if (a->reference || a->view || a->centre || a->principal)
-    return cli_misuse(
-        call->verb,
-        "--to %s takes neither --reference, --view, --centre nor --principal: a clump "
-        "stands about its centre of mass, along its principal axes",
-        a->to);
+    return cli_misuse(call->verb,
+                      "--to %s takes neither --reference, --view, --centre nor --principal: a "
+                      "clump stands about its centre of mass, along its principal axes",
+                      a->to);
   if (a->count && cli_is_clump(call->inputs[0]))
     return cli_misuse(call->verb, "--count is for a surface; %s is a clump", call->inputs[0]);
   return 0;
@@ -407,11 +402,10 @@ static int run(const cli_call *call) {
     return export_clump(call, &error) == SCREE_OK ? 0 : cli_fail(&error);
   }
   if (a->to && !cli_unit_from_text(a->to, &unit))
-    return cli_misuse(
-        call->verb,
-        "--to %s: must be a unit (m, cm, mm, um, inch, ft, km) or a DEM code (lammps, "
-        "liggghts, yade, pfc, chrono, edem, mfix)",
-        a->to);
+    return cli_misuse(call->verb,
+                      "--to %s: must be a unit (m, cm, mm, um, inch, ft, km) or a DEM code "
+                      "(lammps, liggghts, yade, pfc, chrono, edem, mfix)",
+                      a->to);
   if (a->count || cli_is_clump(call->inputs[0]))
     return cli_misuse(call->verb, "a clump is written for a DEM code: say which with --to");
   bool world = kind_of(call->inputs[0]) != SURFACE;
@@ -429,20 +423,18 @@ const cli_verb cli_verb_export = {
     .summary = "write a mesh or a pile for other programs",
     .inputs = "FILE|sample:NAME|CHECKPOINT...",
     .description =
-        "A particle's mesh in the unit asked, with its centre of mass at the origin "
-        "and its principal axes along x, y and z when asked, and mass, centre and inertia in a "
-        "JSON beside it. The surface must be closed.\n\n"
+        "A particle's mesh in the unit asked, with its centre of mass at the origin and its "
+        "principal axes along x, y and z when asked, and mass, centre and inertia in a JSON beside "
+        "it. The surface must be closed.\n\n"
         "For other DEM codes (--to lammps, liggghts, yade, pfc, chrono, edem or mfix) a clump is "
         "written into a folder as that code reads it, from a table of `scree clump` or made of a "
-        "surface: spheres "
-        "about the centre of mass along the principal axes with the body's mass and inertia (EDEM "
-        "and MFiX work these out for themselves), and for the first three a script that lets some "
-        "fall into a box. Other codes read the mesh.\n\n"
+        "surface: spheres about the centre of mass along the principal axes with the body's mass "
+        "and inertia (EDEM and MFiX work these out for themselves), and for the first three a "
+        "script that lets some fall into a box. Other codes read the mesh.\n\n"
         "For ParaView: a surface as .vtp with the area of every triangle, and with --reference its "
         "distance to another surface; lengths in metres.\n\n"
         "A checkpoint or frame of a simulation becomes .vtp, as the view asked; of a scene .csv, a "
-        "table that `bodies: {file: ...}` of another scene reads; or a folder: "
-        "pile.json and "
+        "table that `bodies: {file: ...}` of another scene reads; or a folder: pile.json and "
         "bodies.csv with every body's position, quaternion and velocities, and an STL per shape in "
         "the frame that the quaternions turn. docs/reference/formats.md has every field.",
     .examples = "scree export result/phone.stl --principal --to m --density 1800 -o phone-dem.stl\n"

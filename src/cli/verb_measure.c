@@ -211,8 +211,8 @@ static void warn(const scree_measure_entry *entry) {
   else if (!m->closed && entry->topology.closed && entry->topology.oriented)
     fprintf(stderr,
             "scree: %s: warning: %zu non-manifold edge%s, where the facets do not pair up both "
-            "ways, so they enclose no volume; volume, centroid, moments and what follows from "
-            "them mean little\n",
+            "ways, so they enclose no volume; volume, centroid, moments and what follows from them "
+            "mean little\n",
             file, crowded, cli_plural(crowded));
   else if (!m->closed && entry->topology.closed)
     fprintf(stderr,
@@ -262,12 +262,11 @@ static scree_status measure_file(const cli_call *call, const char *file, scree_m
   cli_input_options input = cli_source_options(&arguments->source);
   scree_scan scan;
   input.read.weld_tolerance = arguments->weld;
-  scree_status status = cli_load(file, &input, call->progress, &scan, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(cli_load(file, &input, call->progress, &scan, error));
   memcpy(format, scan.format, sizeof scan.format);
   *entry = (scree_measure_entry){
       .file = file, .format = format, .checksum = scan.checksum, .unit_m = scan.unit_m};
-  status = scree_mesh_measure(&scan.mesh, &entry->measures, error);
+  scree_status status = scree_mesh_measure(&scan.mesh, &entry->measures, error);
   if (status == SCREE_OK) status = scree_mesh_topology(&scan.mesh, &entry->topology, error);
   const scree_measures *m = &entry->measures;
   entry->described = m->closed && m->has_volume && !m->inward;
@@ -292,9 +291,8 @@ static scree_status write_tables(const cli_call *call, const scree_measure_entry
                                  size_t count, scree_error *error) {
   const measure_arguments *arguments = call->options;
   if (arguments->zingg) {
-    scree_status status =
-        scree_zingg_figure_write(entries, count, arguments->zingg, arguments->overwrite, error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(
+        scree_zingg_figure_write(entries, count, arguments->zingg, arguments->overwrite, error));
   }
   if (!arguments->json && !arguments->csv) print_set(entries, count);
   if (arguments->json)
@@ -351,8 +349,8 @@ const cli_verb cli_verb_measure = {
         "convex hull), how its facets hang together, and of a closed body what people report of "
         "shapes: elongation, flatness and Zingg's class, Krumbein's sphericity, roundness and "
         "angularity by local curvature, the largest sphere inside and the smallest around; of "
-        "several their distributions. Integrals are exact for the polyhedron. "
-        "Where the surface is not closed, a warning says so. - is standard input.\n\n"
+        "several their distributions. Integrals are exact for the polyhedron. Where the surface is "
+        "not closed, a warning says so. - is standard input.\n\n"
         "Text is in the file's unit; JSON and CSV are in SI units.",
     .examples = "scree measure phone.stl\n"
                 "scree measure --unit m --csv stones/*.ply\n",

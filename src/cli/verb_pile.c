@@ -49,8 +49,7 @@ static const cli_option options[] = {
      "Unit of length of a scan or an outline that says none. Default: mm.", 0, 0, NULL},
     {"particle-size", CLI_LENGTH, AT(particle_size), "LENGTH",
      "Diameter of the particles of a measured heap: widths of bins and sectors keep to it. "
-     "Default: "
-     "not known.",
+     "Default: not known.",
      0, 1e3, NULL},
     {"cell", CLI_LENGTH_TEXT, AT(cell), "LENGTH",
      "Side of the height field's cells; 0: a tenth of the particle size. Default: the scene's.", 0,
@@ -73,8 +72,7 @@ static const cli_option options[] = {
      "The camera's angle above the horizontal. Default: 18.", -90, 90, NULL},
     {"picture-width", CLI_LENGTH, AT(picture_width), "LENGTH",
      "What a picture that is measured shows across. Of one that is written: what it shows about "
-     "the "
-     "middle of the heap; default: the heap.",
+     "the middle of the heap; default: the heap.",
      0, 1e4, NULL},
     {"rays", CLI_COUNT, AT(rays), "N", "Rays a pixel. Default: 24.", 1, 65536, NULL},
     {"vtp", CLI_TEXT, AT(vtp), "FILE", "Write the particles for ParaView, a .vtp.", 0, 0, NULL},
@@ -195,10 +193,9 @@ static int measure(const cli_call *call, scree_scene *scene, const scree_render_
 static scree_status check_outputs(const cli_call *call, scree_error *error) {
   const pile_arguments *a = call->options;
   const char *const outputs[] = {a->vtp, a->picture};
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < 2 && status == SCREE_OK; i++)
-    if (outputs[i]) status = cli_check_output(call, outputs[i], a->force, error);
-  return status;
+  for (size_t i = 0; i < 2; i++)
+    if (outputs[i]) SCREE_TRY(cli_check_output(call, outputs[i], a->force, error));
+  return SCREE_OK;
 }
 
 /* A heap that no scene has: what belongs to scenes is refused. */
@@ -271,13 +268,11 @@ const cli_verb cli_verb_pile = {
     .inputs = "FILE",
     .description =
         "Measures a frame or a checkpoint that `scree repose` or `scree run` wrote, with the "
-        "settings of its pile sensor or "
-        "with others: angle of repose three ways with its spread, height, base radius, run-out, "
-        "packing fraction and coordination number. - is stdin.\n\n"
+        "settings of its pile sensor or with others: angle of repose three ways with its spread, "
+        "height, base radius, run-out, packing fraction and coordination number. - is stdin.\n\n"
         "Any other FILE is a real heap. A scan of it, in any orientation, must have some of the "
-        "floor "
-        "around it. A CSV is its outline, with lines x,z and a head as x [mm],z [mm]. A PNG is a "
-        "picture of its silhouette from the side. An outline's three ways share two flanks.",
+        "floor around it. A CSV is its outline, with lines x,z and a head as x [mm],z [mm]. A PNG "
+        "is a picture of its silhouette from the side. An outline's three ways share two flanks.",
     .examples = "scree pile heap/last.scree\n"
                 "scree pile heap/last.scree --band-low 0.1 --band-high 0.9 --json\n"
                 "scree pile heap/frame-000012.scree -o frame.png --elevation 5\n"

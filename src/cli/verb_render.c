@@ -92,8 +92,7 @@ static bool allocate_picture(picture *p, size_t count) {
 }
 
 static scree_status fail_memory(scree_error *error) {
-  *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the picture"};
-  return SCREE_OUT_OF_MEMORY;
+  return scree_fail_memory(error, 0, "the picture");
 }
 
 static void put_cell(picture *p, size_t i, const char *name) {
@@ -113,9 +112,9 @@ static void put_input(picture *p, size_t i, const char *word) {
 static scree_status read_one(picture *p, size_t i, const char *word, const cli_source *source,
                              const scree_progress *progress, scree_error *error) {
   cli_input_options input = cli_source_options(source);
-  scree_status status = cli_load(word, &input, progress, &p->scans[i], error);
-  if (status == SCREE_OK) put_input(p, i, word);
-  return status;
+  SCREE_TRY(cli_load(word, &input, progress, &p->scans[i], error));
+  put_input(p, i, word);
+  return SCREE_OK;
 }
 
 static scree_status make_level(picture *p, size_t i, double rp, const scree_curve *curve,
@@ -123,13 +122,11 @@ static scree_status make_level(picture *p, size_t i, double rp, const scree_curv
   scree_mesh *scan = &p->scans[0].mesh, *mesh = &p->scans[i].mesh;
   bool recommended = rp == RECOMMENDED;
   size_t target = recommended ? 0 : scree_choice_target(rp, scan->triangle_count), level;
-  scree_status status = SCREE_OK;
   if (recommended)
-    status = cli_recommended_level(curve, scan, progress, &level, error);
+    SCREE_TRY(cli_recommended_level(curve, scan, progress, &level, error));
   else
     level = scree_curve_find(curve, target);
-  if (status == SCREE_OK) status = scree_curve_mesh(curve, level, mesh, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_curve_mesh(curve, level, mesh, error));
   char name[96] = "recommended";
   if (!recommended) snprintf(name, sizeof name, "Rp = %g", rp);
   put_cell(p, i, name);
@@ -181,8 +178,7 @@ static scree_status measure_distances(picture *p, const scree_mesh *reference, b
     if (refine && mesh != reference && !render_refine(mesh)) return fail_memory(error);
     p->distances[i] = malloc(mesh->vertex_count * sizeof(double) + 1);
     if (!p->distances[i]) return fail_memory(error);
-    scree_status status = scree_mesh_distance_field(mesh, reference, p->distances[i], error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(scree_mesh_distance_field(mesh, reference, p->distances[i], error));
     p->items[i].vertex_values = p->distances[i];
     vertex_count += mesh->vertex_count;
   }
@@ -203,9 +199,9 @@ static scree_status color_by_distance(picture *p, const cli_call *call,
     return measure_distances(p, &p->scans[0].mesh, refine, &render->value_maximum, error);
   cli_input_options input = cli_source_options(&a->source);
   scree_scan reference;
-  scree_status status = cli_load(a->reference, &input, call->progress, &reference, error);
-  if (status != SCREE_OK) return status;
-  status = measure_distances(p, &reference.mesh, refine, &render->value_maximum, error);
+  SCREE_TRY(cli_load(a->reference, &input, call->progress, &reference, error));
+  scree_status status =
+      measure_distances(p, &reference.mesh, refine, &render->value_maximum, error);
   scree_scan_free(&reference);
   return status;
 }
@@ -245,18 +241,17 @@ static scree_status make_picture(const cli_call *call, const double *rp, size_t 
                                  picture *p, scree_error *error) {
   const render_arguments *a = call->options;
   if (!allocate_picture(p, call->input_count + level_count)) return fail_memory(error);
-  scree_status status = SCREE_OK;
   if (level_count) { /* then the input is one */
     const cli_soundness soundness = {0};
     double scale;
-    status = cli_load_for_levels(call, &a->source, &soundness, &p->scans[0], &scale, error);
-    if (status == SCREE_OK) put_input(p, 0, call->inputs[0]);
-    if (status == SCREE_OK) status = make_levels(p, rp, scale, call->progress, error);
+    SCREE_TRY(cli_load_for_levels(call, &a->source, &soundness, &p->scans[0], &scale, error));
+    put_input(p, 0, call->inputs[0]);
+    SCREE_TRY(make_levels(p, rp, scale, call->progress, error));
   }
-  for (size_t i = 0; status == SCREE_OK && !level_count && i < call->input_count; i++)
-    status = read_one(p, i, call->inputs[i], &a->source, call->progress, error);
+  for (size_t i = 0; !level_count && i < call->input_count; i++)
+    SCREE_TRY(read_one(p, i, call->inputs[i], &a->source, call->progress, error));
   for (size_t i = 0; a->no_captions && i < p->count; i++) p->cells[i].caption = NULL;
-  return status;
+  return SCREE_OK;
 }
 
 static int run(const cli_call *call) {
@@ -270,8 +265,8 @@ static int run(const cli_call *call) {
   if (code) return code;
   if (a->levels && !level_count)
     return cli_misuse(call->verb,
-                      "--rp %s: must be at most %d numbers above 0 and up to 1, or "
-                      "recommended, with commas between",
+                      "--rp %s: must be at most %d numbers above 0 and up to 1, or recommended, "
+                      "with commas between",
                       a->levels, MOST_LEVELS);
   if (a->levels && call->input_count != 1)
     return cli_misuse(call->verb, "--rp takes one surface, not %zu", call->input_count);
@@ -295,14 +290,13 @@ const cli_verb cli_verb_render = {
     .name = "render",
     .summary = "picture of meshes, ray-traced",
     .inputs = "FILE...|sample:NAME...",
-    .description =
-        "Writes one PNG with a view of each mesh, framed alike, captioned with its name and "
-        "triangle count: for example a scan and its levels side by side.",
-    .examples = "scree render scan.stl -o scan.png\n"
-                "scree render scan.stl level-*.stl -o levels.png --size 1800x500 --edges\n"
-                "scree render scan.stl --rp 1e-1,1e-2,1e-3,1e-4,1e-5 --edges -o row.png "
-                "--size 2400x400\n"
-                "scree render scan.stl --rp 1e-3 --color-by distance -o error.png\n",
+    .description = "Writes one PNG with a view of each mesh, framed alike, captioned with its name "
+                   "and triangle count: for example a scan and its levels side by side.",
+    .examples =
+        "scree render scan.stl -o scan.png\n"
+        "scree render scan.stl level-*.stl -o levels.png --size 1800x500 --edges\n"
+        "scree render scan.stl --rp 1e-1,1e-2,1e-3,1e-4,1e-5 --edges -o row.png --size 2400x400\n"
+        "scree render scan.stl --rp 1e-3 --color-by distance -o error.png\n",
     CLI_OPTIONS(options, defaults),
     .input_minimum = 1,
     .input_maximum = 1000,

@@ -45,8 +45,7 @@ static const cli_option options[] = {
      "Keep only the largest shell, after merging, and its cavities.", 0, 0, NULL},
     {"cavities", CLI_SHARE, AT(cavity_share), "SHARE",
      "Fill cavities, the smallest first, up to this share of the volume in all: nothing ever "
-     "touches "
-     "them. Default: 1e-3.",
+     "touches them. Default: 1e-3.",
      0, 1, NULL},
     {"drop-cavities", CLI_FLAG, AT(drop_cavities), NULL, "Fill all cavities: drop their shells.", 0,
      0, NULL},
@@ -123,9 +122,8 @@ static scree_status write_result(const cli_call *call, const scree_mesh *mesh, s
   write.overwrite = a->force;
   write.comment = call->command_line;
   scree_check_options how = {.intersections = !a->fast};
-  scree_status status =
-      cli_check_rounded(mesh, a->output, a->source.unit, &how, call->progress, error);
-  return status == SCREE_OK ? scree_mesh_write(mesh, a->output, &write, error) : status;
+  SCREE_TRY(cli_check_rounded(mesh, a->output, a->source.unit, &how, call->progress, error));
+  return scree_mesh_write(mesh, a->output, &write, error);
 }
 
 static void print_text(const cli_call *call, const scree_scan *scan,
@@ -210,8 +208,8 @@ const cli_verb cli_verb_repair = {
         "holes, drops debris and fills small cavities.\n\n"
         "Cuts out places where a shell meets itself, or merges its folds where that keeps more of "
         "the body. Merges shells that cross, overlap or touch into the surface of their union.\n\n"
-        "Prints what was done with counts, and area and volume before and after. The result "
-        "passes `scree check`, or nothing is written and what remains is said.\n\n"
+        "Prints what was done with counts, and area and volume before and after. The result passes "
+        "`scree check`, or nothing is written and what remains is said.\n\n"
         "Exit code 0 where the result was written, 2 for wrong usage, 1 otherwise.",
     .examples = "scree repair scan.stl -o closed.stl\n"
                 "scree repair scan.ply -o closed.ply --large-holes --largest\n"

@@ -38,13 +38,11 @@ const cli_verb cli_verb_report = {
     .description =
         "Makes one self-contained HTML page of the folders that scree choose -o, scree repose -o, "
         "scree drop and scree study write. Of a choice: the answer, the curve with a slider that "
-        "shows the "
-        "mesh at every level beside the scan, the tables. Of a heap: its angles, and the particles "
-        "in 3D to turn around and play through time beside the curves; of a pour the same without "
-        "angles. Of a study: angle of "
-        "repose, its spread, rotation and computation time with their curves and tables, and a "
-        "heap of each point. And how each was made. It opens by double-click, also from a mail, "
-        "and asks nothing of any network.\n\n"
+        "shows the mesh at every level beside the scan, the tables. Of a heap: its angles, and the "
+        "particles in 3D to turn around and play through time beside the curves; of a pour the "
+        "same without angles. Of a study: angle of repose, its spread, rotation and computation "
+        "time with their curves and tables, and a heap of each point. And how each was made. It "
+        "opens by double-click, also from a mail, and asks nothing of any network.\n\n"
         "These verbs already leave such a page as DIR/report.html; this one makes it of several "
         "folders, or makes it again.",
     .examples = "scree choose --samples -o devices\n"

@@ -1,7 +1,6 @@
 /* scree run: a scene of the user's own. */
 #include "cli/scene_run.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct run_arguments {
@@ -47,10 +46,10 @@ static const cli_option options[] = {
 #undef AT
 
 static scree_status simulate(cli_scene_run *r, scree_error *error) {
-  scree_status status = r->output ? cli_check_scene_output(r, error) : SCREE_OK;
-  if (status == SCREE_OK && r->output && r->overwrite && !r->resume)
-    status = cli_clear_scene_output(r->call, r->output, error);
-  return status == SCREE_OK ? cli_run_scene(r, error) : status;
+  SCREE_TRY(r->output ? cli_check_scene_output(r, error) : SCREE_OK);
+  if (r->output && r->overwrite && !r->resume)
+    SCREE_TRY(cli_clear_scene_output(r->call, r->output, error));
+  return cli_run_scene(r, error);
 }
 
 /* ---- the call ---- */
@@ -126,18 +125,16 @@ const cli_verb cli_verb_run = {
     .inputs = "SCENE.yaml",
     .description =
         "Simulates what a YAML file describes (docs/reference/scenes.md): shapes from scans, "
-        "spheres and "
-        "clumps; geometry from mesh files and solids, at rest or moving; inlets, outlets, sensors. "
-        "`scree run --template NAME > my.yaml` writes a commented file to start from. Every error "
-        "in a file is told with line and column, and with what is allowed.\n\n"
+        "spheres and clumps; geometry from mesh files and solids, at rest or moving; inlets, "
+        "outlets, sensors. `scree run --template NAME > my.yaml` writes a commented file to start "
+        "from. Every error in a file is told with line and column, and with what is allowed.\n\n"
         "Prints what came in, is inside and went out, and what the sensors read. With -o DIR "
         "writes result.json, series.csv (all numbers over time), scene.yaml (the scene with every "
         "default), sensor-*.csv (what sensors have besides columns), bodies.pvd and geometry.pvd "
-        "with their frames for ParaView, scene.png, and "
-        "report.html, which plays it. Ctrl-C leaves a checkpoint, as a crash does: --resume goes "
-        "on with the same bits. The same file gives the same bits for any number of threads. A "
-        "scene that leaves the range of the contact law stops with step, body and cause, and "
-        "leaves the state shortly before in stopped.scree.",
+        "with their frames for ParaView, scene.png, and report.html, which plays it. Ctrl-C leaves "
+        "a checkpoint, as a crash does: --resume goes on with the same bits. The same file gives "
+        "the same bits for any number of threads. A scene that leaves the range of the contact law "
+        "stops with step, body and cause, and leaves the state shortly before in stopped.scree.",
     .examples = "scree run --template hopper > hopper.yaml\n"
                 "scree run hopper.yaml -o hopper\n"
                 "scree run hopper.yaml --set inlets.feed.count=800 --set time=6 -o more\n"

@@ -132,13 +132,12 @@ const cli_verb cli_verb_sample = {
     .name = "sample",
     .summary = "write the built-in sample scans",
     .inputs = "[NAME...|all]",
-    .description =
-        "Writes the built-in samples as they would come from a structured-light scanner: nine "
-        "devices (feature phones fp-1 to fp-3, digital cameras dc-1 to dc-3, smartphones sp-1 to "
-        "sp-3; all of them by `all`, or by --output alone) and four test solids (see --list). They "
-        "are "
-        "synthetic: drawn as distance fields, meshed closed and manifold, and given the scanner's "
-        "noise. Files are in millimetres, as scanners write. The same options give the same bits.",
+    .description = "Writes the built-in samples as they would come from a structured-light "
+                   "scanner: nine devices (feature phones fp-1 to fp-3, digital cameras dc-1 to "
+                   "dc-3, smartphones sp-1 to sp-3; all of them by `all`, or by --output alone) "
+                   "and four test solids (see --list). They are synthetic: drawn as distance "
+                   "fields, meshed closed and manifold, and given the scanner's noise. Files are "
+                   "in millimetres, as scanners write. The same options give the same bits.",
     .examples = "scree sample -o samples\n"
                 "scree sample fp-1 --noise 0 -o clean.stl\n"
                 "scree sample dc-3 sp-2 --resolution 0.5mm -o coarse\n",

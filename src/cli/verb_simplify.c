@@ -35,8 +35,7 @@ static const cli_option options[] = {
     {"error", CLI_LENGTH, offsetof(simplify_arguments, error), "LENGTH",
      "Go as far as no collapse moves the surface by more than this, as in 0.05mm: by the quadric "
      "error, an estimate, not a bound. Costlier collapses are left out and others go on, so that "
-     "the "
-     "mesh is none of the levels that curve shows. May be given with -r or -n.",
+     "the mesh is none of the levels that curve shows. May be given with -r or -n.",
      1e-12, 1e12, NULL},
     {"method", CLI_CHOICE, offsetof(simplify_arguments, method), "METHOD",
      "volume keeps the volume at every level; qecd is MeshLab's quadric edge collapse decimation. "
@@ -44,8 +43,7 @@ static const cli_option options[] = {
      0, 0, "volume|qecd"},
     {"fit", CLI_FLAG, offsetof(simplify_arguments, fit), NULL,
      "Move the level's vertices to where its surface is nearer to the scan: the mean distance "
-     "falls "
-     "by some per cent, the volume stays, the area may be further off.",
+     "falls by some per cent, the volume stays, the area may be further off.",
      0, 0, NULL},
     {"density", CLI_REAL, offsetof(simplify_arguments, density), "KG/M3",
      "Also write mass, centre of mass and inertia of the result at this density in kg/m3 into a "
@@ -77,16 +75,15 @@ static void say(const cli_call *call, const scree_curve *curve, size_t index, wr
   if (call->quiet) return;
   if (!arguments->fit)
     snprintf(quadric, sizeof quadric, ", quadric error %.3g mm", level.quadric_error * 1e3);
-  fprintf(
-      stderr,
-      "%s: %zu -> %zu triangles (%.3g %%) by %s%s; area off by %s, volume by %s%s; coordinates in "
-      "%s\n",
-      word, first.triangle_count, level.triangle_count, 100 * level.rp,
-      scree_method_name(facts.method), arguments->fit ? ", fitted" : "",
-      scree_percent_text(fabs(is.area - first.area) / first.area, area),
-      scree_percent_text(
-          first.volume != 0 ? fabs(is.volume - first.volume) / fabs(first.volume) : 0, volume),
-      quadric, cli_unit_name(arguments->source.unit));
+  fprintf(stderr,
+          "%s: %zu -> %zu triangles (%.3g %%) by %s%s; area off by %s, volume by %s%s; coordinates "
+          "in %s\n",
+          word, first.triangle_count, level.triangle_count, 100 * level.rp,
+          scree_method_name(facts.method), arguments->fit ? ", fitted" : "",
+          scree_percent_text(fabs(is.area - first.area) / first.area, area),
+          scree_percent_text(
+              first.volume != 0 ? fabs(is.volume - first.volume) / fabs(first.volume) : 0, volume),
+          quadric, cli_unit_name(arguments->source.unit));
   if (!facts.closed)
     fprintf(stderr, "%s: not closed: %zu boundary edge%s; the volume means nothing\n", word,
             facts.boundary_edge_count, cli_plural(facts.boundary_edge_count));
@@ -117,9 +114,8 @@ static scree_status write_with_mass(const cli_call *call, const scree_scan *scan
   o.source = call->inputs[0];
   o.command_line = call->command_line;
   o.checksum = scan->checksum;
-  scree_status status = cli_beside(arguments->output, ".json", path, sizeof path, error);
-  return status == SCREE_OK ? scree_particle_export(mesh, &o, arguments->output, path, NULL, error)
-                            : status;
+  SCREE_TRY(cli_beside(arguments->output, ".json", path, sizeof path, error));
+  return scree_particle_export(mesh, &o, arguments->output, path, NULL, error);
 }
 
 static scree_status write_level(const cli_call *call, const scree_scan *scan,
@@ -154,8 +150,8 @@ static scree_status check_output(const cli_call *call, scree_error *error) {
   if (!strcmp(arguments->output, "-")) return SCREE_OK;
   scree_status status = cli_check_output(call, arguments->output, arguments->force, error);
   if (status != SCREE_OK || !(arguments->density > 0)) return status;
-  status = cli_beside(arguments->output, ".json", path, sizeof path, error);
-  return status == SCREE_OK ? cli_check_output(call, path, arguments->force, error) : status;
+  SCREE_TRY(cli_beside(arguments->output, ".json", path, sizeof path, error));
+  return cli_check_output(call, path, arguments->force, error);
 }
 
 static scree_status simplify(const cli_call *call, scree_error *error) {
@@ -234,8 +230,7 @@ const cli_verb cli_verb_simplify = {
         "Decimates a scan by edge collapses and writes the level asked for. A scan that is no "
         "closed surface is repaired first, which is said. What was closed, manifold and outward "
         "stays so; no facet is flipped, folded over or driven through another. The same file gives "
-        "the same bits, whatever the order of its facets and the "
-        "number of threads.",
+        "the same bits, whatever the order of its facets and the number of threads.",
     .examples = "scree simplify phone.stl -n recommended -o phone_dem.stl\n"
                 "scree simplify phone.stl -r 1e-3 -o phone_762.stl\n"
                 "scree simplify phone.stl -n 500 --fit -o phone_near.stl\n"

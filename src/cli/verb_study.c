@@ -3,7 +3,6 @@
 #include "cli/terminal.h"
 #include "report/program.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #define AT(field) offsetof(study_arguments, field)
@@ -15,8 +14,7 @@ const cli_option study_options[STUDY_OPTIONS] = {
      0, 0, NULL},
     {"jobs", CLI_COUNT, AT(jobs), "N",
      "Runs at the same time, each in a process of its own; with --backend cuda in threads that "
-     "share "
-     "the device. Default: one per processor, or 80 on a device; of a study at most one per "
+     "share the device. Default: one per processor, or 80 on a device; of a study at most one per "
      "run. A calibration plans as many runs at a time, at least its batch.",
      0, 1024, NULL},
     {"lease", CLI_REAL, AT(lease), "SECONDS",
@@ -79,8 +77,8 @@ scree_status study_write_page(const char *folder, scree_error *error) {
 /* Tables, figures and the page of them. */
 static scree_status write_files(const scree_study_result *result, const char *folder,
                                 scree_error *error) {
-  scree_status status = scree_study_report_write(result, folder, error);
-  return status == SCREE_OK ? study_write_page(folder, error) : status;
+  SCREE_TRY(scree_study_report_write(result, folder, error));
+  return study_write_page(folder, error);
 }
 
 /* Prints, and with `files` writes tables and figures to the folder. */
@@ -217,17 +215,15 @@ const cli_verb cli_verb_study = {
     .inputs = "STUDY.yaml | status DIR",
     .description =
         "Runs the angle-of-repose experiment, or a scene of your own (base: {scene: my.yaml}), at "
-        "every point of a design, several times each: "
-        "shapes, Rp levels (also spheres), friction, lift speed or any other field of the "
-        "experiment, on a full grid or a space-filling design. The folder holds everything; the "
-        "same command goes on where it was interrupted, and any number of processes and machines "
-        "that share the folder work on it together. Results go to DIR/study.sqlite, tables, "
-        "figures and report.html beside it. docs/reference/study.md describes the file and the "
-        "statistics.\n"
+        "every point of a design, several times each: shapes, Rp levels (also spheres), friction, "
+        "lift speed or any other field of the experiment, on a full grid or a space-filling "
+        "design. The folder holds everything; the same command goes on where it was interrupted, "
+        "and any number of processes and machines that share the folder work on it together. "
+        "Results go to DIR/study.sqlite, tables, figures and report.html beside it. "
+        "docs/reference/study.md describes the file and the statistics.\n"
         "\n"
         "With the word status and its folder it shows how far a study is and what is known so far. "
-        "Under mpirun or "
-        "srun every rank is a worker.",
+        "Under mpirun or srun every rank is a worker.",
     .examples = "scree study repose.yaml -o repose --jobs 4\n"
                 "scree study status repose\n"
                 "scree study repose.yaml -o repose --slurm --dry-run\n"

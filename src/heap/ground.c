@@ -12,8 +12,6 @@
 #include "scree.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum {
   POINTS = 4096,      /* of the surface, drawn by area */
@@ -160,11 +158,11 @@ static scree_status find_floor(const vec3 *points, vec3 sum, double diagonal, pl
       try_plane(p, points, width, best, &share);
     }
   if (share < least_floor)
-    return scree_fail(error, SCREE_BAD_MESH,
-                      "no floor that carries a heap: no plane has %g %% of the surface in it and "
-                      "all else on one side; leave the floor around the heap in the scan, and cut "
-                      "off what is below it",
-                      100 * least_floor);
+    return scree_fail(
+        error, SCREE_BAD_MESH,
+        "no floor that carries a heap: no plane has %g %% of the surface in it and all else on one "
+        "side; leave the floor around the heap in the scan, and cut off what is below it",
+        100 * least_floor);
   double rms = fit_plane(best, points, width);
   for (int round = 0; round < ROUNDS; round++) {
     double next = fit_plane(best, points, fmax(noise_width * rms, 1e-9 * diagonal));
@@ -285,13 +283,12 @@ static scree_status make_field(const scree_mesh *mesh, const plane *p, double ce
   double half = 0.5 * fmax(high.x - low.x, high.y - low.y);
   if (cell == 0) cell = 2 * half / CELLS_ACROSS;
   scree_height_field made;
-  scree_status status = scree_height_field_create(0.5 * (low.x + high.x), 0.5 * (low.y + high.y),
-                                                  half + 2 * cell, cell, &made, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_height_field_create(0.5 * (low.x + high.x), 0.5 * (low.y + high.y),
+                                      half + 2 * cell, cell, &made, error));
   for (size_t i = 0; i < made.columns * made.rows; i++) made.height[i] = -INFINITY;
   const double origin[3] = {0, 0, 0}, turned[4] = {q.w, q.x, q.y, q.z};
   scree_height_field_add_mesh(&made, mesh, origin, turned, p->offset);
-  status = tidy(&made, ground, error);
+  scree_status status = tidy(&made, ground, error);
   vec3_store(ground->up, p->normal);
   ground->offset = p->offset;
   if (status == SCREE_OK)

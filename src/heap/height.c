@@ -4,7 +4,6 @@
 #include "base/vec.h"
 
 #include <math.h>
-#include <string.h>
 
 static const double most_cells = 1e8; /* 0.8 GB: a coarser grid is meant */
 static const double rounding = 1e-9;  /* a centre on an edge is in both triangles, not in neither */
@@ -13,11 +12,10 @@ scree_status scree_height_field_create(double centre_x, double centre_y, double 
                                        double cell, scree_height_field *field, scree_error *error) {
   double side = ceil(2 * half_width / cell);
   if (!(cell > 0) || !(half_width > 0) || !(side * side <= most_cells))
-    return scree_fail(
-        error, SCREE_BAD_ARGUMENT,
-        "a height field of half width %g m with cells of %g m: must be positive and at "
-        "most %g cells",
-        half_width, cell, most_cells);
+    return scree_fail(error, SCREE_BAD_ARGUMENT,
+                      "a height field of half width %g m with cells of %g m: must be positive and "
+                      "at most %g cells",
+                      half_width, cell, most_cells);
   size_t count = (size_t)side;
   double *height = scree_alloc_zero(count * count, sizeof *height);
   if (!height) return scree_fail_memory(error, count * count * sizeof *height, "a height field");

@@ -6,7 +6,6 @@
 #include "scree.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { CELLS_ACROSS = 400, SIDES = 4, GREYS = 256 };
 static const double least_parted = 0.8; /* of the variance of greys, between dark and bright */
@@ -31,9 +30,8 @@ static scree_status make_outline(size_t count, scree_outline *outline, scree_err
 scree_status scree_outline_read(const char *path, double unit_m, scree_outline *outline,
                                 scree_error *error) {
   scree_curve_file c;
-  scree_status status = scree_curve_file_read(path, &c, error);
-  if (status != SCREE_OK) return status;
-  status = scree_curve_file_convert(&c, 0, "m", unit_m, path, error);
+  SCREE_TRY(scree_curve_file_read(path, &c, error));
+  scree_status status = scree_curve_file_convert(&c, 0, "m", unit_m, path, error);
   if (status == SCREE_OK) status = scree_curve_file_convert(&c, 1, "m", unit_m, path, error);
   if (status == SCREE_OK)
     *outline = (scree_outline){c.count, c.x, c.y};
@@ -44,14 +42,14 @@ scree_status scree_outline_read(const char *path, double unit_m, scree_outline *
 
 scree_status scree_outline_of_field(const scree_height_field *field, double axis,
                                     scree_outline *outline, scree_error *error) {
-  scree_status status = make_outline(field->columns, outline, error);
-  for (size_t i = 0; status == SCREE_OK && i < field->columns; i++) {
+  SCREE_TRY(make_outline(field->columns, outline, error));
+  for (size_t i = 0; i < field->columns; i++) {
     outline->x[i] = field->x + ((double)i + 0.5) * field->cell - axis;
     outline->z[i] = 0;
     for (size_t j = 0; j < field->rows; j++)
       outline->z[i] = fmax(outline->z[i], field->height[j * field->columns + i]);
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- measuring ---- */
@@ -90,8 +88,7 @@ scree_status scree_outline_measure(const scree_outline *outline, double cell,
   double axis = axis_of(outline),
          half = fmax(axis - outline->x[0], outline->x[outline->count - 1] - axis);
   if (cell == 0) cell = 2 * half / CELLS_ACROSS;
-  scree_status status = scree_height_field_create(axis, 0, half + cell, cell, &field, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_height_field_create(axis, 0, half + cell, cell, &field, error));
   for (size_t j = 0; j < field.rows; j++)
     for (size_t i = 0; i < field.columns; i++) {
       double dx = field.x + ((double)i + 0.5) * cell - axis,
@@ -100,7 +97,7 @@ scree_status scree_outline_measure(const scree_outline *outline, double cell,
     }
   used.sector_count = SIDES;
   used.silhouette_count = 1;
-  status = scree_repose_measure(&field, &used, repose, error);
+  scree_status status = scree_repose_measure(&field, &used, repose, error);
   scree_height_field_free(&field);
   return status;
 }
@@ -156,11 +153,11 @@ static scree_status find_silhouette(const uint8_t *rgb, picture *p, scree_error 
     }
   }
   if (parted < least_parted)
-    return scree_fail(error, SCREE_BAD_FILE,
-                      "no silhouette: dark and bright explain %.0f %% of the greys' variance, at "
-                      "least %g %% are needed; light the heap from behind, or paint it black on "
-                      "white",
-                      100 * parted, 100 * least_parted);
+    return scree_fail(
+        error, SCREE_BAD_FILE,
+        "no silhouette: dark and bright explain %.0f %% of the greys' variance, at least %g %% are "
+        "needed; light the heap from behind, or paint it black on white",
+        100 * parted, 100 * least_parted);
   for (size_t i = 0; i < p->width; i++) bright += !p->heap[i];
   for (size_t i = 0; 2 * bright < p->width && i < n; i++) p->heap[i] = !p->heap[i];
   return SCREE_OK;
@@ -283,8 +280,7 @@ scree_status scree_outline_trace(const uint8_t *rgb, size_t width, size_t height
   if (!(pixel > 0) || width < 8 || height < 8)
     return scree_fail(
         error, SCREE_BAD_ARGUMENT,
-        "a picture of %zu x %zu pixels of %g m: must be 8 x 8 at least, and its scale "
-        "positive",
+        "a picture of %zu x %zu pixels of %g m: must be 8 x 8 at least, and its scale positive",
         width, height, pixel);
   p.heap = scree_alloc(width * height, sizeof *p.heap);
   p.top = scree_alloc(2 * width, sizeof *p.top);

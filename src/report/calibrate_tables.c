@@ -60,11 +60,10 @@ static void print_trades(const scree_calibration_result *r, FILE *s) {
   }
   for (size_t k = 0; k < r->parameter_count; k++)
     if (is_bounded(&r->parameters[k]))
-      fprintf(
-          s,
-          "\n%s: its range ends before what agrees with the measurements does; only the other end "
-          "is told by them\n",
-          r->parameters[k].name);
+      fprintf(s,
+              "\n%s: its range ends before what agrees with the measurements does; only the other "
+              "end is told by them\n",
+              r->parameters[k].name);
   for (size_t k = 0; k < r->parameter_count; k++) {
     bool traded = r->parameters[k].identified || is_bounded(&r->parameters[k]);
     for (size_t i = 0; i < r->trade_count; i++)
@@ -170,18 +169,10 @@ static void put_parameters(scree_json *json, const scree_calibration_result *r) 
     scree_json_object(json, NULL);
     scree_json_text(json, "name", p->name);
     scree_json_text(json, "scale", p->logarithmic ? "log" : "linear");
-    scree_json_number(json, "from", p->from);
-    scree_json_number(json, "to", p->to);
+    SCREE_JSON_MEMBERS(json, p, from, to);
     if (!r->is_search) {
-      scree_json_number(json, "mean", p->mean);
-      scree_json_number(json, "sd", p->sd);
-      scree_json_number(json, "median", p->median);
-      scree_json_number(json, "low", p->low);
-      scree_json_number(json, "high", p->high);
-      scree_json_number(json, "narrowed", p->narrowed);
-      scree_json_bool(json, "identified", p->identified);
-      scree_json_number(json, "at_least", p->at_least);
-      scree_json_number(json, "at_most", p->at_most);
+      SCREE_JSON_MEMBERS(json, p, mean, sd, median, low, high, narrowed, identified, at_least,
+                         at_most);
     }
     scree_json_end(json);
   }
@@ -195,8 +186,7 @@ static void put_trades(scree_json *json, const scree_calibration_result *r) {
     scree_json_object(json, NULL);
     scree_json_text(json, "a", r->parameters[t->a].name);
     scree_json_text(json, "b", r->parameters[t->b].name);
-    scree_json_number(json, "correlation", t->correlation);
-    scree_json_number(json, "share", t->share);
+    SCREE_JSON_MEMBERS(json, t, correlation, share);
     scree_json_numbers(json, "one_end", t->ends[0], 2);
     scree_json_numbers(json, "other_end", t->ends[1], 2);
     scree_json_end(json);
@@ -206,24 +196,12 @@ static void put_trades(scree_json *json, const scree_calibration_result *r) {
 
 static void put_answer(scree_json *json, const scree_answer_result *a) {
   scree_json_object(json, NULL);
-  scree_json_text(json, "name", a->name);
-  scree_json_text(json, "experiment", a->experiment);
-  scree_json_text(json, "answer", a->answer);
-  scree_json_bool(json, "measured", a->measured);
-  scree_json_bool(json, "predicted", a->predicted);
-  scree_json_number(json, "value", a->value);
-  scree_json_number(json, "uncertainty", a->uncertainty);
-  scree_json_number(json, "scatter", a->scatter);
+  SCREE_JSON_MEMBERS(json, a, name, experiment, answer, measured, predicted, value, uncertainty,
+                     scatter);
   scree_json_number(json, "repeats", a->repeat_count);
-  scree_json_number(json, "mean", a->mean);
-  scree_json_number(json, "low", a->low);
-  scree_json_number(json, "high", a->high);
-  scree_json_number(json, "single_low", a->single_low);
-  scree_json_number(json, "single_high", a->single_high);
-  scree_json_number(json, "noise", a->noise);
+  SCREE_JSON_MEMBERS(json, a, mean, low, high, single_low, single_high, noise);
   scree_json_count(json, "runs", a->run_count);
-  scree_json_count(json, "missing", a->missing);
-  scree_json_bool(json, "inside", a->inside);
+  SCREE_JSON_MEMBERS(json, a, missing, inside);
   scree_json_row_object(json, "check");
   scree_json_count(json, "runs", a->check_count);
   scree_json_number(json, "mean", a->check_mean);
@@ -266,38 +244,27 @@ static void put_samples(scree_json *json, const scree_calibration_result *r) {
 }
 
 static void put_settings(scree_json *json, const scree_calibration_result *r) {
-  scree_json_text(json, "sought", r->sought);
-  scree_json_bool(json, "maximise", r->maximise);
+  SCREE_JSON_MEMBERS(json, r, sought, maximise);
   scree_json_array(json, "settings");
   for (size_t i = 0; i < r->setting_count; i++) {
     const scree_setting *c = &r->settings[i];
     scree_json_object(json, NULL);
     scree_json_numbers(json, "values", c->values, r->parameter_count);
-    scree_json_number(json, "mean", c->mean);
-    scree_json_number(json, "low", c->low);
-    scree_json_number(json, "high", c->high);
-    scree_json_number(json, "allowed", c->allowed);
+    SCREE_JSON_MEMBERS(json, c, mean, low, high, allowed);
     scree_json_count(json, "runs", c->run_count);
     scree_json_end(json);
   }
   scree_json_end(json);
 }
 
-static void put_result(scree_json *json, const scree_calibration_result *r) {
+static void put_result(scree_json *json, const void *result) {
+  const scree_calibration_result *r = result;
   size_t width = r->is_search ? 2 : 1 + r->parameter_count;
   scree_json_object(json, NULL);
-  scree_json_text(json, "title", r->title);
-  scree_json_text(json, "version", r->version);
-  scree_json_count(json, "seed", r->seed);
-  scree_json_number(json, "confidence", r->confidence);
-  scree_json_text(json, "stopped", r->stopped);
+  SCREE_JSON_MEMBERS(json, r, title, version, seed, confidence, stopped);
   scree_json_count(json, "rounds", r->progress.rounds);
   scree_json_count(json, "runs", r->progress.run_count);
-  scree_json_count(json, "done", r->progress.done);
-  scree_json_count(json, "failed", r->progress.failed);
-  scree_json_count(json, "budget", r->progress.budget);
-  scree_json_number(json, "seconds", r->progress.seconds);
-  scree_json_number(json, "planning_seconds", r->progress.planning_seconds);
+  SCREE_JSON_MEMBERS(json, &r->progress, done, failed, budget, seconds, planning_seconds);
   put_parameters(json, r);
   if (!r->is_search) put_trades(json, r);
   scree_json_array(json, "answers");
@@ -321,12 +288,7 @@ static void put_result(scree_json *json, const scree_calibration_result *r) {
 
 scree_status scree_calibration_json_write(const scree_calibration_result *result, const char *path,
                                           bool overwrite, scree_error *error) {
-  scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
-  scree_json json = scree_json_start(output.stream);
-  put_result(&json, result);
-  return scree_output_commit(&output, error);
+  return scree_json_file(path, overwrite, put_result, result, error);
 }
 
 /* ---- CSV ---- */
@@ -341,8 +303,7 @@ static void put_row(FILE *s, const double *values, size_t count) {
 scree_status scree_calibration_csv_write(const scree_calibration_result *r, const char *path,
                                          bool overwrite, scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   FILE *s = output.stream;
   for (size_t k = 0; k < r->parameter_count; k++) {
     if (k) putc(',', s);

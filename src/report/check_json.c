@@ -5,18 +5,13 @@
 
 static void json_check(scree_json *json, const char *key, const scree_check *check) {
   scree_json_object(json, key);
-  scree_json_bool(json, "usable", check->usable);
-  scree_json_text(json, "verdict", check->verdict);
-  scree_json_count(json, "triangle_count", check->triangle_count);
-  scree_json_count(json, "vertex_count", check->vertex_count);
-  scree_json_count(json, "shell_count", check->shell_count);
+  SCREE_JSON_MEMBERS(json, check, usable, verdict, triangle_count, vertex_count, shell_count);
   scree_json_numbers(json, "size", check->size, 3);
   if (check->volume_known)
     scree_json_number(json, "volume", check->volume);
   else
     scree_json_text(json, "volume", NULL);
-  scree_json_bool(json, "intersections_known", check->intersections_known);
-  scree_json_bool(json, "too_many_pairs", check->too_many_pairs);
+  SCREE_JSON_MEMBERS(json, check, intersections_known, too_many_pairs);
   scree_json_object(json, "defects");
   for (int i = 0; i < SCREE_DEFECT_COUNT; i++)
     if (scree_defect_is_counted(check, (scree_defect)i))
@@ -32,12 +27,8 @@ static void json_repair(scree_json *json, const scree_repair_report *repair) {
   for (int i = 0; i < SCREE_REPAIR_ACTION_COUNT; i++)
     scree_json_count(json, scree_repair_action_name((scree_repair_action)i), repair->done[i]);
   scree_json_end(json);
-  scree_json_number(json, "seam_distance", repair->seam_distance);
-  scree_json_number(json, "area_before", repair->area_before);
-  scree_json_number(json, "area_after", repair->area_after);
-  scree_json_number(json, "volume_before", repair->volume_before);
-  scree_json_number(json, "volume_after", repair->volume_after);
-  scree_json_number(json, "filled_volume", repair->filled_volume);
+  SCREE_JSON_MEMBERS(json, repair, seam_distance, area_before, area_after, volume_before,
+                     volume_after, filled_volume);
   json_check(json, "after", &repair->after);
 }
 
@@ -64,8 +55,7 @@ scree_status scree_check_json_write(const scree_check_entry *entries, size_t ent
                                     const char *command_line, const char *path, bool overwrite,
                                     scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   scree_json json = scree_json_start(output.stream);
   scree_json_array(&json, NULL);
   for (size_t i = 0; i < entry_count; i++) json_entry(&json, &entries[i], command_line);

@@ -13,13 +13,7 @@ static const char *reference_name(scree_reference reference) {
 
 static void json_pick(scree_json *json, const char *key, const scree_pick *pick) {
   scree_json_row_object(json, key);
-  scree_json_number(json, "rp", pick->rp);
-  scree_json_count(json, "triangle_count", pick->triangle_count);
-  scree_json_number(json, "eps_s", pick->eps_s);
-  scree_json_number(json, "ip", pick->ip);
-  scree_json_number(json, "level_eps_s", pick->level_eps_s);
-  scree_json_number(json, "area", pick->area);
-  scree_json_number(json, "volume", pick->volume);
+  SCREE_JSON_MEMBERS(json, pick, rp, triangle_count, eps_s, ip, level_eps_s, area, volume);
   scree_json_count(json, "similar_fewest", pick->fewest);
   scree_json_count(json, "similar_most", pick->most);
   scree_json_end(json);
@@ -67,11 +61,7 @@ static void json_recommended(scree_json *json, const scree_choice_report *report
     errors[e] = scree_fidelity_error(f, c->recommended_row, (scree_shape_error)e);
   scree_fidelity_farthest(f, c->recommended_row, at);
   scree_json_object(json, "recommended");
-  scree_json_number(json, "rp", c->recommended.rp);
-  scree_json_count(json, "triangle_count", c->recommended.triangle_count);
-  scree_json_number(json, "area", c->recommended.area);
-  scree_json_number(json, "volume", c->recommended.volume);
-  scree_json_number(json, "level_eps_s", c->recommended.level_eps_s);
+  SCREE_JSON_MEMBERS(json, &c->recommended, rp, triangle_count, area, volume, level_eps_s);
   json_errors(json, errors);
   json_changes(json, f, c->recommended_row);
   scree_json_numbers(json, "farthest", at, 3);
@@ -100,15 +90,8 @@ static void json_levels(scree_json *json, const scree_choice *choice) {
   for (size_t i = 0; i < choice->level_count; i++) {
     const scree_choice_level *level = &choice->levels[i];
     scree_json_row_object(json, NULL);
-    scree_json_number(json, "rp", level->rp);
-    scree_json_count(json, "triangle_count", level->triangle_count);
-    scree_json_number(json, "area", level->area);
-    scree_json_number(json, "volume", level->volume);
-    scree_json_number(json, "eps_s", level->eps_s);
-    scree_json_number(json, "ip", level->ip);
-    scree_json_number(json, "worst_eps_s", level->worst_eps_s);
-    scree_json_number(json, "robust_ip", level->robust_ip);
-    scree_json_bool(json, "reached", level->reached);
+    SCREE_JSON_MEMBERS(json, level, rp, triangle_count, area, volume, eps_s, ip, worst_eps_s,
+                       robust_ip, reached);
     json_errors(json, level->errors);
     scree_json_end(json);
   }
@@ -122,8 +105,7 @@ static void json_best(scree_json *json, const scree_choice *choice, double weigh
     if (choice->best[e] >= choice->level_count) continue;
     const scree_choice_level *level = &choice->levels[choice->best[e]];
     scree_json_row_object(json, scree_shape_error_name((scree_shape_error)e));
-    scree_json_number(json, "rp", level->rp);
-    scree_json_count(json, "triangle_count", level->triangle_count);
+    SCREE_JSON_MEMBERS(json, level, rp, triangle_count);
     scree_json_number(json, "error", level->errors[e]);
     scree_json_number(json, "ip", level->errors[e] + weight * level->rp_reached);
     scree_json_end(json);
@@ -133,8 +115,7 @@ static void json_best(scree_json *json, const scree_choice *choice, double weigh
 
 static void json_noise(scree_json *json, const scree_choice *choice) {
   scree_json_row_object(json, "noise");
-  scree_json_bool(json, "found", choice->noise.found);
-  scree_json_number(json, "fraction", choice->noise.fraction);
+  SCREE_JSON_MEMBERS(json, &choice->noise, found, fraction);
   scree_json_number(json, "smooth_area", choice->noise.area);
   scree_json_count(json, "plateau_triangle_count", choice->noise.triangle_count);
   scree_json_end(json);
@@ -146,9 +127,7 @@ static void json_options(scree_json *json, const scree_choice_report *report) {
   scree_json_text(json, "method", scree_method_name(report->method));
   scree_json_bool(json, "paper", report->rule == SCREE_RULE_PAPER);
   scree_json_text(json, "rule", scree_choice_rule_name(report->rule));
-  scree_json_number(json, "weight", o->weight);
-  scree_json_number(json, "rp_min", o->rp_min);
-  scree_json_number(json, "rp_max", o->rp_max);
+  SCREE_JSON_MEMBERS(json, o, weight, rp_min, rp_max);
   scree_json_count(json, "per_decade", (uint64_t)o->per_decade);
   scree_json_text(json, "reference", reference_name(o->reference));
   scree_json_row_object(json, "tolerances");
@@ -183,9 +162,7 @@ static void json_entry(scree_json *json, const scree_choice_report *report, size
   const scree_choice *choice = entry->choice;
   scree_json_object(json, NULL);
   scree_json_text(json, "file", entry->file);
-  scree_json_count(json, "triangle_count", choice->triangle_count);
-  scree_json_number(json, "area", choice->area);
-  scree_json_number(json, "volume", choice->volume);
+  SCREE_JSON_MEMBERS(json, choice, triangle_count, area, volume);
   json_levels(json, choice);
   json_recommended(json, report, index);
   json_sentences(json, "answer", report, index, scree_choice_answer);
@@ -212,8 +189,7 @@ static void json_entry(scree_json *json, const scree_choice_report *report, size
 
 static void json_set_pick(scree_json *json, const char *key, const scree_set_pick *pick) {
   scree_json_row_object(json, key);
-  scree_json_number(json, "rp", pick->rp);
-  scree_json_number(json, "ip", pick->ip);
+  SCREE_JSON_MEMBERS(json, pick, rp, ip);
   scree_json_number(json, "similar_rp_low", pick->rp_low);
   scree_json_number(json, "similar_rp_high", pick->rp_high);
   scree_json_end(json);
@@ -244,8 +220,7 @@ static void json_set(scree_json *json, const scree_choice_report *report) {
   json_set_pick(json, "paper", &set->paper);
   json_set_pick(json, "robust", &set->robust);
   json_set_pick(json, "smooth", &set->smooth);
-  scree_json_number(json, "paper_spread", set->paper_spread);
-  scree_json_number(json, "robust_spread", set->robust_spread);
+  SCREE_JSON_MEMBERS(json, set, paper_spread, robust_spread);
   scree_json_number(json, "triangle_ratio_if_scanned_twice_as_fine",
                     report->rule == SCREE_RULE_PAPER ? set->paper_growth : set->robust_growth);
   scree_json_maker(json, report->command_line);
@@ -253,17 +228,17 @@ static void json_set(scree_json *json, const scree_choice_report *report) {
   scree_json_end(json);
 }
 
+static void json_report(scree_json *json, const void *what) {
+  const scree_choice_report *report = what;
+  scree_json_array(json, NULL);
+  for (size_t e = 0; e < report->entry_count; e++) json_entry(json, report, e);
+  if (report->set) json_set(json, report);
+  scree_json_end(json);
+}
+
 scree_status scree_choice_json_write(const scree_choice_report *report, const char *path,
                                      bool overwrite, scree_error *error) {
-  scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
-  scree_json json = scree_json_start(output.stream);
-  scree_json_array(&json, NULL);
-  for (size_t e = 0; e < report->entry_count; e++) json_entry(&json, report, e);
-  if (report->set) json_set(&json, report);
-  scree_json_end(&json);
-  return scree_output_commit(&output, error);
+  return scree_json_file(path, overwrite, json_report, report, error);
 }
 
 /* ---- CSV ---- */
@@ -370,8 +345,7 @@ static void csv_entry(FILE *stream, const scree_choice_entry *entry) {
 scree_status scree_choice_csv_write(const scree_choice_report *report, const char *path,
                                     bool overwrite, scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   fprintf(output.stream, "file,scan_triangle_count,%s,choice", LEVEL_HEADER);
   for (int e = SCREE_ERROR_VOLUME; e < SCREE_SHAPE_ERROR_COUNT; e++)
     fprintf(output.stream, ",error_%s", scree_shape_error_name((scree_shape_error)e));
@@ -387,8 +361,7 @@ scree_status scree_choice_csv_write(const scree_choice_report *report, const cha
 scree_status scree_choice_curve_csv_write(const scree_choice_entry *entry, const char *path,
                                           bool overwrite, scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   fprintf(output.stream, "%s\n", LEVEL_HEADER);
   const scree_choice *choice = entry->choice;
   for (size_t i = 0; i < choice->trace_count; i++) {

@@ -313,8 +313,8 @@ static void warn_of_losses(sentences *s, const scree_choice_report *report, cons
          length = scree_fidelity_scan(f, SCREE_SCAN_LENGTH);
   if (noise > NOTABLE_NOISE * length * scree_choice_tolerance(c, report->options, SCREE_ERROR_MEAN))
     say(s,
-        "Scan noise of %s mm takes part in the mean distance: the count is more than the "
-        "shape needs.",
+        "Scan noise of %s mm takes part in the mean distance: the count is more than the shape "
+        "needs.",
         NUMBER(1e3 * noise, 2));
   double usual = 2 * fabs(c->volume) / c->area;
   if (isnan(scree_fidelity_scan(f, SCREE_SCAN_THICKNESS)) && usual < FOIL * length)
@@ -354,8 +354,8 @@ static void warn_of_noise(sentences *s, const scree_choice_report *report, size_
   char percent[NUMBER_BYTES], text[NUMBER_BYTES];
   if (factor > NOTABLE_RATIO && most > 0 && report->options->reference == SCREE_REFERENCE_SCAN)
     say(s,
-        "Scan noise adds up to %s of area and misleads eps_s: --area smooth takes it out and "
-        "gives Rp = %s.",
+        "Scan noise adds up to %s of area and misleads eps_s: --area smooth takes it out and gives "
+        "Rp = %s.",
         scree_percent_text(most, percent), scree_rp_text(rp, text));
 }
 

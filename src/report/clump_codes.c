@@ -173,20 +173,19 @@ static void put_lammps_input(const clump_job *j, FILE *f) {
             "fix sides%d all wall/gran hertz/history ${young} NULL ${damping} NULL ${friction} 1 "
             "%cplane %.6g %.6g\n",
             k, "xy"[k], -j->width / 2, j->width / 2);
-  fprintf(
-      f,
-      "fix floor all wall/gran hertz/history ${young} NULL ${damping} NULL ${friction} 1 zplane "
-      "0 NULL\n"
-      "fix move all rigid/small molecule mol clump gravity gravity\n"
-      "region top block %.6g %.6g %.6g %.6g %.6g %.6g units box\n"
-      "fix fall all deposit %zu 0 %.0f 48271 region top mol clump rigid move attempt 1000\n"
-      "compute bodies all rigid/local move id mass x y z vx vy vz omegax omegay omegaz inertiax "
-      "inertiay inertiaz\n"
-      "dump bodies all local %.0f bodies.dump index c_bodies[*]\n"
-      "thermo %.0f\nthermo_style custom step atoms ke\nthermo_modify lost error\nrun %.0f\n",
-      -j->width / 2 + reach, j->width / 2 - reach, -j->width / 2 + reach, j->width / 2 - reach,
-      j->height, j->height + reach, j->options->count, apart, apart, apart,
-      apart * (double)j->options->count + settling);
+  fprintf(f,
+          "fix floor all wall/gran hertz/history ${young} NULL ${damping} NULL ${friction} 1 "
+          "zplane 0 NULL\n"
+          "fix move all rigid/small molecule mol clump gravity gravity\n"
+          "region top block %.6g %.6g %.6g %.6g %.6g %.6g units box\n"
+          "fix fall all deposit %zu 0 %.0f 48271 region top mol clump rigid move attempt 1000\n"
+          "compute bodies all rigid/local move id mass x y z vx vy vz omegax omegay omegaz "
+          "inertiax inertiay inertiaz\n"
+          "dump bodies all local %.0f bodies.dump index c_bodies[*]\n"
+          "thermo %.0f\nthermo_style custom step atoms ke\nthermo_modify lost error\nrun %.0f\n",
+          -j->width / 2 + reach, j->width / 2 - reach, -j->width / 2 + reach, j->width / 2 - reach,
+          j->height, j->height + reach, j->options->count, apart, apart, apart,
+          apart * (double)j->options->count + settling);
   fprintf(f,
           "variable there equal atoms\n"
           "if \"${there} != %zu\" then \"print 'only ${there} of %zu spheres are in the box'\" "
@@ -196,10 +195,9 @@ static void put_lammps_input(const clump_job *j, FILE *f) {
 
 static scree_status write_lammps(const clump_job *j, scree_error *error) {
   scree_output output;
-  scree_status status = open_part(j, "", ".mol", &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(open_part(j, "", ".mol", &output, error));
   put_molecule(j, output.stream);
-  status = scree_output_commit(&output, error);
+  scree_status status = scree_output_commit(&output, error);
   if (status == SCREE_OK) status = open_part(j, "in.", "", &output, error);
   if (status != SCREE_OK) return status;
   put_lammps_input(j, output.stream);
@@ -237,20 +235,19 @@ static void put_liggghts_input(const clump_job *j, FILE *f) {
           "fix front all wall/gran model hertz tangential history primitive type 1 yplane %.6g\n"
           "fix back all wall/gran model hertz tangential history primitive type 1 yplane %.6g\n",
           -w, w, -w, w);
-  fprintf(
-      f,
-      "fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit %.3g density "
-      "constant %.6g nspheres %zu ntry 1000000 spheres file %s.txt scale 1.0 type 1 mass %.12g "
-      "inertia_tensor "
-      "%.12g 0 0 %.12g 0 %.12g use_volume\n"
-      "fix mix all particledistribution/discrete 15485867 1 clump 1.0\n"
-      "region top block %.6g %.6g %.6g %.6g %.6g %.6g units box volume_limit %.3g\n"
-      "fix fall all insert/pack seed 32452843 distributiontemplate mix maxattempt 1000 "
-      "insert_every once overlapcheck yes all_in yes vel constant 0 0 -0.1 orientation random "
-      "region top particles_in_region %zu\n"
-      "fix move all multisphere\n",
-      least, j->options->density, j->m.point_count, j->name, j->mass, j->inertia[0], j->inertia[1],
-      j->inertia[2], -w, w, -w, w, 0.1 * reach, 2.9 * j->height, least, j->options->count);
+  fprintf(f,
+          "fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit %.3g "
+          "density constant %.6g nspheres %zu ntry 1000000 spheres file %s.txt scale 1.0 type 1 "
+          "mass %.12g inertia_tensor %.12g 0 0 %.12g 0 %.12g use_volume\n"
+          "fix mix all particledistribution/discrete 15485867 1 clump 1.0\n"
+          "region top block %.6g %.6g %.6g %.6g %.6g %.6g units box volume_limit %.3g\n"
+          "fix fall all insert/pack seed 32452843 distributiontemplate mix maxattempt 1000 "
+          "insert_every once overlapcheck yes all_in yes vel constant 0 0 -0.1 orientation random "
+          "region top particles_in_region %zu\n"
+          "fix move all multisphere\n",
+          least, j->options->density, j->m.point_count, j->name, j->mass, j->inertia[0],
+          j->inertia[1], j->inertia[2], -w, w, -w, w, 0.1 * reach, 2.9 * j->height, least,
+          j->options->count);
   fprintf(
       f,
       "compute mass all multisphere property masstotal\n"
@@ -259,8 +256,8 @@ static void put_liggghts_input(const clump_job *j, FILE *f) {
       "compute moments all multisphere property inertia\n"
       "thermo 1000\nthermo_style custom step atoms ke\nthermo_modify lost error norm no\n"
       "run 1\nvariable there equal atoms\n"
-      "if \"${there} != %zu\" then \"print 'only ${there} of %zu spheres are in the box'\" "
-      "\"quit 1\"\n"
+      "if \"${there} != %zu\" then \"print 'only ${there} of %zu spheres are in the box'\" \"quit "
+      "1\"\n"
       "dump bodies all local 1000 bodies.dump c_mass c_place[1] c_place[2] c_place[3] c_speed[1] "
       "c_speed[2] c_speed[3] c_spin[1] c_spin[2] c_spin[3] c_moments[1] c_moments[2] "
       "c_moments[3]\nrun %.0f\n"
@@ -272,10 +269,9 @@ static void put_liggghts_input(const clump_job *j, FILE *f) {
 
 static scree_status write_liggghts(const clump_job *j, scree_error *error) {
   scree_output output;
-  scree_status status = open_part(j, "", ".txt", &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(open_part(j, "", ".txt", &output, error));
   put_spheres(j, output.stream, false, ' ');
-  status = scree_output_commit(&output, error);
+  scree_status status = scree_output_commit(&output, error);
   if (status == SCREE_OK) status = open_part(j, "in.", "", &output, error);
   if (status != SCREE_OK) return status;
   put_liggghts_input(j, output.stream);
@@ -380,20 +376,18 @@ static void put_chrono(const clump_job *j, FILE *f) {
 static scree_status write_one(const clump_job *j, const char *ending,
                               void (*put)(const clump_job *, FILE *), scree_error *error) {
   scree_output output;
-  scree_status status = open_part(j, "", ending, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(open_part(j, "", ending, &output, error));
   put(j, output.stream);
   return scree_output_commit(&output, error);
 }
 
 static scree_status write_chrono(const clump_job *j, scree_error *error) {
   scree_output output;
-  scree_status status = open_part(j, "", ".csv", &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(open_part(j, "", ".csv", &output, error));
   fputs("x,y,z,r\n", output.stream);
   put_spheres(j, output.stream, false, ',');
-  status = scree_output_commit(&output, error);
-  return status == SCREE_OK ? write_one(j, ".py", put_chrono, error) : status;
+  SCREE_TRY(scree_output_commit(&output, error));
+  return write_one(j, ".py", put_chrono, error);
 }
 
 /* ---- EDEM and MFiX ---- */

@@ -7,56 +7,31 @@
 #include <math.h>
 
 /* A number of each clump, in the order of the tables. */
-typedef struct column {
+#define COLUMN(name, member)                                                                       \
+  { name, offsetof(scree_clump, member) }
+static const struct {
   const char *name;
-  double (*value)(const scree_clump *clump);
-} column;
-
-#define COLUMN(member)                                                                             \
-  static double get_##member(const scree_clump *c) {                                               \
-    return c->member;                                                                              \
-  }
-COLUMN(iou)
-COLUMN(union_volume)
-COLUMN(volume_error)
-COLUMN(centroid_error)
-COLUMN(inertia_error)
-COLUMN(roughness)
-COLUMN(slope_deg)
-COLUMN(outside)
-COLUMN(volume_criterion)
-COLUMN(distance_criterion)
+  size_t offset;
+} columns[] = {COLUMN("iou", iou),
+               COLUMN("union_volume", union_volume),
+               COLUMN("volume_error", volume_error),
+               COLUMN("centroid_error", centroid_error),
+               COLUMN("inertia_error", inertia_error),
+               COLUMN("to_mesh_mean", to_mesh.mean),
+               COLUMN("to_mesh_max", to_mesh.maximum),
+               COLUMN("from_mesh_mean", from_mesh.mean),
+               COLUMN("from_mesh_max", from_mesh.maximum),
+               COLUMN("roughness", roughness),
+               COLUMN("slope_deg", slope_deg),
+               COLUMN("outside", outside),
+               COLUMN("volume_criterion", volume_criterion),
+               COLUMN("distance_criterion", distance_criterion)};
 #undef COLUMN
-static double get_to_mean(const scree_clump *c) {
-  return c->to_mesh.mean;
-}
-static double get_to_maximum(const scree_clump *c) {
-  return c->to_mesh.maximum;
-}
-static double get_from_mean(const scree_clump *c) {
-  return c->from_mesh.mean;
-}
-static double get_from_maximum(const scree_clump *c) {
-  return c->from_mesh.maximum;
-}
-
-static const column columns[] = {
-    {"iou", get_iou},
-    {"union_volume", get_union_volume},
-    {"volume_error", get_volume_error},
-    {"centroid_error", get_centroid_error},
-    {"inertia_error", get_inertia_error},
-    {"to_mesh_mean", get_to_mean},
-    {"to_mesh_max", get_to_maximum},
-    {"from_mesh_mean", get_from_mean},
-    {"from_mesh_max", get_from_maximum},
-    {"roughness", get_roughness},
-    {"slope_deg", get_slope_deg},
-    {"outside", get_outside},
-    {"volume_criterion", get_volume_criterion},
-    {"distance_criterion", get_distance_criterion},
-};
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
+
+static double value_of(const scree_clump *clump, int column) {
+  return *(const double *)(const void *)((const char *)clump + columns[column].offset);
+}
 
 /* To a millionth of the size: shorter, and finer than any scan. */
 static double shortened(double value, double size) {
@@ -82,8 +57,7 @@ static void json_clumps(scree_json *json, const scree_clumps *clumps) {
     const scree_clump *c = &clumps->clumps[i];
     scree_json_row_object(json, NULL);
     scree_json_count(json, "sphere_count", c->sphere_count);
-    for (int k = 0; k < COLUMN_COUNT; k++)
-      scree_json_number(json, columns[k].name, columns[k].value(c));
+    for (int k = 0; k < COLUMN_COUNT; k++) scree_json_number(json, columns[k].name, value_of(c, k));
     scree_json_count(json, "useless_count", c->useless_count);
     json_spheres(json, c, clumps->size);
     scree_json_end(json);
@@ -99,8 +73,7 @@ static void json_body(scree_json *json, const scree_clumps *clumps) {
   scree_json_numbers(json, "centroid", m->centroid, 3);
   scree_json_numbers(json, "principal_moments", m->principal_moments, 3);
   scree_json_matrix(json, "principal_axes", m->principal_axes);
-  scree_json_number(json, "thickness", clumps->thickness);
-  scree_json_number(json, "wall_cells", clumps->wall_cells);
+  SCREE_JSON_MEMBERS(json, clumps, thickness, wall_cells);
 }
 
 /* The surface that the spheres stand for. */
@@ -121,11 +94,9 @@ static void json_entry(scree_json *json, const scree_clump_report *report,
                        const scree_clump_entry *e) {
   const scree_clumps *c = e->clumps;
   scree_json_object(json, NULL);
-  scree_json_text(json, "file", e->file);
-  scree_json_text(json, "name", e->name);
+  SCREE_JSON_MEMBERS(json, e, file, name);
   scree_json_source(json, e->format, e->checksum, e->unit_m);
-  scree_json_text(json, "note", e->note);
-  scree_json_count(json, "scan_triangle_count", e->scan_triangle_count);
+  SCREE_JSON_MEMBERS(json, e, note, scan_triangle_count);
   scree_json_count(json, "triangle_count", e->mesh->triangle_count);
   scree_json_text(json, "method", scree_clump_method_name(c->method));
   json_body(json, c);
@@ -139,23 +110,22 @@ static void json_entry(scree_json *json, const scree_clump_report *report,
   scree_json_end(json);
 }
 
+static void json_report(scree_json *json, const void *what) {
+  const scree_clump_report *report = what;
+  scree_json_array(json, NULL);
+  for (size_t i = 0; i < report->entry_count; i++) json_entry(json, report, &report->entries[i]);
+  scree_json_end(json);
+}
+
 scree_status scree_clump_json_write(const scree_clump_report *report, const char *path,
                                     bool overwrite, scree_error *error) {
-  scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
-  scree_json json = scree_json_start(output.stream);
-  scree_json_array(&json, NULL);
-  for (size_t i = 0; i < report->entry_count; i++) json_entry(&json, report, &report->entries[i]);
-  scree_json_end(&json);
-  return scree_output_commit(&output, error);
+  return scree_json_file(path, overwrite, json_report, report, error);
 }
 
 scree_status scree_clump_csv_write(const scree_clump_report *report, const char *path,
                                    bool overwrite, scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   FILE *f = output.stream;
   fputs("name,sphere_count", f);
   for (int k = 0; k < COLUMN_COUNT; k++) fprintf(f, ",%s", columns[k].name);
@@ -169,7 +139,7 @@ scree_status scree_clump_csv_write(const scree_clump_report *report, const char 
       fprintf(f, ",%zu", c->sphere_count);
       for (int k = 0; k < COLUMN_COUNT; k++) {
         putc(',', f);
-        scree_csv_number(f, columns[k].value(c));
+        scree_csv_number(f, value_of(c, k));
       }
       fprintf(f, ",%zu,%d,%d\n", c->useless_count, i == clumps->recommended, c == entry->chosen);
     }

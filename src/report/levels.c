@@ -209,14 +209,13 @@ static scree_status pack(levels *l, const scree_mesh *scan, const scree_choice *
   scree_code_real(&l->pack.out, &l->pack.step);
   scree_pack_u32(&l->pack, scan->triangle_count);
   put_trace(l, choice);
-  scree_status status = put_measures(l, scan, choice);
-  if (status == SCREE_OK)
-    status = put_levels(l, choose_base(l->curve, levels_share * (double)byte_limit));
+  SCREE_TRY(put_measures(l, scan, choice));
+  SCREE_TRY(put_levels(l, choose_base(l->curve, levels_share * (double)byte_limit)));
   size_t room = byte_limit > l->pack.out.count ? byte_limit - l->pack.out.count : 0;
-  if (status == SCREE_OK) status = put_scan(l, scan, room);
-  if (status == SCREE_OK && !scree_codec_good(&l->pack.out))
-    status = scree_fail_memory(l->pack.error, l->pack.out.count, "packed levels");
-  return status;
+  SCREE_TRY(put_scan(l, scan, room));
+  if (!scree_codec_good(&l->pack.out))
+    return scree_fail_memory(l->pack.error, l->pack.out.count, "packed levels");
+  return SCREE_OK;
 }
 
 /* ---- the file ---- */
@@ -240,8 +239,7 @@ static scree_codec header_of(const void *bytes, size_t count) {
 
 static scree_status write_file(levels *l, const char *path, bool overwrite) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, l->pack.error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, l->pack.error));
   scree_codec header = header_of(l->pack.out.bytes, l->pack.out.count);
   if (header.out_of_memory) {
     scree_output_discard(&output);
@@ -259,9 +257,8 @@ scree_status scree_levels_write(const scree_curve *curve, const scree_choice *ch
                                 scree_error *error) {
   levels l = {.curve = curve, .pack = {.error = error}};
   scree_mesh scan;
-  scree_status status = scree_curve_mesh(curve, 0, &scan, error);
-  if (status != SCREE_OK) return status;
-  status = pack(&l, &scan, choice, byte_limit);
+  SCREE_TRY(scree_curve_mesh(curve, 0, &scan, error));
+  scree_status status = pack(&l, &scan, choice, byte_limit);
   scree_mesh_free(&scan);
   if (status == SCREE_OK) status = write_file(&l, path, overwrite);
   scree_free(l.pack.out.bytes);

@@ -149,8 +149,7 @@ scree_status scree_measure_json_write(const scree_measure_entry *entries, size_t
                                       const char *command_line, const char *path, bool overwrite,
                                       scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   scree_json json = scree_json_start(output.stream);
   scree_json_array(&json, NULL);
   for (size_t i = 0; i < entry_count; i++) json_entry(&json, &entries[i], command_line);
@@ -160,10 +159,7 @@ scree_status scree_measure_json_write(const scree_measure_entry *entries, size_t
 
 static void json_deviation(scree_json *json, const char *key, const scree_deviation *d) {
   scree_json_object(json, key);
-  scree_json_number(json, "mean", d->mean);
-  scree_json_number(json, "rms", d->rms);
-  scree_json_number(json, "maximum", d->maximum);
-  scree_json_number(json, "maximum_bound", d->maximum_bound);
+  SCREE_JSON_MEMBERS(json, d, mean, rms, maximum, maximum_bound);
   scree_json_numbers(json, "at", d->at, 3);
   scree_json_count(json, "sample_count", d->sample_count);
   scree_json_end(json);
@@ -172,8 +168,7 @@ static void json_deviation(scree_json *json, const char *key, const scree_deviat
 scree_status scree_distance_json_write(const scree_distance_entry *entry, const char *command_line,
                                        const char *path, bool overwrite, scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   scree_json json = scree_json_start(output.stream);
   scree_json_object(&json, NULL);
   scree_json_array(&json, "files");
@@ -188,13 +183,8 @@ scree_status scree_distance_json_write(const scree_distance_entry *entry, const 
   scree_json_end(&json);
   json_deviation(&json, "forward", &entry->distance.forward);
   if (!entry->options.one_way) json_deviation(&json, "backward", &entry->distance.backward);
-  scree_json_number(&json, "hausdorff", entry->distance.hausdorff);
-  scree_json_number(&json, "hausdorff_bound", entry->distance.hausdorff_bound);
-  scree_json_row_object(&json, "options");
-  scree_json_count(&json, "sample_count", entry->options.sample_count);
-  scree_json_number(&json, "hausdorff_gap", entry->options.hausdorff_gap);
-  scree_json_bool(&json, "one_way", entry->options.one_way);
-  scree_json_end(&json);
+  SCREE_JSON_MEMBERS(&json, &entry->distance, hausdorff, hausdorff_bound);
+  SCREE_JSON_ROW(&json, "options", &entry->options, sample_count, hausdorff_gap, one_way);
   scree_json_maker(&json, command_line);
   scree_json_end(&json);
   return scree_output_commit(&output, error);
@@ -202,13 +192,8 @@ scree_status scree_distance_json_write(const scree_distance_entry *entry, const 
 
 static void json_row(scree_json *json, const scree_curve_row *row, bool distances) {
   scree_json_row_object(json, NULL);
-  scree_json_count(json, "triangle_count", row->level.triangle_count);
-  scree_json_number(json, "rp", row->level.rp);
-  scree_json_number(json, "area", row->level.area);
-  scree_json_number(json, "volume", row->level.volume);
-  scree_json_number(json, "eps_s", row->eps_s);
-  scree_json_number(json, "eps_v", row->eps_v);
-  scree_json_number(json, "ip", row->ip);
+  SCREE_JSON_MEMBERS(json, &row->level, triangle_count, rp, area, volume);
+  SCREE_JSON_MEMBERS(json, row, eps_s, eps_v, ip);
   scree_json_number(json, "quadric_error", row->level.quadric_error);
   if (distances) {
     scree_json_number(json, "forward_mean", row->distance.forward.mean);
@@ -223,20 +208,16 @@ static void json_row(scree_json *json, const scree_curve_row *row, bool distance
 scree_status scree_curve_json_write(const scree_curve_entry *entry, const char *command_line,
                                     const char *path, bool overwrite, scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   scree_json json = scree_json_start(output.stream);
   scree_json_object(&json, NULL);
   scree_json_text(&json, "file", entry->file);
   scree_json_source(&json, entry->format, entry->checksum, entry->unit_m);
   scree_json_text(&json, "method", scree_method_name(entry->facts.method));
   scree_json_count(&json, "triangle_count", entry->facts.triangle_count);
-  scree_json_number(&json, "area", entry->area);
-  scree_json_number(&json, "volume", entry->volume);
-  scree_json_bool(&json, "closed", entry->facts.closed);
-  scree_json_count(&json, "shell_count", entry->facts.shell_count);
-  scree_json_count(&json, "boundary_edge_count", entry->facts.boundary_edge_count);
-  scree_json_count(&json, "locked_vertex_count", entry->facts.locked_vertex_count);
+  SCREE_JSON_MEMBERS(&json, entry, area, volume);
+  SCREE_JSON_MEMBERS(&json, &entry->facts, closed, shell_count, boundary_edge_count,
+                     locked_vertex_count);
   scree_json_count(&json, "floor_triangle_count", entry->facts.floor_count);
   scree_json_array(&json, "levels");
   for (size_t i = 0; i < entry->row_count; i++) json_row(&json, &entry->rows[i], entry->distances);
@@ -280,8 +261,7 @@ static void csv_fields(FILE *stream, const scree_measure_entry *entry, const fie
 scree_status scree_measure_csv_write(const scree_measure_entry *entries, size_t entry_count,
                                      const char *path, bool overwrite, scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   fputs("file,unit_m", output.stream);
   csv_header(output.stream, measure_fields, MEASURE_FIELDS, "");
   csv_header(output.stream, topology_fields, TOPOLOGY_FIELDS, "topology_");

@@ -42,8 +42,7 @@ static void measure_areas(const scree_mesh *mesh, fields *f) {
 static scree_status measure_distances(const scree_mesh *mesh, const scree_mesh *reference,
                                       fields *f, scree_error *error) {
   scree_surface *surface = NULL;
-  scree_status status = scree_surface_create(reference, &surface, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_surface_create(reference, &surface, error));
   scree_surface_distances(surface, f->centroids, mesh->triangle_count, f->distance);
   scree_surface_distances(surface, mesh->positions, mesh->vertex_count, f->vertex_distance);
   scree_surface_free(surface);

@@ -313,11 +313,11 @@ static scree_status find_results(page *p, const char *folder, name_list *found) 
   }
   free_names(&names);
   if (status == SCREE_OK && found->count == before)
-    status = scree_fail(p->error, SCREE_BAD_FILE,
-                        "%s: holds no results: no choice.json (scree choose), result.json with "
-                        "scene.yaml (run, repose, drop), study.json, clump.json or "
-                        "calibration.json",
-                        folder);
+    status =
+        scree_fail(p->error, SCREE_BAD_FILE,
+                   "%s: holds no results: no choice.json (scree choose), result.json with "
+                   "scene.yaml (run, repose, drop), study.json, clump.json or calibration.json",
+                   folder);
   return status;
 }
 
@@ -345,26 +345,26 @@ static void put_colors(FILE *stream) {
 
 static scree_status put_page(page *p, const name_list *folders) {
   put_all(p->stream, page_top);
-  scree_status status = put_summaries(p, folders);
+  SCREE_TRY(put_summaries(p, folders));
   put_all(p->stream, page_middle);
   fputs("<script type=\"application/json\" id=\"data\">{\"version\": ", p->stream);
   scree_json json = scree_json_start(p->stream);
   scree_json_text(&json, NULL, scree_version());
   put_colors(p->stream);
   fputs(",\n\"folders\": [", p->stream);
-  for (size_t i = 0; i < folders->count && status == SCREE_OK; i++) {
+  for (size_t i = 0; i < folders->count; i++) {
     if (i > 0) fputs(",\n", p->stream);
-    status = put_folder(p, folders->items[i]);
+    SCREE_TRY(put_folder(p, folders->items[i]));
   }
   fputs("]}</script>\n", p->stream);
   size_t used = length_of(page_top) + length_of(page_middle) + length_of(scree_page_script) +
                 p->result_bytes + SPARE_BYTES;
   size_t room = used < PAGE_BYTES ? (PAGE_BYTES - used) / 4 * 3 : 0; /* as base64 */
-  if (status == SCREE_OK) status = scree_page_parts_put(&p->parts, p->stream, room, p->error);
+  SCREE_TRY(scree_page_parts_put(&p->parts, p->stream, room, p->error));
   fputs("<script type=\"module\">", p->stream);
   put_all(p->stream, scree_page_script);
   fputs("</script>\n</body>\n</html>\n", p->stream);
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status write_page(const char *const *folders, size_t folder_count, const char *name,

@@ -7,8 +7,6 @@
 #include "report/levels.h"
 #include "report/pile_pack.h"
 
-#include <string.h>
-
 enum {
   MOST_PART_BYTES = 64 << 20,
   MOST_PICTURE_BYTES = 1300000,
@@ -71,17 +69,16 @@ static void put_part(FILE *stream, const scree_page_part *it, const void *bytes,
 /* ---- levels ---- */
 
 static scree_status read_levels(scree_page_parts *parts, size_t *total, scree_error *error) {
-  scree_status status = SCREE_OK;
   *total = 0;
-  for (size_t i = 0; i < parts->count && status == SCREE_OK; i++) {
+  for (size_t i = 0; i < parts->count; i++) {
     scree_page_part *it = &parts->items[i];
     if (it->kind != SCREE_PART_LEVELS) continue;
-    status = scree_file_read(it->path, MOST_PART_BYTES, &it->bytes, &it->size, error);
-    if (status == SCREE_OK) status = scree_levels_check(it->bytes, it->size, it->path, error);
+    SCREE_TRY(scree_file_read(it->path, MOST_PART_BYTES, &it->bytes, &it->size, error));
+    SCREE_TRY(scree_levels_check(it->bytes, it->size, it->path, error));
     it->whole = true;
     *total += it->size;
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* The largest that still has its scan; NULL: none has. */
@@ -119,8 +116,7 @@ static scree_status put_picture(const scree_page_part *it, FILE *stream, size_t 
                                 scree_error *error) {
   char *bytes;
   size_t size;
-  scree_status status = scree_file_read(it->path, MOST_PART_BYTES, &bytes, &size, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_file_read(it->path, MOST_PART_BYTES, &bytes, &size, error));
   if (size <= *room) {
     put_part(stream, it, bytes, size);
     *room -= size;
@@ -147,13 +143,12 @@ static scree_status put_pile(const scree_page_part *it, FILE *stream, size_t sha
 /* Each may take its share of what those before it left. */
 static scree_status put_piles(const scree_page_parts *parts, size_t left, FILE *stream,
                               size_t *room, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < parts->count && left > 0 && status == SCREE_OK; i++) {
+  for (size_t i = 0; i < parts->count && left > 0; i++) {
     if (parts->items[i].kind != SCREE_PART_PILE) continue;
-    status = put_pile(&parts->items[i], stream, *room / left, room, error);
+    SCREE_TRY(put_pile(&parts->items[i], stream, *room / left, room, error));
     left--;
   }
-  return status;
+  return SCREE_OK;
 }
 
 static size_t count_piles(const scree_page_parts *parts) {
@@ -167,14 +162,13 @@ scree_status scree_page_parts_put(scree_page_parts *parts, FILE *stream, size_t 
   size_t total, piles = count_piles(parts);
   size_t kept = piles < room / 2 / LEAST_PILE_BYTES ? piles * LEAST_PILE_BYTES : room / 2;
   if (piles == 0) kept = 0;
-  scree_status status = read_levels(parts, &total, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(read_levels(parts, &total, error));
   room -= kept + fit_levels(parts, total, room - kept);
-  for (size_t i = 0; i < parts->count && status == SCREE_OK; i++) {
+  for (size_t i = 0; i < parts->count; i++) {
     const scree_page_part *it = &parts->items[i];
-    if (it->kind == SCREE_PART_PICTURE) status = put_picture(it, stream, &room, error);
+    if (it->kind == SCREE_PART_PICTURE) SCREE_TRY(put_picture(it, stream, &room, error));
     if (it->bytes) put_part(stream, it, it->bytes, it->size);
   }
   room += kept;
-  return status == SCREE_OK ? put_piles(parts, piles, stream, &room, error) : status;
+  return put_piles(parts, piles, stream, &room, error);
 }

@@ -68,18 +68,15 @@ static scree_status write_json(const scree_export_options *options, const scree_
   double moments[3];
   for (int k = 0; k < 3; k++) moments[k] = options->density * m->principal_moments[k];
   scree_output output;
-  scree_status status = scree_output_open(path, options->overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, options->overwrite, &output, error));
   scree_json json = scree_json_start(output.stream);
   scree_json_object(&json, NULL);
   scree_json_text(&json, "mesh_file", slash ? slash + 1 : mesh_path);
   scree_json_number(&json, "unit_m", options->unit_m);
-  scree_json_count(&json, "triangle_count", mesh->triangle_count);
-  scree_json_count(&json, "vertex_count", mesh->vertex_count);
+  SCREE_JSON_MEMBERS(&json, mesh, triangle_count, vertex_count);
   scree_json_number(&json, "density", options->density);
   scree_json_number(&json, "mass", p->mass);
-  scree_json_number(&json, "volume", m->volume);
-  scree_json_number(&json, "area", m->area);
+  SCREE_JSON_MEMBERS(&json, m, volume, area);
   scree_json_numbers(&json, "centre_of_mass", m->centroid, 3);
   scree_json_matrix(&json, "inertia", p->inertia);
   scree_json_numbers(&json, "principal_moments", moments, 3);
@@ -111,17 +108,15 @@ static scree_status write_mesh(const scree_export_options *options, const scree_
 static scree_status prepare(const scree_mesh *mesh, const scree_export_options *options,
                             scree_mesh *placed, scree_exported *p, scree_error *error) {
   scree_measures given;
-  scree_status status = scree_mesh_measure(mesh, &given, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_mesh_measure(mesh, &given, error));
   if (!given.closed || given.inward)
     return scree_fail(error, SCREE_BAD_MESH,
                       "the surface is %s, so it has no mass; `scree repair` may help",
                       given.closed ? "inside out" : "not closed");
-  status = scree_mesh_copy(mesh, placed, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_mesh_copy(mesh, placed, error));
   place(options, &given, p);
   move(placed, p);
-  status = scree_mesh_measure(placed, &p->measures, error);
+  scree_status status = scree_mesh_measure(placed, &p->measures, error);
   if (status == SCREE_OK) weigh(placed, options->density, p);
   if (status != SCREE_OK) scree_mesh_free(placed);
   return status;

@@ -328,20 +328,20 @@ static scree_status put_motion(pile *p, size_t stride) {
 }
 
 static scree_status pack(pile *p, size_t byte_limit) {
-  scree_status status = put_walls(p);
-  if (status == SCREE_OK) status = put_shapes(p);
-  if (status == SCREE_OK) status = put_bodies(p);
+  SCREE_TRY(put_walls(p));
+  SCREE_TRY(put_shapes(p));
+  SCREE_TRY(put_bodies(p));
   find_grid(p);
   put_grid(&p->pack);
   size_t start = p->pack.out.count;
-  for (size_t stride = 1; status == SCREE_OK; stride *= 2) {
+  for (size_t stride = 1;; stride *= 2) {
     p->pack.out.count = start;
-    status = put_motion(p, stride);
+    SCREE_TRY(put_motion(p, stride));
     if (p->pack.out.count <= byte_limit || stride >= p->motion.frame_count) break;
   }
-  if (status == SCREE_OK && !scree_codec_good(&p->pack.out))
-    status = scree_fail_memory(p->pack.error, p->pack.out.count, "a packed pile");
-  return status;
+  if (!scree_codec_good(&p->pack.out))
+    return scree_fail_memory(p->pack.error, p->pack.out.count, "a packed pile");
+  return SCREE_OK;
 }
 
 scree_status scree_pile_pack(const char *path, size_t byte_limit, unsigned char **bytes,

@@ -11,8 +11,7 @@ scree_work_start scree_work_started(void) {
 scree_status scree_provenance_write(const scree_work_start *start, const char *command_line,
                                     const char *path, bool overwrite, scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   scree_json json = scree_json_start(output.stream);
   char started[32], system[SCREE_SYSTEM_TEXT], processor[SCREE_SYSTEM_TEXT];
   scree_format_time(start->calendar, started);

@@ -13,16 +13,8 @@ static void json_book(scree_json *json, const scree_scene *scene) {
   scree_scene_book b;
   scree_scene_get_book(scene, &b);
   scree_json_object(json, "book");
-  scree_json_count(json, "entered_count", b.entered_count);
-  scree_json_count(json, "inside_count", b.inside_count);
-  scree_json_count(json, "left_count", b.left_count);
-  scree_json_count(json, "waiting_count", b.waiting_count);
-  scree_json_number(json, "entered_mass", b.entered_mass);
-  scree_json_number(json, "inside_mass", b.inside_mass);
-  scree_json_number(json, "left_mass", b.left_mass);
-  scree_json_number(json, "entered_energy", b.entered_energy);
-  scree_json_number(json, "left_energy", b.left_energy);
-  scree_json_number(json, "ledger", b.ledger);
+  SCREE_JSON_MEMBERS(json, &b, entered_count, inside_count, left_count, waiting_count, entered_mass,
+                     inside_mass, left_mass, entered_energy, left_energy, ledger);
   scree_json_end(json);
 }
 
@@ -31,12 +23,7 @@ static void json_changes(scree_json *json, const scree_scene *scene) {
   scree_json_array(json, "changes");
   for (size_t i = 0; i < count; i++) {
     scree_scene_change_entry c = scree_scene_change_at(scene, i);
-    scree_json_row_object(json, NULL);
-    scree_json_number(json, "time", c.time);
-    scree_json_text(json, "field", c.field);
-    scree_json_text(json, "was", c.was);
-    scree_json_text(json, "is", c.is);
-    scree_json_end(json);
+    SCREE_JSON_ROW(json, NULL, &c, time, field, was, is);
   }
   scree_json_end(json);
 }
@@ -46,13 +33,11 @@ static void json_pile(scree_json *json, const char *name, const scree_pile_setti
   scree_json_object(json, NULL);
   scree_json_text(json, "name", name);
   scree_json_repose(json, &pile->repose);
-  scree_json_number(json, "packing_fraction", pile->packing_fraction);
-  scree_json_count(json, "body_count", pile->body_count);
+  SCREE_JSON_MEMBERS(json, pile, packing_fraction, body_count);
   scree_json_number(json, "particle_size", pile->size);
   scree_json_number(json, "cell", settings->cell);
   scree_json_count(json, "sectors_asked", settings->sectors);
-  scree_json_number(json, "band_low", settings->band_low);
-  scree_json_number(json, "band_high", settings->band_high);
+  SCREE_JSON_MEMBERS(json, settings, band_low, band_high);
   scree_json_end(json);
 }
 
@@ -76,8 +61,7 @@ static scree_status json_residences(scree_json *json, const scree_scene *scene,
     if (status != SCREE_OK) break;
     scree_json_object(json, NULL);
     scree_json_text(json, "name", scree_scene_residence_name(scene, i));
-    scree_json_number(json, "from", r.from);
-    scree_json_number(json, "until", r.until);
+    SCREE_JSON_MEMBERS(json, &r, from, until);
     scree_json_array(json, "classes");
     for (size_t c = 0; c < r.class_count; c++) {
       scree_json_row_object(json, NULL);
@@ -100,9 +84,7 @@ static void json_costs(scree_json *json, const scree_scene *scene) {
   scree_scene_costs c = scree_scene_get_costs(scene);
   scree_json_object(json, "costs");
   scree_json_count(json, "particle_steps", c.body_steps);
-  scree_json_number(json, "wall_seconds", c.wall_seconds);
-  scree_json_number(json, "processor_seconds", c.processor_seconds);
-  scree_json_count(json, "piece_count", c.piece_count);
+  SCREE_JSON_MEMBERS(json, &c, wall_seconds, processor_seconds, piece_count);
   scree_json_end(json);
 }
 
@@ -162,12 +144,7 @@ static void json_columns(scree_json *json, const scree_scene *scene, const doubl
     scree_json_text(json, "name", scree_scene_column_name(scene, k));
     scree_json_text(json, "unit", scree_scene_column_unit(scene, k));
     scree_json_number(json, "last", rows ? s.last : last[k]);
-    scree_json_number(json, "mean", s.mean);
-    scree_json_number(json, "sd", s.sd);
-    scree_json_number(json, "least", s.least);
-    scree_json_number(json, "greatest", s.greatest);
-    scree_json_number(json, "from", s.from);
-    scree_json_number(json, "until", s.until);
+    SCREE_JSON_MEMBERS(json, &s, mean, sd, least, greatest, from, until);
     scree_json_row_array(json, "values");
     for (size_t i = 0; i < rows; i++) scree_json_number(json, NULL, series[i * columns + k]);
     scree_json_end(json);
@@ -209,10 +186,9 @@ static scree_status measure_piles(const scree_scene_entry *entry, scree_pile **p
   while (scree_scene_pile_name(entry->scene, count)) count++;
   *piles = scree_alloc_zero(count, sizeof **piles);
   if (!*piles) return scree_fail_memory(error, count * sizeof **piles, "a scene's piles");
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < count; i++)
-    status = scree_scene_measure_pile(entry->scene, i, entry->measure, &(*piles)[i], error);
-  return status;
+  for (size_t i = 0; i < count; i++)
+    SCREE_TRY(scree_scene_measure_pile(entry->scene, i, entry->measure, &(*piles)[i], error));
+  return SCREE_OK;
 }
 
 scree_status scree_scene_json_write(const scree_scene_entry *entry, const char *path,
@@ -243,8 +219,7 @@ scree_status scree_scene_csv_write(const scree_scene *scene, const char *path, b
   size_t rows, columns = scree_scene_column_count(scene);
   const double *series = scree_scene_series(scene, &rows);
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   for (size_t k = 0; k < columns; k++) {
     const char *unit = scree_scene_column_unit(scene, k);
     fprintf(output.stream, "%s%s%s%s%s", k ? "," : "", scree_scene_column_name(scene, k),

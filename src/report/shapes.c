@@ -28,13 +28,8 @@ void scree_shape_json(scree_json *json, const scree_particle *particle) {
   scree_particle_measures m;
   scree_particle_measure(particle, &m);
   scree_json_text(json, "kind", kinds[m.kind]);
-  scree_json_count(json, "triangle_count", m.triangle_count);
-  scree_json_count(json, "point_count", m.point_count);
-  scree_json_count(json, "edge_count", m.edge_count);
-  scree_json_number(json, "volume", m.volume);
-  scree_json_number(json, "size", m.size);
-  scree_json_number(json, "thickness", m.thickness);
-  scree_json_number(json, "rounding", m.rounding);
+  SCREE_JSON_MEMBERS(json, &m, triangle_count, point_count, edge_count, volume, size, thickness,
+                     rounding);
 }
 
 /* ---- finding them ---- */

@@ -9,34 +9,34 @@
 #include <string.h>
 
 static void put_summary(scree_json *json, const char *key, const scree_summary *s) {
-  scree_json_row_object(json, key);
-  scree_json_count(json, "count", s->count);
-  scree_json_number(json, "mean", s->mean);
-  scree_json_number(json, "mean_low", s->mean_low);
-  scree_json_number(json, "mean_high", s->mean_high);
-  scree_json_number(json, "sd", s->sd);
-  scree_json_number(json, "sd_low", s->sd_low);
-  scree_json_number(json, "sd_high", s->sd_high);
-  scree_json_number(json, "cv", s->cv);
-  scree_json_end(json);
+  SCREE_JSON_ROW(json, key, s, count, mean, mean_low, mean_high, sd, sd_low, sd_high, cv);
 }
 
 static void put_counts(scree_json *json, const scree_study_counts *c) {
-  scree_json_row_object(json, "runs");
-  scree_json_count(json, "done", c->done);
-  scree_json_count(json, "failed", c->failed);
-  scree_json_count(json, "running", c->running);
-  scree_json_count(json, "leased", c->leased);
-  scree_json_count(json, "waiting", c->waiting);
-  scree_json_end(json);
+  SCREE_JSON_ROW(json, "runs", c, done, failed, running, leased, waiting);
+}
+
+/* What is summarised of a point's runs. */
+static const struct {
+  const char *name;
+  size_t offset;
+} summaries[] = {{"angle_deg", offsetof(scree_point_result, angle_deg)},
+                 {"seconds", offsetof(scree_point_result, seconds)},
+                 {"height", offsetof(scree_point_result, height)},
+                 {"run_out", offsetof(scree_point_result, run_out)},
+                 {"coordination", offsetof(scree_point_result, coordination)},
+                 {"packing_fraction", offsetof(scree_point_result, packing)},
+                 {"left", offsetof(scree_point_result, left)},
+                 {"peak_rotation", offsetof(scree_point_result, peak_rotation)}};
+enum { SUMMARY_COUNT = sizeof summaries / sizeof *summaries };
+
+static const scree_summary *summary_of(const scree_point_result *p, size_t which) {
+  return (const scree_summary *)(const void *)((const char *)p + summaries[which].offset);
 }
 
 static void put_point(scree_json *json, const scree_study_result *r, const scree_point_result *p) {
   scree_json_object(json, NULL);
-  scree_json_text(json, "label", p->label);
-  scree_json_text(json, "rp", p->rp);
-  scree_json_text(json, "shapes", p->shapes);
-  scree_json_text(json, "pile", p->pile);
+  SCREE_JSON_MEMBERS(json, p, label, rp, shapes, pile);
   scree_json_row_object(json, "factors");
   for (size_t k = 0; k < r->factor_count; k++) {
     double number;
@@ -47,16 +47,8 @@ static void put_point(scree_json *json, const scree_study_result *r, const scree
   }
   scree_json_end(json);
   put_counts(json, &p->counts);
-  scree_json_count(json, "heap_count", p->heap_count);
-  scree_json_number(json, "triangle_count", p->triangle_count);
-  put_summary(json, "angle_deg", &p->angle_deg);
-  put_summary(json, "seconds", &p->seconds);
-  put_summary(json, "height", &p->height);
-  put_summary(json, "run_out", &p->run_out);
-  put_summary(json, "coordination", &p->coordination);
-  put_summary(json, "packing_fraction", &p->packing);
-  put_summary(json, "left", &p->left);
-  put_summary(json, "peak_rotation", &p->peak_rotation);
+  SCREE_JSON_MEMBERS(json, p, heap_count, triangle_count);
+  for (size_t k = 0; k < SUMMARY_COUNT; k++) put_summary(json, summaries[k].name, summary_of(p, k));
   scree_json_object(json, "answers");
   for (size_t k = 0; k < r->answer_count; k++) put_summary(json, r->answers[k], &p->answers[k]);
   scree_json_end(json);
@@ -73,23 +65,14 @@ static void put_comparison(scree_json *json, const scree_study_result *r, size_t
                            const scree_comparison *c) {
   scree_json_row_object(json, NULL);
   scree_json_text(json, "rp", r->points[point].rp);
-  scree_json_number(json, "difference", c->difference);
-  scree_json_number(json, "low", c->low);
-  scree_json_number(json, "high", c->high);
-  scree_json_number(json, "degrees", c->degrees);
-  scree_json_number(json, "p_equivalence", c->p_equivalence);
-  scree_json_number(json, "p_difference", c->p_difference);
-  scree_json_bool(json, "equivalent", c->equivalent);
-  scree_json_bool(json, "different", c->different);
-  scree_json_count(json, "count_needed", c->count_needed);
+  SCREE_JSON_MEMBERS(json, c, difference, low, high, degrees, p_equivalence, p_difference,
+                     equivalent, different, count_needed);
   scree_json_end(json);
 }
 
 static void put_pick(scree_json *json, const char *key, const scree_rp_pick *pick) {
   scree_json_row_object(json, key);
-  scree_json_number(json, "low", pick->low);
-  scree_json_number(json, "mean", pick->mean);
-  scree_json_number(json, "high", pick->high);
+  SCREE_JSON_MEMBERS(json, pick, low, mean, high);
   scree_json_text(json, "in_converged_range",
                   pick->in_range == SCREE_IN_RANGE_YES  ? "yes"
                   : pick->in_range == SCREE_IN_RANGE_NO ? "no"
@@ -130,22 +113,15 @@ static void put_family(scree_json *json, const scree_study_result *r,
   scree_json_end(json);
 }
 
-static void put_result(scree_json *json, const scree_study_result *r) {
+static void put_result(scree_json *json, const void *result) {
+  const scree_study_result *r = result;
   scree_json_object(json, NULL);
-  scree_json_text(json, "version", r->version);
-  scree_json_text(json, "name", r->name);
-  scree_json_text(json, "design", r->design);
-  scree_json_text(json, "method", r->method);
-  scree_json_text(json, "angle", r->angle);
-  scree_json_count(json, "seed", r->seed);
+  SCREE_JSON_MEMBERS(json, r, version, name, design, method, angle, seed);
   scree_json_count(json, "replicates", r->replicate_count);
-  scree_json_number(json, "margin_deg", r->margin_deg);
-  scree_json_number(json, "confidence", r->confidence);
+  SCREE_JSON_MEMBERS(json, r, margin_deg, confidence);
   put_counts(json, &r->counts);
   scree_json_count(json, "workers", r->worker_count);
-  scree_json_number(json, "seconds_spent", r->seconds_spent);
-  scree_json_number(json, "seconds_left", r->seconds_left);
-  scree_json_bool(json, "mixed_versions", r->mixed_versions);
+  SCREE_JSON_MEMBERS(json, r, seconds_spent, seconds_left, mixed_versions);
   scree_json_object(json, "units");
   for (size_t k = 0; k < r->answer_count; k++) scree_json_text(json, r->answers[k], r->units[k]);
   scree_json_end(json);
@@ -157,11 +133,7 @@ static void put_result(scree_json *json, const scree_study_result *r) {
   scree_json_end(json);
   scree_json_array(json, "failures");
   for (size_t i = 0; i < r->failure_count; i++) {
-    scree_json_row_object(json, NULL);
-    scree_json_text(json, "label", r->failures[i].label);
-    scree_json_count(json, "replicate", r->failures[i].replicate);
-    scree_json_text(json, "reason", r->failures[i].reason);
-    scree_json_end(json);
+    SCREE_JSON_ROW(json, NULL, &r->failures[i], label, replicate, reason);
   }
   scree_json_end(json);
   scree_json_end(json);
@@ -169,33 +141,10 @@ static void put_result(scree_json *json, const scree_study_result *r) {
 
 scree_status scree_study_json_write(const scree_study_result *result, const char *path,
                                     bool overwrite, scree_error *error) {
-  scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
-  scree_json json = scree_json_start(output.stream);
-  put_result(&json, result);
-  return scree_output_commit(&output, error);
+  return scree_json_file(path, overwrite, put_result, result, error);
 }
 
 /* ---- CSV ---- */
-
-/* A summary of a point, and what its columns are called. */
-static const struct {
-  const char *name;
-  size_t offset;
-} csv_summaries[] = {{"angle_deg", offsetof(scree_point_result, angle_deg)},
-                     {"seconds", offsetof(scree_point_result, seconds)},
-                     {"height", offsetof(scree_point_result, height)},
-                     {"run_out", offsetof(scree_point_result, run_out)},
-                     {"coordination", offsetof(scree_point_result, coordination)},
-                     {"packing_fraction", offsetof(scree_point_result, packing)},
-                     {"left", offsetof(scree_point_result, left)},
-                     {"peak_rotation", offsetof(scree_point_result, peak_rotation)}};
-enum { SUMMARIES = sizeof csv_summaries / sizeof *csv_summaries };
-
-static const scree_summary *summary_of(const scree_point_result *p, size_t which) {
-  return (const scree_summary *)(const void *)((const char *)p + csv_summaries[which].offset);
-}
 
 /* What no point has gets no columns. */
 static bool any_has(const scree_study_result *r, size_t which) {
@@ -220,8 +169,7 @@ static bool has_column(const char *factor) {
 scree_status scree_study_csv_write(const scree_study_result *result, const char *path,
                                    bool overwrite, scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   FILE *stream = output.stream;
   fputs("label,rp,shapes", stream);
   for (size_t k = 0; k < result->factor_count; k++) {
@@ -230,8 +178,8 @@ scree_status scree_study_csv_write(const scree_study_result *result, const char 
     scree_csv_text(stream, result->factors[k]);
   }
   fputs(",done,failed,waiting,heap_count,triangle_count", stream);
-  for (size_t i = 0; i < SUMMARIES; i++) {
-    const char *name = csv_summaries[i].name;
+  for (size_t i = 0; i < SUMMARY_COUNT; i++) {
+    const char *name = summaries[i].name;
     if (any_has(result, i))
       fprintf(stream, ",%s,%s_low,%s_high,%s_sd,%s_sd_low,%s_sd_high,%s_cv", name, name, name, name,
               name, name, name);
@@ -261,7 +209,7 @@ scree_status scree_study_csv_write(const scree_study_result *result, const char 
     fprintf(stream, ",%zu,%zu,%zu,%zu,", p->counts.done, p->counts.failed,
             p->counts.waiting + p->counts.leased + p->counts.running, p->heap_count);
     scree_csv_number(stream, p->triangle_count);
-    for (size_t k = 0; k < SUMMARIES; k++)
+    for (size_t k = 0; k < SUMMARY_COUNT; k++)
       if (any_has(result, k)) csv_summary(stream, summary_of(p, k));
     for (size_t k = 0; k < result->answer_count; k++) csv_summary(stream, &p->answers[k]);
     putc('\n', stream);

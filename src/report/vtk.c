@@ -143,8 +143,7 @@ scree_status scree_vtp_write(const scree_vtk_data *data, const char *path, bool 
   scree_output output;
   if (isinf(data->time))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: the time is infinite", path);
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   writer w = {output.stream, 0};
   cells c = cells_of(data);
   write_header(&w, data, &c);
@@ -200,8 +199,7 @@ scree_status scree_pvd_write(const char *const *files, const double *times, size
     if (!isfinite(times[i]))
       return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: time %zu of %zu is no finite number", path,
                         i + 1, file_count);
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   const char *ending = strrchr(path, '.');
   if (ending && !strcasecmp(ending, ".series"))
     write_series(output.stream, files, times, file_count);

@@ -63,11 +63,9 @@ static void json_shape(scree_json *json, const exporter *e, size_t index) {
   scree_json_count(json, "shape", index);
   scree_json_text(json, "kind", kinds[m.kind]);
   scree_json_text(json, "mesh_file", mesh ? name : NULL);
-  scree_json_count(json, "triangle_count", m.triangle_count);
-  scree_json_number(json, "volume", m.volume);
+  SCREE_JSON_MEMBERS(json, &m, triangle_count, volume);
   scree_json_numbers(json, "inertia_per_density", m.inertia, 3);
-  scree_json_number(json, "size", m.size);
-  scree_json_number(json, "bounding_radius", m.bounding_radius);
+  SCREE_JSON_MEMBERS(json, &m, size, bounding_radius);
   json_spheres(json, particle, mesh ? 0 : m.point_count);
   scree_json_end(json);
 }
@@ -103,8 +101,7 @@ static void json_wall(scree_json *json, const exporter *e, size_t index) {
   scree_json_numbers(json, "position", wall.position, 3);
   scree_json_numbers(json, "orientation", orientation, 4);
   scree_json_numbers(json, "axis", wall.axis, 3);
-  scree_json_number(json, "radius", wall.radius);
-  scree_json_number(json, "length", wall.length);
+  SCREE_JSON_MEMBERS(json, &wall, radius, length);
   scree_json_numbers(json, "velocity", wall.velocity, 3);
   scree_json_numbers(json, "angular_velocity", wall.angular_velocity, 3);
   scree_json_end(json);
@@ -170,25 +167,24 @@ static scree_status write_mesh(const exporter *e, const scree_mesh *mesh, const 
   write.unit_m = e->options->unit_m;
   write.overwrite = e->options->overwrite;
   write.comment = e->options->command_line;
-  scree_status status = join(e, name, path, error);
-  return status == SCREE_OK ? scree_mesh_write(mesh, path, &write, error) : status;
+  SCREE_TRY(join(e, name, path, error));
+  return scree_mesh_write(mesh, path, &write, error);
 }
 
 static scree_status write_meshes(const exporter *e, scree_error *error) {
-  scree_status status = SCREE_OK;
   char name[64];
-  for (size_t i = 0; status == SCREE_OK && i < e->shapes.count; i++) {
+  for (size_t i = 0; i < e->shapes.count; i++) {
     shape_name(i, name);
     if (has_mesh(e->shapes.particles[i]))
-      status = write_mesh(e, scree_particle_mesh(e->shapes.particles[i]), name, error);
+      SCREE_TRY(write_mesh(e, scree_particle_mesh(e->shapes.particles[i]), name, error));
   }
-  for (size_t i = 0; status == SCREE_OK && i < scree_world_wall_count(e->world); i++) {
+  for (size_t i = 0; i < scree_world_wall_count(e->world); i++) {
     scree_wall wall;
     scree_world_get_wall(e->world, i, &wall);
     wall_name(i, name);
-    if (wall.kind == SCREE_WALL_MESH) status = write_mesh(e, wall.mesh, name, error);
+    if (wall.kind == SCREE_WALL_MESH) SCREE_TRY(write_mesh(e, wall.mesh, name, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_world_export(const scree_world *world, const scree_export_options *options,

@@ -27,14 +27,13 @@ static void free_scene(drawing *s) {
 }
 
 static scree_status make_spheres(drawing *s, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < s->shapes.count; i++) {
+  for (size_t i = 0; i < s->shapes.count; i++) {
     scree_particle_measures m;
     scree_particle_measure(s->shapes.particles[i], &m);
     if (m.kind != SCREE_PARTICLE_MESH)
-      status = scree_spheres_mesh(s->shapes.particles[i], SPHERE_LEVEL, &s->meshes[i], error);
+      SCREE_TRY(scree_spheres_mesh(s->shapes.particles[i], SPHERE_LEVEL, &s->meshes[i], error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* of: where not NULL, the shapes are numbered as it has them. */
@@ -306,8 +305,7 @@ scree_status scree_scene_pile_picture(const scree_scene *scene, const scree_rend
   if (!scree_scene_pile_name(scene, 0))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "the scene has no sensor of a pile");
   if (!(o.focus_radius > 0)) {
-    scree_status status = scree_scene_measure_pile(scene, 0, NULL, &pile, error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(scree_scene_measure_pile(scene, 0, NULL, &pile, error));
     focus_on(&pile.repose, &o);
   }
   return draw(scree_scene_view(scene), scene, &o, progress, image, error);

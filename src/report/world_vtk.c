@@ -78,8 +78,7 @@ static bool is_mesh(const scree_particle_measures *m) {
 static scree_status unit_sphere(scree_mesh *sphere, scree_error *error) {
   char name[] = "icosphere-0";
   name[sizeof name - 2] = (char)('0' + SPHERE_LEVEL);
-  scree_status status = scree_sample_make(name, NULL, NULL, sphere, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_sample_make(name, NULL, NULL, sphere, error));
   for (size_t v = 0; v < sphere->vertex_count; v++)
     vec3_store(sphere->positions + 3 * v, vec3_unit(vec3_load(sphere->positions + 3 * v)));
   return SCREE_OK;
@@ -508,8 +507,7 @@ static scree_status make_walls(const scree_world *world, const scree_scene *scen
     good = maps[m];
   }
   if (!good) return scree_fail_memory(error, 64 * triangles, "the walls of a world");
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < count; i++) {
+  for (size_t i = 0; i < count; i++) {
     scree_wall wall;
     size_t begin = s->triangle_count;
     scree_world_get_wall(world, i, &wall);
@@ -518,9 +516,9 @@ static scree_status make_walls(const scree_world *world, const scree_scene *scen
       number[t] = (int64_t)i;
       kind[t] = wall.kind;
     }
-    if (scene) status = fill_maps(scene, i, begin, s, maps, error);
+    if (scene) SCREE_TRY(fill_maps(scene, i, begin, s, maps, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- One file ---- */

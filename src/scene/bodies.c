@@ -69,15 +69,15 @@ static scree_status admit(const scree_named_table *t, const double v[REALS], con
 static scree_status read_table(const char *name, char *text, scree_scene *scene,
                                scree_error *error) {
   scree_named_table t;
-  scree_status status = scree_named_open(&t, name, text, known, COLUMNS, error);
-  if (status == SCREE_OK) status = check_names(&t, scene, error);
-  for (bool there = true; status == SCREE_OK && there;) {
+  SCREE_TRY(scree_named_open(&t, name, text, known, COLUMNS, error));
+  SCREE_TRY(check_names(&t, scene, error));
+  for (bool there = true; there;) {
     double v[COLUMNS] = {0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, NAN};
     const char *words[COLUMNS] = {NULL};
-    status = scree_named_row(&t, v, words, &there, error);
-    if (status == SCREE_OK && there) status = admit(&t, v, words[SHAPE], scene, error);
+    SCREE_TRY(scree_named_row(&t, v, words, &there, error));
+    if (there) SCREE_TRY(admit(&t, v, words[SHAPE], scene, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_scene_read_bodies(scree_scene *scene, const char *folder, scree_error *error) {
@@ -108,8 +108,7 @@ static void put_reals(FILE *stream, const double *values, int count) {
 scree_status scree_scene_bodies_write(const scree_scene *scene, const char *path, bool overwrite,
                                       scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   FILE *out = output.stream;
   fputs("shape", out);
   for (int k = 0; k < REALS; k++)

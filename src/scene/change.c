@@ -300,17 +300,16 @@ static scree_status take_sensor(scree_scene *was, size_t k, scree_scene *is, siz
 
 static scree_status take_sensors(const comparison *c, scree_scene *is, scree_error *error) {
   scree_scene *was = c->scene;
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < is->plan.sensors.count; i++) {
+  for (size_t i = 0; i < is->plan.sensors.count; i++) {
     const char *name = is->sensors[i].plan->place.name;
     size_t k = scree_plan_find(&was->plan.sensors, sizeof(scree_plan_sensor), name);
     if (k < was->plan.sensors.count && !has_changed(c, "sensors", name))
-      status = take_sensor(was, k, is, i, error);
+      SCREE_TRY(take_sensor(was, k, is, i, error));
   }
   uint64_t now = scree_world_step_count(was->world);
   if (is->hit_steps && !was->hit_steps) is->next_hits = now;
   if (is->map_steps && !was->map_steps) is->next_map = now;
-  return status;
+  return SCREE_OK;
 }
 
 /* Rows so far, with nothing in columns that there were none of. */
@@ -402,18 +401,15 @@ static scree_status set_geometry(const comparison *c, scree_scene *scene, scree_
 
 static scree_status set_world(const comparison *c, scree_scene *scene, scree_error *error) {
   double missed = scree_scene_missing_energy(c->scene);
-  scree_status status = SCREE_OK;
   if (has_changed(c, "materials", NULL) || has_changed(c, "pairs", NULL))
-    status = set_pairs(scene, error);
-  if (status == SCREE_OK) status = scree_world_change(scene->world, SCREE_ALL_PARTS, error);
-  if (status != SCREE_OK) return status;
-  if (has_changed(c, "forces", NULL)) status = scree_scene_apply_forces(scene, error);
-  if (status != SCREE_OK) return status;
+    SCREE_TRY(set_pairs(scene, error));
+  SCREE_TRY(scree_world_change(scene->world, SCREE_ALL_PARTS, error));
+  if (has_changed(c, "forces", NULL)) SCREE_TRY(scree_scene_apply_forces(scene, error));
   memcpy(scene->world->options.gravity, scene->plan.gravity, sizeof scene->plan.gravity);
-  if (has_changed(c, "geometry", NULL)) status = set_geometry(c, scene, error);
+  if (has_changed(c, "geometry", NULL)) SCREE_TRY(set_geometry(c, scene, error));
   /* other heights' worth, springs of another stiffness: whoever changes it brings that energy */
   scene->entered_energy += scree_scene_missing_energy(scene) - missed;
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- the change ---- */
@@ -435,22 +431,20 @@ static scree_status keep_history(comparison *c, scree_scene *is, scree_error *er
 
 static scree_status take_over(comparison *c, scree_scene *is, scree_error *error) {
   scree_scene *was = c->scene;
-  scree_status status = take_shapes(was, is, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(take_shapes(was, is, error));
   scree_scene_reopen(was, &is->plan);
   take_books(was, is);
-  status = scree_scene_complete_plan(is, error);
-  if (status == SCREE_OK) status = scree_scene_plan_maps(is, error);
-  if (status == SCREE_OK) status = take_sensors(c, is, error);
-  if (status == SCREE_OK) status = take_series(was, is, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_complete_plan(is, error));
+  SCREE_TRY(scree_scene_plan_maps(is, error));
+  SCREE_TRY(take_sensors(c, is, error));
+  SCREE_TRY(take_series(was, is, error));
   take_inlets(c, is);
-  status = scree_scene_plan_layers(is, error);
-  if (status == SCREE_OK && has_changed(c, "inlets", NULL)) {
-    status = scree_scene_check_inlets(is, error);
-    if (status == SCREE_OK) status = scree_scene_check_softness(is, error);
+  SCREE_TRY(scree_scene_plan_layers(is, error));
+  if (has_changed(c, "inlets", NULL)) {
+    SCREE_TRY(scree_scene_check_inlets(is, error));
+    SCREE_TRY(scree_scene_check_softness(is, error));
   }
-  return status == SCREE_OK ? set_world(c, is, error) : status;
+  return set_world(c, is, error);
 }
 
 static scree_status change_to(scree_scene **scene, const scree_scene_file *file,
@@ -458,9 +452,8 @@ static scree_status change_to(scree_scene **scene, const scree_scene_file *file,
   scree_scene *was = *scene, *is = NULL;
   comparison c = {.scene = was, .folder = file->folder, .error = error};
   char *text;
-  scree_status status = scree_scene_file_text(file, &text, error);
-  if (status != SCREE_OK) return status;
-  status = compare_texts(&c, was->text, text);
+  SCREE_TRY(scree_scene_file_text(file, &text, error));
+  scree_status status = compare_texts(&c, was->text, text);
   scree_free(text);
   if (status == SCREE_OK) status = refuse_others(&c, error);
   if (status == SCREE_OK && c.list.count && !(is = scree_alloc_zero(1, sizeof *is)))
@@ -499,8 +492,7 @@ static scree_status apply_field(scree_scene_file *file, const char *change, cons
 /* What is wrong is of the changes, which have their own lines. */
 static scree_status apply_file(scree_scene_file *file, const char *path, scree_error *error) {
   scree_yaml over;
-  scree_status status = scree_yaml_read(path, &over, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_yaml_read(path, &over, error));
   char *name = scree_strdup(path);
   if (!name || over.kind != SCREE_YAML_MAPPING) {
     scree_yaml_free(&over);
@@ -510,7 +502,7 @@ static scree_status apply_file(scree_scene_file *file, const char *path, scree_e
   }
   char *kept = file->name;
   file->name = name;
-  status = scree_yaml_merge(&file->root, &over, error);
+  scree_status status = scree_yaml_merge(&file->root, &over, error);
   if (status == SCREE_OK) status = scree_scene_file_check(file, error);
   file->name = kept;
   scree_free(name);

@@ -110,16 +110,15 @@ static scree_status save_state(work *w, const char *name, scree_error *error) {
 }
 
 static scree_status put_frames(work *w, bool last, scree_error *error) {
-  scree_status status = SCREE_OK;
   char name[48];
   snprintf(name, sizeof name, "frame-%06zu.scree", w->frame_count);
   bool due = now_of(w) >= next_frame(w) || (last && isfinite(next_frame(w)));
-  if (due) status = save_state(w, name, error);
-  if (status == SCREE_OK && due && w->job->frame)
-    status = w->job->frame(w->job->context, w->scene, w->frame_count, error);
+  if (due) SCREE_TRY(save_state(w, name, error));
+  if (due && w->job->frame)
+    SCREE_TRY(w->job->frame(w->job->context, w->scene, w->frame_count, error));
   if (due) w->frame_count++;
   while (now_of(w) >= next_frame(w)) w->frame_count++; /* an interval shorter than a step */
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status open_motion(work *w, bool go_on, scree_error *error) {
@@ -191,8 +190,7 @@ static scree_status keep_state(work *w, scree_error *error) {
 }
 
 static scree_status cancel(work *w, scree_error *error) {
-  scree_status status = checkpoint(w, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(checkpoint(w, error));
   return scree_fail(error, SCREE_CANCELLED, "cancelled at %.6g s of simulated time%s", now_of(w),
                     w->job->folder ? "; it can be resumed from its checkpoint" : "");
 }
@@ -278,9 +276,8 @@ static scree_status take_over(scree_scene *scene, const scree_scene_file *file, 
                               scree_error *error) {
   scree_plan plan;
   char *text;
-  scree_status status = scree_scene_file_text(file, &text, error);
-  if (status != SCREE_OK) return status;
-  status = compare_texts(text, scene->text, path, error);
+  SCREE_TRY(scree_scene_file_text(file, &text, error));
+  scree_status status = compare_texts(text, scene->text, path, error);
   if (status == SCREE_OK) status = scree_scene_file_plan(file, &scene->arena, &plan, error);
   if (status == SCREE_OK) status = compare_intervals(scene, plan.output, path, error);
   if (status != SCREE_OK) {
@@ -301,9 +298,8 @@ scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *f
                                    const char *path, scree_error *error) {
   scree_scene_file *shrunk;
   if (!scree_scene_file_shrinks(file)) return take_over(scene, file, path, error);
-  scree_status status = scree_scene_file_shrink(file, scree_scene_largest(scene), &shrunk, error);
-  if (status != SCREE_OK) return status;
-  status = take_over(scene, shrunk, path, error);
+  SCREE_TRY(scree_scene_file_shrink(file, scree_scene_largest(scene), &shrunk, error));
+  scree_status status = take_over(scene, shrunk, path, error);
   scree_scene_file_free(shrunk);
   return status;
 }
@@ -355,15 +351,14 @@ static scree_status make_scene(work *w, scree_error *error) {
 
 static scree_status prepare(work *w, scree_error *error) {
   const scree_scene_job *job = w->job;
-  scree_status status = SCREE_OK;
-  if (job->folder) status = scree_folder_create(job->folder, error);
-  if (job->folder && status == SCREE_OK) status = find_checkpoint(w, error);
+  if (job->folder) SCREE_TRY(scree_folder_create(job->folder, error));
+  if (job->folder) SCREE_TRY(find_checkpoint(w, error));
   bool resumed = w->scene != NULL;
-  if (status == SCREE_OK && !resumed) status = make_scene(w, error);
-  if (status == SCREE_OK && job->folder) status = open_series(w, error);
-  if (status == SCREE_OK && job->folder && !job->no_motion) status = open_motion(w, resumed, error);
-  if (status == SCREE_OK && job->begun) status = job->begun(job->context, w->scene, resumed, error);
-  return status == SCREE_OK ? keep_state(w, error) : status;
+  if (!resumed) SCREE_TRY(make_scene(w, error));
+  if (job->folder) SCREE_TRY(open_series(w, error));
+  if (job->folder && !job->no_motion) SCREE_TRY(open_motion(w, resumed, error));
+  if (job->begun) SCREE_TRY(job->begun(job->context, w->scene, resumed, error));
+  return keep_state(w, error);
 }
 
 scree_status scree_scene_complete(const scree_scene_job *job, scree_scene **scene,

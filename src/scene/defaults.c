@@ -6,8 +6,6 @@
 #include "base/alloc.h"
 #include "base/math.h"
 
-#include <string.h>
-
 static const double pi = 3.14159265358979;
 static const double loose_packing = 0.30;    /* solid fraction of what has been poured */
 static const double cell_share = 1.02;       /* of the largest body's diameter: a grid's pitch */
@@ -37,10 +35,8 @@ static scree_status measure_layers(scree_scene *scene, scree_scene_inlet *inlet,
   size_t count = inlet->plan->count, shapes = inlet->plan->shapes.count;
   l->order = scree_arena_take(&scene->arena, count, sizeof *l->order);
   if (!l->order) return scree_fail_memory(error, count * sizeof *l->order, "layers");
-  scree_status status =
-      scree_fill_order(scene->plan.seed + (uint64_t)(inlet - scene->inlets),
-                       inlet->plan->shapes.values, shapes, l->order, count, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_fill_order(scene->plan.seed + (uint64_t)(inlet - scene->inlets),
+                             inlet->plan->shapes.values, shapes, l->order, count, error));
   for (size_t i = 0; i < count; i++) {
     scree_particle_measures m = measures_of(scene, inlet, l->order[i]);
     l->solid += m.volume;
@@ -139,18 +135,16 @@ scree_status scree_scene_check_cell(const scree_scene *scene, const scree_place 
 
 scree_status scree_scene_complete_plan(scree_scene *scene, scree_error *error) {
   const scree_scene_layers *layers = NULL; /* the first */
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < scene->plan.inlets.count; i++) {
+  for (size_t i = 0; i < scene->plan.inlets.count; i++) {
     scree_scene_inlet *inlet = &scene->inlets[i];
     if (!inlet->plan->layers) continue;
-    status = measure_layers(scene, inlet, error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(measure_layers(scene, inlet, error));
     place_layers(scene, inlet);
     if (!layers) layers = &inlet->layers;
   }
-  for (size_t i = 0; status == SCREE_OK && i < scene->plan.sensors.count; i++) {
+  for (size_t i = 0; i < scene->plan.sensors.count; i++) {
     scree_plan_pile *pile = scene->sensors[i].plan->pile;
-    if (pile) status = complete_pile(scene, layers, pile, error);
+    if (pile) SCREE_TRY(complete_pile(scene, layers, pile, error));
   }
-  return status;
+  return SCREE_OK;
 }

@@ -7,8 +7,6 @@
 #include "base/tree.h"
 #include "world/backend.h"
 
-#include <string.h>
-
 static const double least_margin = 10; /* of the largest body's radius */
 
 static void take_in(scree_scene_reach *reach, const double low[3], const double high[3]) {

@@ -29,15 +29,15 @@ scree_status scree_scene_file_keep(scree_yaml *root, const char *name, scree_sce
 
 scree_status scree_scene_file_read(const char *path, scree_scene_file **file, scree_error *error) {
   scree_yaml root;
-  scree_status status = scree_yaml_read(path, &root, error);
-  return status == SCREE_OK ? scree_scene_file_keep(&root, path, file, error) : status;
+  SCREE_TRY(scree_yaml_read(path, &root, error));
+  return scree_scene_file_keep(&root, path, file, error);
 }
 
 scree_status scree_scene_file_parse(const char *text, size_t byte_count, const char *name,
                                     scree_scene_file **file, scree_error *error) {
   scree_yaml root;
-  scree_status status = scree_yaml_parse(text, byte_count, name, &root, error);
-  return status == SCREE_OK ? scree_scene_file_keep(&root, name, file, error) : status;
+  SCREE_TRY(scree_yaml_parse(text, byte_count, name, &root, error));
+  return scree_scene_file_keep(&root, name, file, error);
 }
 
 void scree_scene_file_free(scree_scene_file *file) {

@@ -3,10 +3,8 @@
 #include "scene/scene.h"
 
 #include "base/alloc.h"
-#include "base/math.h"
 #include "base/number.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_NAMES = 64, PATH_BYTES = 300 };
@@ -84,16 +82,16 @@ static bool sets(const scree_yaml *parameter, const char *field) {
 /* What is set is as it is meant: it shrinks no more. */
 static scree_status set_field(scree_scene_file *file, const char *field, const char *value,
                               scree_error *error) {
-  scree_status status = need_named(file, field, error);
-  if (status == SCREE_OK) status = scree_yaml_set(&file->root, field, value, error);
+  SCREE_TRY(need_named(file, field, error));
+  SCREE_TRY(scree_yaml_set(&file->root, field, value, error));
   const scree_yaml *parameters = scree_yaml_find(&file->root, "parameters");
-  for (size_t i = 0; status == SCREE_OK && parameters && i < parameters->item_count; i++) {
+  for (size_t i = 0; parameters && i < parameters->item_count; i++) {
     char path[64];
     if (!shrinks(&parameters->items[i]) || !sets(&parameters->items[i], field)) continue;
     snprintf(path, sizeof path, "parameters.%zu.power", i);
-    status = scree_yaml_set(&file->root, path, "0", error);
+    SCREE_TRY(scree_yaml_set(&file->root, path, "0", error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* "shapes.*.rp": of everything in the group. */
@@ -104,12 +102,11 @@ static scree_status set_all(scree_scene_file *file, const char *field, const cha
   char group[PATH_BYTES], path[2 * PATH_BYTES];
   snprintf(group, sizeof group, "%.*s", (int)(star - field), field);
   const scree_yaml *items = scree_yaml_find(&file->root, group);
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && items && i < items->item_count; i++) {
+  for (size_t i = 0; items && i < items->item_count; i++) {
     snprintf(path, sizeof path, "%s.%.100s.%.100s", group, items->items[i].key, star + 3);
-    status = scree_yaml_set(&file->root, path, value, error);
+    SCREE_TRY(scree_yaml_set(&file->root, path, value, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- parameters and presets ---- */
@@ -159,13 +156,13 @@ static scree_status set_parameter(scree_scene_file *file, const scree_yaml *para
                                   const char *name, const char *value, scree_error *error) {
   char scaled[PATH_BYTES];
   const scree_yaml *field = field_of(parameter, 0);
-  scree_status status = field ? scale_value(parameter, name, value, scaled, sizeof scaled, error)
-                              : scree_scene_file_check(file, error);
-  for (size_t i = 0; status == SCREE_OK && (field = field_of(parameter, i)); i++) {
+  SCREE_TRY(field ? scale_value(parameter, name, value, scaled, sizeof scaled, error)
+                  : scree_scene_file_check(file, error));
+  for (size_t i = 0; (field = field_of(parameter, i)); i++) {
     if (field->kind != SCREE_YAML_SCALAR) return scree_scene_file_check(file, error);
-    status = set_all(file, field->text, scaled, error);
+    SCREE_TRY(set_all(file, field->text, scaled, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status set_preset(scree_scene_file *file, const char *name, scree_error *error) {
@@ -177,11 +174,10 @@ static scree_status set_preset(scree_scene_file *file, const char *name, scree_e
     return scree_fail_name(&reader, &(scree_place){.path = "preset"}, "preset", name, names, count);
   }
   const scree_yaml *set = scree_yaml_find(preset, "set");
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && set && i < set->item_count; i++)
+  for (size_t i = 0; set && i < set->item_count; i++)
     if (set->items[i].kind == SCREE_YAML_SCALAR && strcmp(set->items[i].key, "preset") != 0)
-      status = scree_scene_file_set(file, set->items[i].key, set->items[i].text, error);
-  return status == SCREE_OK ? scree_yaml_set(&file->root, "preset", name, error) : status;
+      SCREE_TRY(scree_scene_file_set(file, set->items[i].key, set->items[i].text, error));
+  return scree_yaml_set(&file->root, "preset", name, error);
 }
 
 scree_status scree_scene_file_set(scree_scene_file *file, const char *field, const char *value,
@@ -208,16 +204,15 @@ static scree_status shrink(scree_scene_file *file, const scree_yaml *parameter, 
          power = number_of(parameter, "power"), factor = power > floor(power) ? sqrt(share) : 1,
          value;
   for (double whole = 1; whole <= power; whole++) factor *= share;
-  scree_status status = SCREE_OK;
   const scree_yaml *field;
-  for (size_t i = 0; status == SCREE_OK && (field = field_of(parameter, i)); i++) {
+  for (size_t i = 0; (field = field_of(parameter, i)); i++) {
     const scree_yaml *node = field->text ? scree_yaml_at(&file->root, field->text) : NULL;
     char text[SCREE_NUMBER_SIZE];
     if (!node || !node->text || !scree_number_read(node->text, &value)) continue;
     scree_number_format_digits(factor * value, 17, text);
-    status = set_field(file, field->text, text, error);
+    SCREE_TRY(set_field(file, field->text, text, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_scene_file_shrink(const scree_scene_file *file, double largest,
@@ -359,14 +354,13 @@ scree_status scree_scene_file_read_over(const char *path, const char *template_n
                                         const char *preset, scree_scene_file **file,
                                         scree_error *error) {
   scree_scene_file *read;
-  scree_status status = scree_scene_file_read(path, &read, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_file_read(path, &read, error));
   if (read->root.kind != SCREE_YAML_MAPPING || scree_yaml_find(&read->root, "inlets")) {
     *file = read;
     return SCREE_OK;
   }
   scree_scene_file *made = NULL;
-  status = scree_scene_file_template(template_name, &made, error);
+  scree_status status = scree_scene_file_template(template_name, &made, error);
   if (status == SCREE_OK && preset && !scree_yaml_find(&read->root, "preset"))
     status = scree_scene_file_set(made, "preset", preset, error);
   if (status == SCREE_OK)
@@ -433,13 +427,12 @@ scree_status scree_scene_file_pour(scree_scene_file *file, const scree_poured *s
                                    scree_error *error) {
   const scree_yaml *inlets = scree_yaml_find(&file->root, "inlets");
   if (file->root.kind != SCREE_YAML_MAPPING) return scree_scene_file_check(file, error);
-  scree_status status = scree_yaml_set(&file->root, "shapes", "{}", error);
-  for (size_t i = 0; status == SCREE_OK && inlets && i < inlets->item_count; i++) {
+  SCREE_TRY(scree_yaml_set(&file->root, "shapes", "{}", error));
+  for (size_t i = 0; inlets && i < inlets->item_count; i++) {
     char path[PATH_BYTES];
     snprintf(path, sizeof path, "inlets.%.64s.shapes", inlets->items[i].key);
-    status = scree_yaml_set(&file->root, path, "{}", error);
+    SCREE_TRY(scree_yaml_set(&file->root, path, "{}", error));
   }
-  for (size_t i = 0; status == SCREE_OK && i < count; i++)
-    status = add_shape(file, &shapes[i], error);
-  return status;
+  for (size_t i = 0; i < count; i++) SCREE_TRY(add_shape(file, &shapes[i], error));
+  return SCREE_OK;
 }

@@ -3,8 +3,6 @@
  * makes room by falling out of it. */
 #include "scene/scene.h"
 
-#include <string.h>
-
 static const double random_packing = 0.25; /* share of a region's volume that random places fill */
 static const double body_seconds = 1e-6, mesh_seconds = 3e-6; /* a step, at rest, on one core */
 static const double body_bytes = 97, triangle_bytes = 60;     /* of a frame */
@@ -154,11 +152,10 @@ static void remark_frames(const scree_scene *scene, remarks *r) {
   double interval = scene->plan.output->frames;
   scree_scene_foretell(scene, &f);
   if (interval > 0 && interval < scene->time_step && is_asked(r))
-    snprintf(
-        r->text, SCREE_REMARK,
-        "output.frames: %g s is shorter than a time step of %.3g s: there is a frame for every "
-        "step",
-        interval, scene->time_step);
+    snprintf(r->text, SCREE_REMARK,
+             "output.frames: %g s is shorter than a time step of %.3g s: there is a frame for "
+             "every step",
+             interval, scene->time_step);
   if (f.frame_count > 20000 && is_asked(r))
     snprintf(r->text, SCREE_REMARK, "output.frames: %.0f frames, up to %.3g GB", f.frame_count,
              1e-9 * f.frame_count * f.frame_bytes);

@@ -109,8 +109,7 @@ static scree_status add_file(const making *m, const char *name, scree_error *err
 
 static scree_status add_shaft(const making *m, scree_error *error) {
   const scree_plan_geometry *g = &m->copy;
-  scree_status status = SCREE_OK;
-  for (int side = 0; status == SCREE_OK && side < 4; side++) {
+  for (int side = 0; side < 4; side++) {
     int k = side / 2;
     double half = 0.5 * (k ? g->shaft->depth : g->shaft->width), inwards = side % 2 ? -1 : 1;
     scree_plan_geometry one = *g;
@@ -119,9 +118,9 @@ static scree_status add_shaft(const making *m, scree_error *error) {
     normal[k] = inwards;
     one.at[k] -= inwards * half;
     turn_vector(g, normal, wall.axis);
-    status = add_wall(m->scene, &one, m->world, &wall, error);
+    SCREE_TRY(add_wall(m->scene, &one, m->world, &wall, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* By the numbers of the plan: a box or what solids.h makes; false: no mesh. */

@@ -11,7 +11,6 @@
  * with a geometry all places, velocities and forces are in that one's frame, and relative to it. */
 #include "scene/grid.h"
 
-#include "base/alloc.h"
 #include "base/math.h"
 
 #include <string.h>
@@ -268,19 +267,18 @@ uint64_t scree_scene_next_sample(const scree_scene *scene) {
 
 scree_status scree_scene_watch_grids(scree_scene *scene, scree_error *error) {
   uint64_t step = scree_world_step_count(scene->world);
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < scene->plan.sensors.count; i++) {
+  for (size_t i = 0; i < scene->plan.sensors.count; i++) {
     scree_scene_sensor *sensor = &scene->sensors[i];
     if (!sensor->grid || step < sensor->grid->next) continue;
     sensor->grid->next = step + interval_of(scene, sensor->plan->grid);
     if (!scree_scene_is_watching(scene, sensor)) continue;
     sampling s = begin(scene, sensor);
     put_bodies(&s);
-    status = scree_world_visit_contacts(scene->world, put_contact, &s, error);
-    if (status == SCREE_OK) status = scree_grid_sample_mixing(scene, sensor, error);
+    SCREE_TRY(scree_world_visit_contacts(scene->world, put_contact, &s, error));
+    SCREE_TRY(scree_grid_sample_mixing(scene, sensor, error));
     sensor->grid->sample_count++;
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- fields ---- */

@@ -251,8 +251,7 @@ static bool turn_window(const scree_scene *scene, scree_scene_sensor *sensor) {
 
 scree_status scree_scene_watch_impacts(scree_scene *scene, scree_error *error) {
   if (!scene->hit_steps || scree_world_step_count(scene->world) < scene->next_hits) return SCREE_OK;
-  scree_status status = scree_world_bring(scene->world, SCREE_ALL_PARTS, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_world_bring(scene->world, SCREE_ALL_PARTS, error));
   bool good = look(scene);
   for (size_t i = 0; good && i < scene->plan.sensors.count; i++)
     if (is_on(scene, &scene->sensors[i])) good = turn_window(scene, &scene->sensors[i]);

@@ -156,13 +156,11 @@ static scree_status check_shape(scree_scene *scene, size_t index, size_t shape,
 }
 
 scree_status scree_scene_check_inlets(scree_scene *scene, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < scene->plan.inlets.count; i++)
-    for (size_t k = 0; status == SCREE_OK && !scene->inlets[i].plan->layers &&
-                       k < scene->inlets[i].plan->shapes.count;
+  for (size_t i = 0; i < scene->plan.inlets.count; i++)
+    for (size_t k = 0; !scene->inlets[i].plan->layers && k < scene->inlets[i].plan->shapes.count;
          k++)
-      status = check_shape(scene, i, scene->inlets[i].shapes[k], error);
-  return status;
+      SCREE_TRY(check_shape(scene, i, scene->inlets[i].shapes[k], error));
+  return SCREE_OK;
 }
 
 /* ---- filling ---- */
@@ -258,8 +256,7 @@ scree_status scree_scene_admit(scree_scene *scene, size_t shape, const scree_bod
       !SCREE_RESERVE(&scene->entered_at, scene->entered_at.count + 1) ||
       !SCREE_RESERVE(&scene->stays, scene->stays.count + 1))
     return scree_fail_memory(error, scene->shape_of.count * sizeof *body, "bodies");
-  scree_status status = scree_scene_add_body(s, scene->world, body, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_add_body(s, scene->world, body, error));
   scene->shape_of.items[scene->shape_of.count++] = (uint32_t)shape;
   scene->entered_at.items[scene->entered_at.count++] = scree_world_time(scene->world);
   scene->stays.items[scene->stays.count++] = (scree_scene_stay){NAN, UINT32_MAX, UINT32_MAX};
@@ -287,8 +284,7 @@ scree_status scree_scene_enter(scree_scene *scene, scree_scene_inlet *inlet, siz
   memcpy(body.velocity, velocity, sizeof body.velocity);
   if (!SCREE_PUSH(&scene->present, *p))
     return scree_fail_memory(error, scene->present.count * sizeof *p, "bodies");
-  scree_status status = scree_scene_admit(scene, shape, &body, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_admit(scene, shape, &body, error));
   scene->stays.items[scene->stays.count - 1].inlet = (uint32_t)(inlet - scene->inlets);
   inlet->mass += s->mass;
   inlet->entered++;
@@ -320,8 +316,7 @@ static scree_status fill(scree_scene *scene, size_t index, scree_error *error) {
 }
 
 scree_status scree_scene_fill(scree_scene *scene, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < scene->plan.inlets.count; i++)
-    if (!scene->inlets[i].plan->layers) status = fill(scene, i, error);
-  return status;
+  for (size_t i = 0; i < scene->plan.inlets.count; i++)
+    if (!scene->inlets[i].plan->layers) SCREE_TRY(fill(scene, i, error));
+  return SCREE_OK;
 }

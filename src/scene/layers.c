@@ -8,7 +8,6 @@
 #include "scene/scene.h"
 
 #include "base/alloc.h"
-#include "base/array.h"
 #include "base/rng.h"
 
 static const double layer_thickness = 1.5; /* of the longest body */
@@ -117,8 +116,7 @@ static scree_status plan_random(const scree_scene *scene, scree_scene_inlet *inl
   l->height = 0;
   for (size_t k = 0; k < inlet->plan->shapes.count; k++)
     l->height = fmax(l->height, layer_thickness * box_length(&l->extents[inlet->shapes[k]]));
-  scree_status status = count_layers(scene, inlet, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(count_layers(scene, inlet, error));
   double travel = layer_spacing * l->height;
   l->speed = -inlet->plan->velocity[2];
   if (isnan(pack_time)) {
@@ -130,8 +128,8 @@ static scree_status plan_random(const scree_scene *scene, scree_scene_inlet *inl
   if (l->speed <= fastest) return SCREE_OK;
   return scree_scene_fail(
       scene, &inlet->plan->place, error,
-      "%zu particles make %zu layers of %.4g mm, which would have to enter at %.3g m/s; at "
-      "most %g m/s: set pack_time to %.3g s or more, or a wider cylinder",
+      "%zu particles make %zu layers of %.4g mm, which would have to enter at %.3g m/s; at most %g "
+      "m/s: set pack_time to %.3g s or more, or a wider cylinder",
       inlet->plan->count, l->planned, 1e3 * l->height, l->speed, fastest,
       travel * (double)l->planned / fastest);
 }
@@ -164,8 +162,7 @@ static scree_status make_cells(scree_scene *scene, scree_scene_inlet *inlet, scr
   if (narrow < l->pitch)
     return scree_scene_fail(
         scene, &inlet->plan->place, error,
-        "a container %.4g m wide is too narrow for a particle %.4g m across: at "
-        "least %.4g m",
+        "a container %.4g m wide is too narrow for a particle %.4g m across: at least %.4g m",
         narrow, l->pitch / cell_share, l->pitch);
   double most_x = floor(width / l->pitch), most_y = floor(depth / l->pitch);
   if (most_x * most_y > count) { /* no more than are used: nearly a square */
@@ -188,8 +185,7 @@ static scree_status make_cells(scree_scene *scene, scree_scene_inlet *inlet, scr
 
 static scree_status plan_grid(scree_scene *scene, scree_scene_inlet *inlet, scree_error *error) {
   scree_scene_layers *l = &inlet->layers;
-  scree_status status = make_cells(scene, inlet, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(make_cells(scene, inlet, error));
   l->speed = -inlet->plan->velocity[2];
   l->steps =
       (uint64_t)ceil(falling_time(scene, l->speed, layer_spacing * l->pitch) / scene->time_step);
@@ -199,20 +195,18 @@ static scree_status plan_grid(scree_scene *scene, scree_scene_inlet *inlet, scre
 }
 
 scree_status scree_scene_plan_layers(scree_scene *scene, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < scene->plan.inlets.count; i++) {
+  for (size_t i = 0; i < scene->plan.inlets.count; i++) {
     scree_scene_inlet *inlet = &scene->inlets[i];
     if (!inlet->plan->layers) continue;
     bool moves = inlet->plan->velocity[2] < 0 || !isnan(inlet->plan->layers->pack_time);
     if (!moves && !(scene->plan.gravity[2] < 0))
       return scree_scene_fail(scene, &inlet->plan->place, error,
                               "its layers need a velocity or a pack_time: nothing falls");
-    status = allocate(scene, inlet, error);
-    if (status == SCREE_OK)
-      status = inlet->plan->layers->packed ? plan_grid(scene, inlet, error)
-                                           : plan_random(scene, inlet, error);
+    SCREE_TRY(allocate(scene, inlet, error));
+    SCREE_TRY(inlet->plan->layers->packed ? plan_grid(scene, inlet, error)
+                                          : plan_random(scene, inlet, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- entering ---- */
@@ -253,20 +247,19 @@ static scree_status enter_grid(scree_scene *scene, scree_scene_inlet *inlet, dou
   scree_scene_layers *l = &inlet->layers;
   scree_rng rng = {.seed = seed_of(scene, inlet), .stream = GRID_STREAM + l->count};
   double velocity[3] = {0, 0, -l->speed};
-  scree_status status = SCREE_OK;
   for (size_t i = 0; i < l->cell_count; i++) l->cell_order[i] = (uint32_t)i;
   scree_rng_shuffle(&rng, l->cell_order, l->cell_count, sizeof *l->cell_order);
   scene->present.count = 0;
-  for (size_t k = 0; status == SCREE_OK && k < l->cell_count; k++) {
+  for (size_t k = 0; k < l->cell_count; k++) {
     if (inlet->entered == inlet->plan->count) break;
     size_t which = l->order[inlet->entered];
     vec3 cell = l->cells[l->cell_order[k]];
     scree_placement p = place_in_cell(inlet, inlet->shapes[which], cell, &rng);
     p.position.x += l->middle.x, p.position.y += l->middle.y;
     p.position.z += bottom + 0.5 * l->pitch;
-    status = scree_scene_enter(scene, inlet, which, &p, velocity, error);
+    SCREE_TRY(scree_scene_enter(scene, inlet, which, &p, velocity, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* 0: now. */

@@ -4,7 +4,6 @@
 #include "base/alloc.h"
 #include "heap/repose.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static const double degree = 57.29577951308232;
@@ -90,9 +89,8 @@ scree_status scree_scene_measure_heap(const scree_scene *scene, const scree_plan
     *heap = made;
     return SCREE_OK;
   }
-  scree_status status = scree_height_field_create(
-      e.centre[0], e.centre[1], e.reach, plan->cell > 0 ? plan->cell : 0.1 * e.size, &field, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_height_field_create(e.centre[0], e.centre[1], e.reach,
+                                      plan->cell > 0 ? plan->cell : 0.1 * e.size, &field, error));
   for (size_t b = 0; b < scene->shape_of.count; b++) {
     scree_body body;
     if (!is_of_pile(scene, plan, b, &body)) continue;
@@ -105,7 +103,7 @@ scree_status scree_scene_measure_heap(const scree_scene *scene, const scree_plan
   o.band_low = plan->band_low;
   o.band_high = plan->band_high;
   o.particle_size = e.size;
-  status = scree_repose_measure(&field, &o, &made.repose, error);
+  scree_status status = scree_repose_measure(&field, &o, &made.repose, error);
   scree_height_field_free(&field);
   if (status == SCREE_OK) *heap = made;
   return status;
@@ -125,8 +123,7 @@ static scree_pile pile_of(const scree_scene_heap *heap, double size) {
 scree_status scree_scene_put_pile(const scree_scene *scene, const scree_plan_pile *plan, double *at,
                                   scree_error *error) {
   scree_scene_heap heap;
-  scree_status status = scree_scene_measure_heap(scene, plan, &heap, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_measure_heap(scene, plan, &heap, error));
   scree_pile p = pile_of(&heap, plan->size);
   const scree_repose *r = &p.repose;
   const double values[SCREE_PILE_COLUMNS] = {
@@ -172,13 +169,12 @@ scree_status scree_scene_measure_pile(const scree_scene *scene, size_t index,
     return scree_fail(error, SCREE_BAD_ARGUMENT, "a pile: %zu sectors, cells of %g m", plan.sectors,
                       plan.cell);
   scree_scene_heap heap;
-  scree_status status = SCREE_OK;
   const scree_place nowhere = {.path = ""};
   if (!isnan(plan.size))
-    status = scree_scene_check_cell(scene, &nowhere, plan.cell, plan.size, error);
-  if (status == SCREE_OK) status = scree_scene_measure_heap(scene, &plan, &heap, error);
-  if (status == SCREE_OK) *pile = pile_of(&heap, heap.size);
-  return status;
+    SCREE_TRY(scree_scene_check_cell(scene, &nowhere, plan.cell, plan.size, error));
+  SCREE_TRY(scree_scene_measure_heap(scene, &plan, &heap, error));
+  *pile = pile_of(&heap, heap.size);
+  return SCREE_OK;
 }
 
 /* ---- the slope of a surface ---- */
@@ -263,8 +259,7 @@ scree_status scree_scene_measure_slope(const scree_scene *scene, const scree_pla
   if (!find_bed(scene, plan, &seen)) return SCREE_OK;
   double half = surface_reach * seen.width;
   double cell = fmax(surface_cell * seen.size, 2 * half / MOST_ACROSS);
-  scree_status status = scree_height_field_create(seen.x, seen.y, half, cell, &field, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_height_field_create(seen.x, seen.y, half, cell, &field, error));
   for (size_t b = 0; b < scene->shape_of.count; b++) {
     scree_body body;
     if (!see_body(scene, plan->box, &seen, b, &body)) continue;

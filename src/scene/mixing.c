@@ -143,11 +143,10 @@ bool scree_scene_doubt(const scree_scene *scene, size_t index, char text[SCREE_R
     bool told = m.count > 0 && !is_fine_enough(&m) && index-- == 0;
     scree_free(m.bodies);
     if (!told) continue;
-    snprintf(
-        text, SCREE_REMARK,
-        "%s: %zu bodies in %.0f cells: too few in a cell, or too few cells, for Lacey's index, "
-        "which would scatter by more than %g; %s cells",
-        plan->place.path, m.count, m.cells, most_scatter, m.cells > 1 ? "larger" : "smaller");
+    snprintf(text, SCREE_REMARK,
+             "%s: %zu bodies in %.0f cells: too few in a cell, or too few cells, for Lacey's "
+             "index, which would scatter by more than %g; %s cells",
+             plan->place.path, m.count, m.cells, most_scatter, m.cells > 1 ? "larger" : "smaller");
     return true;
   }
   return false;

@@ -72,10 +72,8 @@ scree_status scree_named_open(scree_named_table *table, const char *name, char *
       (scree_named_table){.name = name, .rest = text, .known = known, .known_count = known_count};
   char *line = next_line(table);
   if (!line) return scree_named_fail(table, error, "no line of names");
-  scree_status status = SCREE_OK;
-  for (char *field; status == SCREE_OK && next_field(&line, &field);)
-    status = read_name(table, field, error);
-  return status;
+  for (char *field; next_field(&line, &field);) SCREE_TRY(read_name(table, field, error));
+  return SCREE_OK;
 }
 
 scree_status scree_named_row(scree_named_table *t, double *values, const char **words, bool *there,

@@ -15,8 +15,6 @@
 
 #include "base/math.h"
 
-#include <string.h>
-
 static const scree_plan_part *plan_of(const scree_scene *scene, size_t geometry) {
   const scree_plan_geometry *g =
       SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, geometry);
@@ -161,15 +159,14 @@ static void move(scree_scene *scene, size_t geometry) {
 }
 
 scree_status scree_scene_move_parts(scree_scene *scene, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < scene->plan.geometry.count; i++) {
+  for (size_t i = 0; i < scene->plan.geometry.count; i++) {
     const scree_scene_geometry *g = &scene->geometry[i];
     if (!g->part) continue;
     move(scene, i);
-    for (size_t w = 0; status == SCREE_OK && w < g->wall_count; w++)
-      status = lead_wall(scene, i, g->first_wall + w, error);
+    for (size_t w = 0; w < g->wall_count; w++)
+      SCREE_TRY(lead_wall(scene, i, g->first_wall + w, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- energies ---- */

@@ -1,7 +1,6 @@
 /* The fields of a scene in tables, and what fields must be together. */
 #include "scene/plan_fields.h"
 
-#include "base/number.h"
 #include "base/vec.h"
 
 #include <math.h>
@@ -334,38 +333,38 @@ static scree_status check_geometry(const scree_reader *r, const void *record) {
   const bool there[] = {g->file.count > 0, given(g->box),       given(g->plane),
                         g->disc != NULL,   g->cylinder != NULL, g->shaft != NULL,
                         g->loop != NULL,   g->screw != NULL,    g->sieve != NULL};
-  scree_status status = scree_plan_one_of(
-      r, &g->place, there, 9, "file, box, plane, disc, cylinder, shaft, loop, screw, sieve");
-  if (status == SCREE_OK) status = scree_plan_check_direction(r, &g->place, "plane", g->plane);
-  if (status == SCREE_OK && g->cylinder && given(g->cylinder->at))
-    status = scree_fail_place(r, &g->cylinder->place,
-                              "at stands beside the cylinder, as of all geometry, not in it");
-  if (status == SCREE_OK && g->side && !there[0] && !there[1])
-    status = scree_fail_place(r, &g->place, "side is of a file or a box, which may be closed");
+  SCREE_TRY(scree_plan_one_of(r, &g->place, there, 9,
+                              "file, box, plane, disc, cylinder, shaft, loop, screw, sieve"));
+  SCREE_TRY(scree_plan_check_direction(r, &g->place, "plane", g->plane));
+  if (g->cylinder && given(g->cylinder->at))
+    return scree_fail_place(r, &g->cylinder->place,
+                            "at stands beside the cylinder, as of all geometry, not in it");
+  if (g->side && !there[0] && !there[1])
+    return scree_fail_place(r, &g->place, "side is of a file or a box, which may be closed");
   const double *normal = g->disc ? g->disc->normal : g->plane;
-  if (status == SCREE_OK && given(g->surface_velocity) && (g->disc || given(g->plane)) &&
+  if (given(g->surface_velocity) && (g->disc || given(g->plane)) &&
       !is_across(g->surface_velocity, normal))
-    status = scree_fail_place(r, &g->place, "surface_velocity must lie in the surface");
-  if (status == SCREE_OK && g->belt && !g->file.count && !g->loop)
-    status = scree_fail_place(r, &g->belt->place,
-                              "is of a file or a loop; give a surface_velocity instead");
-  if (status == SCREE_OK && g->belt && given(g->surface_velocity))
-    status = scree_fail_place(r, &g->place, "only one of surface_velocity, belt may be given");
-  if (status == SCREE_OK && (g->slide != NULL) + (g->hinge != NULL) + (g->motion.count > 0) > 1)
-    status = scree_fail_place(r, &g->place, "only one of motion, slide, hinge may be given");
-  if (status == SCREE_OK && g->copies && (g->belt || given(g->surface_velocity)))
-    status = scree_fail_place(r, &g->copies->place, "of belts there are none: give each its own");
+    return scree_fail_place(r, &g->place, "surface_velocity must lie in the surface");
+  if (g->belt && !g->file.count && !g->loop)
+    return scree_fail_place(r, &g->belt->place,
+                            "is of a file or a loop; give a surface_velocity instead");
+  if (g->belt && given(g->surface_velocity))
+    return scree_fail_place(r, &g->place, "only one of surface_velocity, belt may be given");
+  if ((g->slide != NULL) + (g->hinge != NULL) + (g->motion.count > 0) > 1)
+    return scree_fail_place(r, &g->place, "only one of motion, slide, hinge may be given");
+  if (g->copies && (g->belt || given(g->surface_velocity)))
+    return scree_fail_place(r, &g->copies->place, "of belts there are none: give each its own");
   const scree_plan_motion *motions = g->motion.items;
-  for (size_t i = 0; status == SCREE_OK && i < g->motion.count; i++)
+  for (size_t i = 0; i < g->motion.count; i++)
     if (motions[i].round && (g->motion.count > 1 || !g->copies || !given(&g->copies->radius)))
-      status = scree_fail_place(r, &motions[i].place,
-                                "round is the only motion of copies along a chain: give copies: "
-                                "{count, axis, through, span, radius}");
-  for (size_t i = 0; status == SCREE_OK && g->motion.count > 1 && i < g->motion.count; i++)
+      return scree_fail_place(r, &motions[i].place,
+                              "round is the only motion of copies along a chain: give copies: "
+                              "{count, axis, through, span, radius}");
+  for (size_t i = 0; g->motion.count > 1 && i < g->motion.count; i++)
     if (motions[i].during)
-      status = scree_fail_place(r, &motions[i].place,
-                                "a motion during a phase must be the geometry's only one");
-  return status;
+      return scree_fail_place(r, &motions[i].place,
+                              "a motion during a phase must be the geometry's only one");
+  return SCREE_OK;
 }
 static const scree_plan_geometry geometry_defaults = {
     .box = NONE, .plane = NONE, .surface_velocity = NONE, .unit = 2};
@@ -398,9 +397,8 @@ static scree_status check_layers(const scree_reader *r, const void *record) {
   if (given(&l->clearance))
     return scree_fail_place(r, &l->place, "clearance is of random layers; a grid has its cells");
   if (!given(&l->pack_time)) return SCREE_OK;
-  return scree_fail_place(r, &l->place,
-                          "pack_time is of random layers; those of a grid follow "
-                          "from the velocity");
+  return scree_fail_place(
+      r, &l->place, "pack_time is of random layers; those of a grid follow from the velocity");
 }
 static const scree_plan_layers layers_defaults = {
     .pack_time = NAN, .bottom = NAN, .clearance = NAN};
@@ -452,9 +450,7 @@ static scree_status check_inlet(const scree_reader *r, const void *record) {
   const scree_plan_inlet *i = record;
   const bool there[] = {i->box != NULL, i->cylinder != NULL, i->layers && i->layers->in};
   const bool rates[] = {given(&i->rate), given(&i->mass_rate), i->count > 0};
-  scree_status status =
-      scree_plan_one_of(r, &i->place, there, 3, "box, cylinder, layers in a geometry");
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_plan_one_of(r, &i->place, there, 3, "box, cylinder, layers in a geometry"));
   if (i->layers) return check_layered(r, i);
   if (i->cylinder && !given(&i->cylinder->radius))
     return scree_fail_place(r, &i->cylinder->place, "needs a radius");
@@ -499,15 +495,15 @@ static const scree_field domain_fields[] = {
 #undef AT
 static scree_status check_domain(const scree_reader *r, const void *record) {
   const scree_plan_domain *d = record;
-  scree_status status = check_corners(r, &d->place, d->min, d->max);
-  for (size_t i = 0; status == SCREE_OK && i < d->periodic.count; i++) {
+  SCREE_TRY(check_corners(r, &d->place, d->min, d->max));
+  for (size_t i = 0; i < d->periodic.count; i++) {
     const char *axis = d->periodic.items[i];
     if (strlen(axis) != 1 || !strchr("xyz", *axis))
-      status = scree_fail_place(r, &d->place, "periodic '%.20s': must be x, y or z", axis);
+      return scree_fail_place(r, &d->place, "periodic '%.20s': must be x, y or z", axis);
   }
-  if (status == SCREE_OK && d->periodic.count > 2)
-    status = scree_fail_place(r, &d->place, "periodic: along two axes at most");
-  return status;
+  if (d->periodic.count > 2)
+    return scree_fail_place(r, &d->place, "periodic: along two axes at most");
+  return SCREE_OK;
 }
 static const scree_plan_domain domain_defaults = {{0}, NONE, NONE, {0}};
 static const scree_record domain_record = {
@@ -697,10 +693,10 @@ scree_status scree_plan_read(const scree_reader *reader, const scree_yaml *root,
   scree_place place = {NULL, "", root->line, root->column};
   if (root->kind != SCREE_YAML_MAPPING)
     return scree_fail_place(reader, &place, "a scene is `key: value` lines");
-  scree_status status = scree_record_read(reader, root, &scree_plan_record, &made);
-  if (status == SCREE_OK) status = fill_in(reader, &contact_record, (void **)&made.contact);
-  if (status == SCREE_OK) status = fill_in(reader, &stop_record, (void **)&made.stop);
-  if (status == SCREE_OK) status = fill_in(reader, &output_record, (void **)&made.output);
-  if (status == SCREE_OK) *plan = made;
-  return status;
+  SCREE_TRY(scree_record_read(reader, root, &scree_plan_record, &made));
+  SCREE_TRY(fill_in(reader, &contact_record, (void **)&made.contact));
+  SCREE_TRY(fill_in(reader, &stop_record, (void **)&made.stop));
+  SCREE_TRY(fill_in(reader, &output_record, (void **)&made.output));
+  *plan = made;
+  return SCREE_OK;
 }

@@ -76,20 +76,18 @@ static scree_status check_inside(const scree_reader *r, const scree_plan *plan,
 
 /* Layers in a geometry; what has no width of its own needs such. */
 static scree_status check_containers(const scree_reader *r, const scree_plan *plan) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < plan->inlets.count; i++) {
+  for (size_t i = 0; i < plan->inlets.count; i++) {
     const scree_plan_layers *l = SCREE_PLAN_AT(plan, inlets, scree_plan_inlet, i)->layers;
     if (!l || !l->in) continue;
-    status = NEED(geometry, scree_plan_geometry, "geometry", l->in, &l->place);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(NEED(geometry, scree_plan_geometry, "geometry", l->in, &l->place));
     size_t index = scree_plan_find(&plan->geometry, sizeof(scree_plan_geometry), l->in);
     const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, index);
     bool upright = g->cylinder && g->cylinder->axis[0] == 0 && g->cylinder->axis[1] == 0;
     if ((!upright && !g->shaft) || g->turn)
-      status = scree_fail_place(r, &l->place, "in '%.60s': must be a cylinder along z or a shaft",
-                                l->in);
+      return scree_fail_place(r, &l->place, "in '%.60s': must be a cylinder along z or a shaft",
+                              l->in);
   }
-  for (size_t i = 0; status == SCREE_OK && i < plan->geometry.count; i++) {
+  for (size_t i = 0; i < plan->geometry.count; i++) {
     const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
     bool open = (g->cylinder && isnan(g->cylinder->radius)) || (g->shaft && isnan(g->shaft->width));
     for (size_t k = 0; open && k < plan->inlets.count; k++) {
@@ -97,24 +95,23 @@ static scree_status check_containers(const scree_reader *r, const scree_plan *pl
       if (l && l->in && !strcmp(l->in, g->place.name)) open = false;
     }
     if (open)
-      status = scree_fail_place(r, g->cylinder ? &g->cylinder->place : &g->shaft->place,
-                                "needs a %s: no inlet fills it by layers",
-                                g->cylinder ? "radius" : "width");
+      return scree_fail_place(r, g->cylinder ? &g->cylinder->place : &g->shaft->place,
+                              "needs a %s: no inlet fills it by layers",
+                              g->cylinder ? "radius" : "width");
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status check_inlets(const scree_reader *r, const scree_plan *plan) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < plan->inlets.count; i++) {
+  for (size_t i = 0; i < plan->inlets.count; i++) {
     const scree_plan_inlet *inlet = SCREE_PLAN_AT(plan, inlets, scree_plan_inlet, i);
-    for (size_t k = 0; status == SCREE_OK && k < inlet->shapes.count; k++)
-      status = NEED(shapes, scree_plan_shape, "shape", inlet->shapes.names[k], &inlet->place);
-    if (status == SCREE_OK) status = check_inside(r, plan, inlet);
-    if (status == SCREE_OK && inlet->layers && plan->gravity[2] > 0)
-      status = scree_fail_place(r, &inlet->layers->place, "layers need a gravity that points down");
+    for (size_t k = 0; k < inlet->shapes.count; k++)
+      SCREE_TRY(NEED(shapes, scree_plan_shape, "shape", inlet->shapes.names[k], &inlet->place));
+    SCREE_TRY(check_inside(r, plan, inlet));
+    if (inlet->layers && plan->gravity[2] > 0)
+      return scree_fail_place(r, &inlet->layers->place, "layers need a gravity that points down");
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status check_outlets(const scree_reader *r, const scree_plan *plan) {
@@ -135,66 +132,62 @@ static bool is_along(const double *v, const double *g) {
 }
 
 static scree_status check_sensors(const scree_reader *r, const scree_plan *plan) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < plan->sensors.count; i++) {
+  for (size_t i = 0; i < plan->sensors.count; i++) {
     const scree_plan_sensor *s = SCREE_PLAN_AT(plan, sensors, scree_plan_sensor, i);
     if (s->grid && s->grid->with)
-      status = NEED(geometry, scree_plan_geometry, "geometry", s->grid->with, &s->grid->place);
-    if (status != SCREE_OK) return status;
+      SCREE_TRY(NEED(geometry, scree_plan_geometry, "geometry", s->grid->with, &s->grid->place));
     const char *of = s->wall ? s->wall : s->part ? s->part : s->position;
-    if (of) status = NEED(geometry, scree_plan_geometry, "geometry", of, &s->place);
-    if (status == SCREE_OK && s->part) {
+    if (of) SCREE_TRY(NEED(geometry, scree_plan_geometry, "geometry", of, &s->place));
+    if (s->part) {
       const scree_plan_geometry *g =
           SCREE_PLAN_AT(plan, geometry, scree_plan_geometry,
                         scree_plan_find(&plan->geometry, sizeof(scree_plan_geometry), s->part));
       if (!g->slide && !g->hinge)
-        status = scree_fail_place(r, &s->place, "'%.60s' has neither slide nor hinge", s->part);
+        return scree_fail_place(r, &s->place, "'%.60s' has neither slide nor hinge", s->part);
     }
-    for (size_t k = 0; status == SCREE_OK && s->pile && k < s->pile->during.count; k++)
-      status = NEED(phases, scree_plan_phase, "phase", s->pile->during.items[k], &s->pile->place);
-    if (status == SCREE_OK && s->residence && s->residence->inlet)
-      status = NEED(inlets, scree_plan_inlet, "inlet", s->residence->inlet, &s->residence->place);
-    if (status == SCREE_OK && s->residence && s->residence->outlet)
-      status =
-          NEED(outlets, scree_plan_outlet, "outlet", s->residence->outlet, &s->residence->place);
-    if (status == SCREE_OK && s->slope && is_along(s->slope->axis, plan->gravity))
-      status =
-          scree_fail_place(r, &s->place, "axis along gravity: from above a surface has no slope");
-    if (status == SCREE_OK && s->segregation && plan->shapes.count < 2 &&
+    for (size_t k = 0; s->pile && k < s->pile->during.count; k++)
+      SCREE_TRY(NEED(phases, scree_plan_phase, "phase", s->pile->during.items[k], &s->pile->place));
+    if (s->residence && s->residence->inlet)
+      SCREE_TRY(NEED(inlets, scree_plan_inlet, "inlet", s->residence->inlet, &s->residence->place));
+    if (s->residence && s->residence->outlet)
+      SCREE_TRY(
+          NEED(outlets, scree_plan_outlet, "outlet", s->residence->outlet, &s->residence->place));
+    if (s->slope && is_along(s->slope->axis, plan->gravity))
+      return scree_fail_place(r, &s->place,
+                              "axis along gravity: from above a surface has no slope");
+    if (s->segregation && plan->shapes.count < 2 &&
         !SCREE_PLAN_AT(plan, shapes, scree_plan_shape, 0)->size)
-      status = scree_fail_place(r, &s->place, "segregation needs two shapes at least");
+      return scree_fail_place(r, &s->place, "segregation needs two shapes at least");
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* Each acts on shapes or materials that there are. */
 static scree_status check_forces(const scree_reader *r, const scree_plan *plan) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < plan->forces.count; i++) {
+  for (size_t i = 0; i < plan->forces.count; i++) {
     const scree_plan_force *f = SCREE_PLAN_AT(plan, forces, scree_plan_force, i);
-    for (size_t k = 0; status == SCREE_OK && k < f->of.count; k++) {
+    for (size_t k = 0; k < f->of.count; k++) {
       const char *name = f->of.items[k];
       if (scree_plan_find(&plan->materials, sizeof(scree_plan_material), name) ==
           plan->materials.count)
-        status = NEED(shapes, scree_plan_shape, "shape or material", name, &f->place);
+        SCREE_TRY(NEED(shapes, scree_plan_shape, "shape or material", name, &f->place));
     }
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status check_phases(const scree_reader *r, const scree_plan *plan) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < plan->phases.count; i++) {
+  for (size_t i = 0; i < plan->phases.count; i++) {
     const scree_plan_phase *p = SCREE_PLAN_AT(plan, phases, scree_plan_phase, i);
-    if (p->clear) status = NEED(geometry, scree_plan_geometry, "geometry", p->clear, &p->place);
+    if (p->clear) SCREE_TRY(NEED(geometry, scree_plan_geometry, "geometry", p->clear, &p->place));
   }
-  for (size_t i = 0; status == SCREE_OK && i < plan->geometry.count; i++) {
+  for (size_t i = 0; i < plan->geometry.count; i++) {
     const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
     const scree_plan_motion *m = g->motion.items;
     if (g->motion.count && m->during)
-      status = NEED(phases, scree_plan_phase, "phase", m->during, &m->place);
+      SCREE_TRY(NEED(phases, scree_plan_phase, "phase", m->during, &m->place));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* What turns does not look the same one period on. */
@@ -228,12 +221,12 @@ scree_status scree_plan_check(const scree_reader *r, const void *record) {
     return scree_fail_place(r, &plan->place, "needs shapes: {name: {file: ...}}");
   if (plan->inlets.count == 0 && !plan->bodies)
     return scree_fail_place(r, &plan->place, "needs inlets or bodies: nothing would ever be in it");
-  scree_status status = check_materials(r, plan);
-  if (status == SCREE_OK) status = check_inlets(r, plan);
-  if (status == SCREE_OK) status = check_containers(r, plan);
-  if (status == SCREE_OK) status = check_outlets(r, plan);
-  if (status == SCREE_OK) status = check_phases(r, plan);
-  if (status == SCREE_OK) status = check_forces(r, plan);
-  if (status == SCREE_OK) status = check_periodic(r, plan);
-  return status == SCREE_OK ? check_sensors(r, plan) : status;
+  SCREE_TRY(check_materials(r, plan));
+  SCREE_TRY(check_inlets(r, plan));
+  SCREE_TRY(check_containers(r, plan));
+  SCREE_TRY(check_outlets(r, plan));
+  SCREE_TRY(check_phases(r, plan));
+  SCREE_TRY(check_forces(r, plan));
+  SCREE_TRY(check_periodic(r, plan));
+  return check_sensors(r, plan);
 }

@@ -16,9 +16,8 @@ static const scree_field translate_fields[] = {
 static scree_status check_translate(const scree_reader *r, const void *record) {
   const scree_plan_translate *t = record;
   const bool there[] = {given(t->velocity), t->table.count > 0, t->positions.count > 0};
-  scree_status status = scree_plan_one_of(r, &t->place, there, 3,
-                                          "velocity, table (with along), positions (with along)");
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_plan_one_of(r, &t->place, there, 3,
+                              "velocity, table (with along), positions (with along)"));
   if (!there[0] && !given(t->along))
     return scree_fail_place(r, &t->place, "a table needs along: [x, y, z]");
   return scree_plan_check_direction(r, &t->place, "along", t->along);
@@ -47,11 +46,10 @@ static scree_status check_rotate(const scree_reader *r, const void *record) {
   const scree_plan_rotate *t = record;
   const bool there[] = {given(&t->speed), t->table.count > 0, t->positions.count > 0,
                         given(&t->amplitude)};
-  scree_status status =
-      scree_plan_one_of(r, &t->place, there, 4, "speed, table, positions, amplitude");
-  if (status == SCREE_OK && there[3] != given(&t->frequency))
-    status = scree_fail_place(r, &t->place, "amplitude and frequency go together");
-  return status == SCREE_OK ? scree_plan_check_direction(r, &t->place, "axis", t->axis) : status;
+  SCREE_TRY(scree_plan_one_of(r, &t->place, there, 4, "speed, table, positions, amplitude"));
+  if (there[3] != given(&t->frequency))
+    return scree_fail_place(r, &t->place, "amplitude and frequency go together");
+  return scree_plan_check_direction(r, &t->place, "axis", t->axis);
 }
 static const scree_plan_rotate rotate_defaults = {
     .axis = {0, 0, 1}, .speed = NAN, .amplitude = NAN, .frequency = NAN};
@@ -150,9 +148,9 @@ static scree_status check_motion(const scree_reader *r, const void *record) {
   bool constant =
       (m->translate && given(m->translate->velocity)) || (m->rotate && given(&m->rotate->speed));
   if (status == SCREE_OK && m->during && !constant)
-    status = scree_fail_place(r, &m->place,
-                              "during a phase only a translate with a velocity or a rotate with a "
-                              "speed may act");
+    status = scree_fail_place(
+        r, &m->place,
+        "during a phase only a translate with a velocity or a rotate with a speed may act");
   if (status == SCREE_OK && m->during && (m->from > 0 || given(&m->until)))
     status = scree_fail_place(r, &m->place, "during stands instead of from and until");
   return status == SCREE_OK ? scree_plan_check_window(r, &m->place, m->from, m->until) : status;

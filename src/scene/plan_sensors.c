@@ -154,8 +154,7 @@ static const scree_field grid_fields[] = {
 static scree_status check_grid(const scree_reader *r, const void *record) {
   const scree_plan_grid *p = record;
   const bool there[] = {p->box != NULL, p->cylinder != NULL};
-  scree_status status = scree_plan_one_of(r, &p->place, there, 2, "box, cylinder");
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_plan_one_of(r, &p->place, there, 2, "box, cylinder"));
   if (!given(p->cells)) return scree_fail_place(r, &p->place, "needs cells: [10, 10, 10]");
   for (int k = 0; k < 3; k++)
     if (p->cells[k] != floor(p->cells[k]))
@@ -202,10 +201,10 @@ static scree_status check_sensor(const scree_reader *r, const void *record) {
                         s->pile != NULL,      s->slope != NULL,    s->segregation != NULL,
                         s->residence != NULL, s->position != NULL, s->impacts != NULL,
                         s->part != NULL,      s->grid != NULL};
-  scree_status status = scree_plan_one_of(
+  SCREE_TRY(scree_plan_one_of(
       r, &s->place, there, sizeof there / sizeof *there,
-      "flow, region, wall, position, part, pile, slope, segregation, residence, impacts, grid");
-  return status == SCREE_OK ? scree_plan_check_window(r, &s->place, s->from, s->until) : status;
+      "flow, region, wall, position, part, pile, slope, segregation, residence, impacts, grid"));
+  return scree_plan_check_window(r, &s->place, s->from, s->until);
 }
 static const scree_plan_sensor sensor_defaults = {.until = NAN};
 const scree_record scree_plan_sensor_record = {

@@ -24,8 +24,8 @@ static scree_status check_loop(const scree_reader *r, const void *record) {
     return scree_fail_place(r, &l->place, "needs span: [x, y, z], a radius and a width");
   if (!(vec3_norm(vec3_load(l->span)) > 0))
     return scree_fail_place(r, &l->place, "span has no length: a cylinder is round one wheel");
-  scree_status status = scree_plan_check_direction(r, &l->place, "axis", l->axis);
-  return status == SCREE_OK ? check_span(r, &l->place, l->axis, l->span) : status;
+  SCREE_TRY(scree_plan_check_direction(r, &l->place, "axis", l->axis));
+  return check_span(r, &l->place, l->axis, l->span);
 }
 static const scree_plan_loop loop_defaults = {{0}, {0, 1, 0}, NONE, NAN, NAN};
 const scree_record scree_plan_loop_record = {"a loop", FIELDS(loop_fields), sizeof(scree_plan_loop),
@@ -129,8 +129,8 @@ static scree_status check_copies(const scree_reader *r, const void *record) {
   if (!c->count) return scree_fail_place(r, &c->place, "needs a count");
   if ((vec3_norm(vec3_load(c->span)) > 0) != given(&c->radius))
     return scree_fail_place(r, &c->place, "span and radius go together: they are of a chain");
-  scree_status status = scree_plan_check_direction(r, &c->place, "axis", c->axis);
-  return status == SCREE_OK ? check_span(r, &c->place, c->axis, c->span) : status;
+  SCREE_TRY(scree_plan_check_direction(r, &c->place, "axis", c->axis));
+  return check_span(r, &c->place, c->axis, c->span);
 }
 static const scree_plan_round copies_defaults = {.axis = {0, 0, 1}, .radius = NAN};
 const scree_record scree_plan_copies_record = {

@@ -6,7 +6,6 @@
 #include "base/alloc.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static const double quantiles[] = {0.1, 0.5, 0.9};
 enum { QUANTILES = sizeof quantiles / sizeof *quantiles };
@@ -173,8 +172,7 @@ scree_status scree_scene_put_histogram(const scree_scene *scene, const scree_sce
   size_t index = 0;
   scree_residence r;
   while (sensor_at(scene, index) != sensor) index++;
-  scree_status status = scree_scene_measure_residence(scene, index, &r, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_measure_residence(scene, index, &r, error));
   fputs("class,from [s],until [s],count,share,share until\n", stream);
   put_bins(stream, &r, "", 0, r.class_count);
   for (size_t c = 0; r.class_count > 1 && c < r.class_count; c++)

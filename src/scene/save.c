@@ -319,10 +319,8 @@ static scree_status load_plan(loader *l) {
   scene->name = scree_decode_text(&l->codec);
   scene->text = scree_decode_text(&l->codec);
   if (!scene->name || !scene->text) return fail_here(l);
-  scree_status status =
-      scree_scene_file_parse(scene->text, strlen(scene->text), l->name, &file, l->error);
-  if (status != SCREE_OK) return status;
-  status = scree_scene_file_plan(file, &scene->arena, &scene->plan, l->error);
+  SCREE_TRY(scree_scene_file_parse(scene->text, strlen(scene->text), l->name, &file, l->error));
+  scree_status status = scree_scene_file_plan(file, &scene->arena, &scene->plan, l->error);
   scree_scene_file_free(file);
   return status == SCREE_OK ? scree_scene_prepare(scene, l->error) : status;
 }
@@ -356,14 +354,11 @@ static size_t next_wall(const scree_scene *scene) {
 
 static scree_status load(loader *l) {
   scree_scene *scene = l->scene;
-  scree_status status = load_plan(l);
-  for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(scene); i++)
-    if (!(scene->shapes[i].source = scree_decode_text(&l->codec))) status = fail_here(l);
-  if (status == SCREE_OK)
-    status = scree_world_load_block(&l->codec, l->name, &scene->gallery, l->error);
-  if (status == SCREE_OK)
-    status = scree_world_load_block(&l->codec, l->name, &scene->world, l->error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(load_plan(l));
+  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++)
+    if (!(scene->shapes[i].source = scree_decode_text(&l->codec))) return fail_here(l);
+  SCREE_TRY(scree_world_load_block(&l->codec, l->name, &scene->gallery, l->error));
+  SCREE_TRY(scree_world_load_block(&l->codec, l->name, &scene->world, l->error));
   if (scree_world_body_count(scene->gallery) != SCREE_SCENE_SHAPES(scene)) return fail_here(l);
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
     scene->shapes[i].particle = scree_world_body_particle(scene->gallery, i);
@@ -373,23 +368,21 @@ static scree_status load(loader *l) {
   code_geometry(&l->codec, scene);
   if (!scree_codec_good(&l->codec) || next_wall(scene) != scree_world_wall_count(scene->world))
     return fail_here(l);
-  status = scree_scene_plan_maps(scene, l->error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_plan_maps(scene, l->error));
   code_state(&l->codec, scene);
   if (l->codec.position != l->codec.count) l->codec.failed = true;
   if (!scree_codec_good(&l->codec)) return fail_here(l);
-  status = adopt_particles(l);
-  if (status == SCREE_OK) status = scree_scene_complete_plan(scene, l->error);
-  return status == SCREE_OK ? scree_scene_plan_layers(scene, l->error) : status;
+  SCREE_TRY(adopt_particles(l));
+  SCREE_TRY(scree_scene_complete_plan(scene, l->error));
+  return scree_scene_plan_layers(scene, l->error);
 }
 
 scree_status scree_scene_load(const char *path, scree_scene **scene, scree_error *error) {
   char *bytes;
   loader l = {.error = error};
-  scree_status status = scree_seal_read(path, &seal, &bytes, &l.codec, &l.name, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_seal_read(path, &seal, &bytes, &l.codec, &l.name, error));
   l.scene = scree_alloc_zero(1, sizeof *l.scene);
-  status = l.scene ? load(&l) : scree_fail_memory(error, sizeof *l.scene, "a scene");
+  scree_status status = l.scene ? load(&l) : scree_fail_memory(error, sizeof *l.scene, "a scene");
   scree_free(bytes);
   if (status == SCREE_OK)
     *scene = l.scene;

@@ -9,7 +9,6 @@
 #include "base/progress.h"
 
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double tick_share = 0.25; /* of the way a body falls in, or flies, by its radius */
@@ -51,8 +50,7 @@ static void take_given(double *value, double given) {
 static scree_status set_pair(scree_world *world, const size_t k[2], const scree_plan_pair *p,
                              scree_error *error) {
   scree_material_contact c;
-  scree_status status = scree_world_get_pair(world, k[0], k[1], &c, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_world_get_pair(world, k[0], k[1], &c, error));
   take_given(&c.restitution, p->restitution);
   take_given(&c.friction, p->friction);
   take_given(&c.rolling_friction, p->rolling_friction);
@@ -65,9 +63,8 @@ static scree_status add_materials(const scree_scene *scene, scree_world *world,
                                   scree_error *error) {
   const scree_plan *plan = &scene->plan;
   scree_material usual = scree_default_material();
-  scree_status status = SCREE_OK;
   if (plan->materials.count == 0) return scree_world_add_material(world, &usual, NULL, error);
-  for (size_t i = 0; status == SCREE_OK && i < plan->materials.count; i++) {
+  for (size_t i = 0; i < plan->materials.count; i++) {
     const scree_plan_material *m = material_at(scene, i);
     scree_material made = usual;
     made.young = m->young;
@@ -77,26 +74,25 @@ static scree_status add_materials(const scree_scene *scene, scree_world *world,
     made.rolling_friction = m->rolling_friction;
     made.surface_energy = m->surface_energy;
     made.poisson = m->poisson;
-    status = scree_world_add_material(world, &made, NULL, error);
+    SCREE_TRY(scree_world_add_material(world, &made, NULL, error));
   }
-  for (size_t i = 0; status == SCREE_OK && i < plan->pairs.count; i++) {
+  for (size_t i = 0; i < plan->pairs.count; i++) {
     const scree_plan_pair *p = SCREE_PLAN_AT(plan, pairs, scree_plan_pair, i);
     size_t k[2];
     for (int side = 0; side < 2; side++)
       k[side] =
           scree_plan_find(&plan->materials, sizeof(scree_plan_material), p->between.items[side]);
-    status = set_pair(world, k, p, error);
+    SCREE_TRY(set_pair(world, k, p, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_scene_make_world(const scree_scene *scene, double time_step, scree_world **world,
                                     scree_error *error) {
   scree_world_options o = world_options(scene, time_step);
   scree_world *made;
-  scree_status status = scree_world_create(&o, &made, error);
-  if (status != SCREE_OK) return status;
-  status = add_materials(scene, made, error);
+  SCREE_TRY(scree_world_create(&o, &made, error));
+  scree_status status = add_materials(scene, made, error);
   if (status == SCREE_OK)
     *world = made;
   else
@@ -147,29 +143,26 @@ static scree_status check_period(const scree_scene *scene, size_t index, scree_e
 scree_status scree_scene_add_body(const scree_scene_shape *shape, scree_world *world,
                                   const scree_body *state, scree_error *error) {
   size_t index;
-  scree_status status =
-      scree_world_add_body(world, shape->particle, shape->material, state, &index, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_world_add_body(world, shape->particle, shape->material, state, &index, error));
   return scree_world_set_body_density(world, index, shape->density, error);
 }
 
 static scree_status make_gallery(scree_scene *scene, const char *folder, scree_error *error) {
-  scree_status status = scree_scene_make_world(scene, 0, &scene->gallery, error);
-  if (status == SCREE_OK) status = scree_scene_add_geometry(scene, folder, scene->gallery, error);
+  SCREE_TRY(scree_scene_make_world(scene, 0, &scene->gallery, error));
+  SCREE_TRY(scree_scene_add_geometry(scene, folder, scene->gallery, error));
   double far = 0;
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
     scree_particle_measures m;
     scree_particle_measure(scene->shapes[i].particle, &m);
     far = fmax(far, 4 * m.bounding_radius);
   }
-  for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(scene); i++) {
+  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
     scree_body body = scree_default_body();
-    status = check_period(scene, i, error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(check_period(scene, i, error));
     body.position[2] = 1e5 * far + (double)i * far;
-    status = scree_scene_add_body(&scene->shapes[i], scene->gallery, &body, error);
+    SCREE_TRY(scree_scene_add_body(&scene->shapes[i], scene->gallery, &body, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 scree_placement scree_placement_of(const scree_particle *p, double more) {
@@ -229,8 +222,7 @@ static scree_status allocate_inlets(scree_scene *scene) {
 
 scree_status scree_scene_prepare(scree_scene *scene, scree_error *error) {
   const scree_plan *plan = &scene->plan;
-  scree_status status = scree_plan_expand(&scene->plan, &scene->arena, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_plan_expand(&scene->plan, &scene->arena, error));
   const struct {
     void **items;
     size_t count, size;
@@ -249,9 +241,8 @@ scree_status scree_scene_prepare(scree_scene *scene, scree_error *error) {
   scene->still_since = NAN;
   for (int k = 0; k < 3; k++) scene->table_low[k] = INFINITY, scene->table_high[k] = -INFINITY;
   scene->costs.piece_count = 1;
-  status = scree_scene_plan_forces(scene, error);
-  if (status == SCREE_OK) status = scree_scene_plan_parts(scene, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_plan_forces(scene, error));
+  SCREE_TRY(scree_scene_plan_parts(scene, error));
   if (allocate_inlets(scene) != SCREE_OK) return scree_fail_memory(error, 0, "inlets");
   return scree_scene_plan_columns(scene, error);
 }
@@ -263,8 +254,7 @@ scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_er
   if (status != SCREE_OK) return status;
   scree_error why; /* a time step that is too long */
   status = scree_world_step(scene->gallery, 0, &why);
-  status = scree_scene_blame(scene, &scene->plan.contact->place, status, &why, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_blame(scene, &scene->plan.contact->place, status, &why, error));
   scene->time_step = scree_world_time_step(scene->gallery, NULL);
   plan_ticks(scene);
   status = scree_scene_make_world(scene, scene->time_step, &scene->world, error);
@@ -302,14 +292,12 @@ static scree_status note_densities(scree_scene *scene, const scree_scene_file *f
 
 scree_status scree_scene_take_file(scree_scene *scene, const scree_scene_file *file,
                                    scree_error *error) {
-  scree_status status = scree_scene_file_plan(file, &scene->arena, &scene->plan, error);
-  if (status != SCREE_OK) return status;
-  status = note_densities(scene, file, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_file_plan(file, &scene->arena, &scene->plan, error));
+  SCREE_TRY(note_densities(scene, file, error));
   scene->name = scree_strdup(file->name);
   if (!scene->name) return scree_fail_memory(error, 0, "a scene's name");
-  status = scree_scene_file_text(file, &scene->text, error);
-  return status == SCREE_OK ? scree_scene_prepare(scene, error) : status;
+  SCREE_TRY(scree_scene_file_text(file, &scene->text, error));
+  return scree_scene_prepare(scene, error);
 }
 
 static scree_status create(const scree_scene_file *file, scree_shape_store *store,
@@ -515,8 +503,7 @@ static scree_status advance(scree_scene *scene, size_t step_count, scree_error *
     if (status == SCREE_OK && scene->plan.forces.count)
       status = scree_scene_apply_forces(scene, error);
     if (status != SCREE_OK) return status;
-    status = scree_world_step(scene->world, steps, error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(scree_world_step(scene->world, steps, error));
     scene->costs.body_steps +=
         steps * (scene->world->bodies.count - scene->world->bodies.removed_count);
     step_count -= steps;

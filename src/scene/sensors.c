@@ -287,10 +287,9 @@ static scree_status watch_flow(scree_scene *scene, scree_scene_sensor *sensor, s
 }
 
 scree_status scree_scene_watch_flows(scree_scene *scene, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < scene->plan.sensors.count; i++)
-    if (scene->sensors[i].plan->flow) status = watch_flow(scene, &scene->sensors[i], error);
-  return status;
+  for (size_t i = 0; i < scene->plan.sensors.count; i++)
+    if (scene->sensors[i].plan->flow) SCREE_TRY(watch_flow(scene, &scene->sensors[i], error));
+  return SCREE_OK;
 }
 
 /* ---- reading ---- */
@@ -389,8 +388,7 @@ static scree_status read_wall(const scree_scene *scene, const scree_scene_sensor
     at[6] += power, at[7] += energy;
   }
   double sums[SCREE_MAP_COUNT], highest[SCREE_MAP_COUNT];
-  scree_status status = scree_scene_read_maps(scene, sensor, sums, highest, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_read_maps(scene, sensor, sums, highest, error));
   at[8] = sums[SCREE_MAP_WEAR];
   at[9] = sums[SCREE_MAP_WORN];
   at[10] = highest[SCREE_MAP_WORN];
@@ -508,10 +506,9 @@ static scree_status measure(const scree_scene *scene, bool all, double *values,
                                      o.mean_rotation,
                                      (double)scene->phase};
   memcpy(values, base, sizeof base);
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < scene->plan.sensors.count; i++)
-    status = read_sensor(scene, &scene->sensors[i], all, values, error);
-  return status;
+  for (size_t i = 0; i < scene->plan.sensors.count; i++)
+    SCREE_TRY(read_sensor(scene, &scene->sensors[i], all, values, error));
+  return SCREE_OK;
 }
 
 scree_status scree_scene_measure(const scree_scene *scene, double *values, scree_error *error) {
@@ -522,9 +519,9 @@ scree_status scree_scene_record(scree_scene *scene, scree_error *error) {
   size_t columns = scene->columns.count, used = scene->row_count * columns;
   if (!SCREE_RESERVE(&scene->series, used + columns))
     return scree_fail_memory(error, (used + columns) * sizeof(double), "the series of a scene");
-  scree_status status = measure(scene, false, scene->series.items + used, error);
-  if (status == SCREE_OK) scene->row_count++;
-  return status;
+  SCREE_TRY(measure(scene, false, scene->series.items + used, error));
+  scene->row_count++;
+  return SCREE_OK;
 }
 
 /* The sensor that a column is of; NULL: none. */

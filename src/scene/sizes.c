@@ -92,9 +92,8 @@ static scree_status check_size(const scree_reader *r, const void *record) {
   const scree_plan_size *s = record;
   const bool table = s->distribution.count > 0,
              there[] = {table, s->rosin_rammler != NULL, s->lognormal != NULL, s->uniform};
-  scree_status status =
-      scree_plan_one_of(r, &s->place, there, 4, "distribution, rosin_rammler, lognormal, uniform");
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(
+      scree_plan_one_of(r, &s->place, there, 4, "distribution, rosin_rammler, lognormal, uniform"));
   if (s->cumulative && !table)
     return scree_fail_place(r, &s->place, "cumulative is of a distribution");
   if (table && (given(&s->least) || given(&s->most)))

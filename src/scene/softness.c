@@ -8,8 +8,6 @@
 
 #include "world/materials.h"
 
-#include <string.h>
-
 static const double passes = 0.5; /* of the size */
 
 /* ---- speeds ---- */

@@ -45,8 +45,7 @@ scree_status scree_loop_mesh(const scree_plan_loop *plan, scree_mesh *mesh, scre
              aside = vec3_scale(loop.axis, 0.5 * plan->width);
   const uint32_t ring = 2 * (ARC + 1);
   scree_mesh made = {0};
-  scree_status status = reserve(&made, 2 * ring, 2 * ring, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(reserve(&made, 2 * ring, 2 * ring, error));
   for (uint32_t k = 0; k < ring; k++) {
     const double s = k / (ARC + 1) * half + strand + k % (ARC + 1) * (half - strand) / ARC;
     const scree_loop_place place = scree_loop_at(&loop, s);
@@ -116,9 +115,7 @@ scree_status scree_screw_mesh(const scree_plan_screw *plan, scree_mesh *mesh, sc
   spiral s = {.axis = vec3_unit(vec3_load(plan->axis))};
   const size_t sections = 1 + (size_t)(TURN * plan->length / plan->pitch);
   scree_mesh made = {0};
-  scree_status status =
-      reserve(&made, 4 * (sections + 1) + 2 + 2 * TURN, 8 * sections + 4 + 4 * TURN, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(reserve(&made, 4 * (sections + 1) + 2 + 2 * TURN, 8 * sections + 4 + 4 * TURN, error));
   vec3_frame(s.axis, &s.u, &s.v);
   add_flight(plan, &s, sections, &made);
   add_shaft(plan, &s, &made);
@@ -215,9 +212,8 @@ scree_status scree_sieve_mesh(const scree_plan_sieve *plan, scree_mesh *mesh, sc
   const plate p = {plan, (size_t)(plan->size[0] / plan->pitch + 1e-9),
                    (size_t)(plan->size[1] / plan->pitch + 1e-9), &made};
   const size_t cells = p.nx * p.ny;
-  scree_status status = reserve(&made, 2 * (p.nx + 1) * (p.ny + 1) + 2 * HOLE * cells,
-                                cells * (4 * HOLE + 8) + 4 * (p.nx + p.ny), error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(reserve(&made, 2 * (p.nx + 1) * (p.ny + 1) + 2 * HOLE * cells,
+                    cells * (4 * HOLE + 8) + 4 * (p.nx + p.ny), error));
   add_corners(&p);
   for (size_t k = 0; k < p.ny; k++)
     for (size_t i = 0; i < p.nx; i++) add_cell(&p, i, k);

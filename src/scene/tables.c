@@ -5,7 +5,6 @@
 #include "base/alloc.h"
 #include "base/file.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* What may stand in the name of a file as it is; all else becomes %XX. */
@@ -58,8 +57,7 @@ static scree_status write_spectra(const scree_scene *scene, const scree_scene_se
   const scree_scene_impacts *impacts = sensor->impacts;
   const size_t width = impacts->class_count * SCREE_IMPACT_SPECTRA * impacts->bin_count + 2;
   scree_output output;
-  scree_status status = open_table(folder, sensor, "spectra.csv", &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(open_table(folder, sensor, "spectra.csv", &output, error));
   fputs("from [s],until [s],a,b,energy_from [J],energy_until [J],approach,normal,tangential\n",
         output.stream);
   for (size_t at = 0; at + width <= impacts->windows.count; at += width)
@@ -74,8 +72,7 @@ static scree_status write_bodies(const scree_scene *scene, const scree_scene_sen
                                  const char *folder, scree_error *error) {
   const scree_scene_impacts *impacts = sensor->impacts;
   scree_output output;
-  scree_status status = open_table(folder, sensor, "bodies.csv", &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(open_table(folder, sensor, "bodies.csv", &output, error));
   fputs("body,shape,count,approach [J],normal [J],tangential [J],damage [J],largest [J]\n",
         output.stream);
   for (size_t b = 0; b < impacts->bodies.count / SCREE_IMPACT_OF_BODY; b++) {
@@ -145,8 +142,7 @@ static scree_status write_grid(const scree_scene *scene, const scree_scene_senso
   const scree_plan_grid *plan = sensor->plan->grid;
   const size_t n[3] = {(size_t)plan->cells[0], (size_t)plan->cells[1], (size_t)plan->cells[2]};
   scree_output output;
-  scree_status status = open_table(folder, sensor, "grid.vts", &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(open_table(folder, sensor, "grid.vts", &output, error));
   FILE *out = output.stream;
   fprintf(out,
           "<?xml version=\"1.0\"?>\n<VTKFile type=\"StructuredGrid\" version=\"1.0\">\n"
@@ -175,10 +171,9 @@ static scree_status write_grid(const scree_scene *scene, const scree_scene_senso
 static scree_status write_residence(const scree_scene *scene, const scree_scene_sensor *sensor,
                                     const char *folder, scree_error *error) {
   scree_output output;
-  scree_status status = open_table(folder, sensor, "residence.csv", &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(open_table(folder, sensor, "residence.csv", &output, error));
   scree_scene_put_stays(scene, sensor, output.stream);
-  status = scree_output_commit(&output, error);
+  scree_status status = scree_output_commit(&output, error);
   if (status == SCREE_OK) status = open_table(folder, sensor, "histogram.csv", &output, error);
   if (status != SCREE_OK) return status;
   status = scree_scene_put_histogram(scene, sensor, output.stream, error);
@@ -189,13 +184,12 @@ static scree_status write_residence(const scree_scene *scene, const scree_scene_
 
 scree_status scree_scene_write_tables(const scree_scene *scene, const char *folder,
                                       scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < scene->plan.sensors.count; i++) {
+  for (size_t i = 0; i < scene->plan.sensors.count; i++) {
     const scree_scene_sensor *sensor = &scene->sensors[i];
-    if (sensor->plan->residence) status = write_residence(scene, sensor, folder, error);
-    if (sensor->grid) status = write_grid(scene, sensor, folder, error);
-    if (sensor->impacts) status = write_spectra(scene, sensor, folder, error);
-    if (sensor->impacts && status == SCREE_OK) status = write_bodies(scene, sensor, folder, error);
+    if (sensor->plan->residence) SCREE_TRY(write_residence(scene, sensor, folder, error));
+    if (sensor->grid) SCREE_TRY(write_grid(scene, sensor, folder, error));
+    if (sensor->impacts) SCREE_TRY(write_spectra(scene, sensor, folder, error));
+    if (sensor->impacts) SCREE_TRY(write_bodies(scene, sensor, folder, error));
   }
-  return status;
+  return SCREE_OK;
 }

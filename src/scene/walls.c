@@ -12,7 +12,6 @@
 #include "mesh/adjacency.h"
 
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { GRID = 4, LOOKS = 8 };
@@ -303,8 +302,7 @@ static scree_status refuse_open(const scree_plan_geometry *g, const scree_mesh *
                                 scree_error *error) {
   static const char *const sides[] = {"outside", "inside", "both"};
   scree_adjacency adjacency;
-  scree_status status = scree_adjacency_build(mesh, &adjacency, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_adjacency_build(mesh, &adjacency, error));
   uint32_t h = 0;
   while (h + 1 < 3 * mesh->triangle_count && adjacency.ring[h] != h) h++;
   vec3 a = vec3_add(scree_mesh_corner(mesh, h / 3, (int)(h % 3)), vec3_load(g->at)),

@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <sqlite3.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A run's row. */
@@ -339,8 +338,8 @@ static scree_status make_point(const analysis *a, size_t index, double *scratch)
   p->packing = summarise(a, index, offsetof(row, packing), scratch);
   p->left = summarise(a, index, offsetof(row, left), scratch);
   p->peak_rotation = summarise(a, index, offsetof(row, peak_rotation), scratch);
-  scree_status status = summarise_answers(a, index, p, scratch);
-  return status == SCREE_OK ? average_rotation(a, index, p, scratch) : status;
+  SCREE_TRY(summarise_answers(a, index, p, scratch));
+  return average_rotation(a, index, p, scratch);
 }
 
 /* ---- families ---- */
@@ -480,8 +479,7 @@ static scree_status make_families(analysis *a) {
     for (size_t q = 0; q < p && !seen; q++) seen = same_family(a->study, p, q);
     if (seen) continue;
     scree_family_result family = {0};
-    scree_status status = make_family(a, p, &family);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(make_family(a, p, &family));
     if (family.level_count >= 2) r->families[r->family_count++] = family;
   }
   return SCREE_OK;
@@ -536,15 +534,13 @@ static scree_status make_result(analysis *a) {
   r->points = take(a, s->point_count, sizeof *r->points);
   double *scratch = take(a, scree_study_run_count(s), sizeof *scratch);
   if (!r->name || !r->angle || !r->points || !scratch) return no_memory(a);
-  scree_status status = read_rows(a);
-  if (status == SCREE_OK) status = read_all_series(a);
-  if (status == SCREE_OK) status = read_answers(a);
-  if (status == SCREE_OK) status = name_columns(a);
-  for (size_t p = 0; status == SCREE_OK && p < s->point_count; p++)
-    status = make_point(a, p, scratch);
-  if (status == SCREE_OK) status = make_families(a);
-  if (status == SCREE_OK) status = make_whole(a);
-  return status;
+  SCREE_TRY(read_rows(a));
+  SCREE_TRY(read_all_series(a));
+  SCREE_TRY(read_answers(a));
+  SCREE_TRY(name_columns(a));
+  for (size_t p = 0; p < s->point_count; p++) SCREE_TRY(make_point(a, p, scratch));
+  SCREE_TRY(make_families(a));
+  return make_whole(a);
 }
 
 scree_status scree_study_analyse(const scree_study *study, scree_study_result *result,

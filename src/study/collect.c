@@ -2,7 +2,6 @@
  * the plan is written anew and records that are not in yet are added, in one transaction. */
 #include "base/number.h"
 #include "base/platform.h"
-#include "base/progress.h"
 #include "scene/scene.h"
 #include "study/database.h"
 #include "study/lease.h"
@@ -10,7 +9,6 @@
 
 #include <math.h>
 #include <sqlite3.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double writer_lease = 120; /* s */
@@ -126,8 +124,7 @@ static scree_status put_values(writer *w, size_t point, sqlite3_stmt *factor,
   for (size_t f = 0; status == SCREE_OK && f < s->factor_count; f++)
     status = put_pair(w, factor, point, s->factors[f].key, s->points[point].values[f]);
   if (status != SCREE_OK || s->command.count) return status;
-  status = scree_study_scene(s, &s->points[point], &file, w->error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_study_scene(s, &s->points[point], &file, w->error));
   status = scree_scene_file_text(file, &text, w->error);
   scree_scene_file_free(file);
   if (status == SCREE_OK) status = put_pair(w, parameter, point, "scene", text);
@@ -167,11 +164,10 @@ static scree_status put_result(writer *w, const char *key, const scree_study_rec
       "heap = ?17, heap_reason = ?18, sector_deg = ?19, sector_sd_deg = ?20, cone_deg = ?21, "
       "silhouette_deg = ?22, silhouette_sd_deg = ?23, height = ?24, base_radius = ?25, run_out = "
       "?26, body_count = ?27, left_count = ?28, packing_fraction = ?29, coordination = ?30, "
-      "particle_size = ?31, kinetic = ?32, time = ?33, still = ?34, hash = ?35, fraction = 1 "
-      "WHERE key = ?1";
+      "particle_size = ?31, kinetic = ?32, time = ?33, still = ?34, hash = ?35, fraction = 1 WHERE "
+      "key = ?1";
   sqlite3_stmt *s;
-  scree_status status = make(w, sql, &s);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(make(w, sql, &s));
   const scree_repose *p = &r->result.repose;
   bind_text(s, 1, key);
   bind_text(s, 2, r->failed ? "failed" : "done");
@@ -206,7 +202,7 @@ static scree_status put_result(writer *w, const char *key, const scree_study_rec
     bind_whole(s, 34, r->result.still);
     bind_text(s, 35, r->hash);
   }
-  status = put(w, s);
+  scree_status status = put(w, s);
   sqlite3_finalize(s);
   return status;
 }
@@ -255,14 +251,13 @@ static scree_status put_answers(writer *w, const char *key, const scree_study_re
 static scree_status put_failure(writer *w, const char *key, int number,
                                 const scree_study_record *r) {
   sqlite3_stmt *s;
-  scree_status status = make(w, "INSERT OR REPLACE INTO failure VALUES(?1, ?2, ?3, ?4, ?5)", &s);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(make(w, "INSERT OR REPLACE INTO failure VALUES(?1, ?2, ?3, ?4, ?5)", &s));
   bind_text(s, 1, key);
   bind_whole(s, 2, (uint64_t)number);
   bind_text(s, 3, r->reason);
   bind_text(s, 4, r->worker);
   bind_real(s, 5, r->ended);
-  status = put(w, s);
+  scree_status status = put(w, s);
   sqlite3_finalize(s);
   return status;
 }
@@ -293,8 +288,7 @@ static scree_status put_state(writer *w, const char *key, sqlite3_stmt *update) 
   scree_lease_view view;
   double fraction = NAN;
   snprintf(name, sizeof name, "run-%s", key);
-  scree_status status = scree_lease_look(w->leases, name, 300, &view, w->error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_lease_look(w->leases, name, 300, &view, w->error));
   if (view.held && view.alive) {
     bool running = !strncmp(view.note, "running ", 8);
     state = running ? "running" : "leased";
@@ -379,9 +373,8 @@ static scree_status put_runs(writer *w) {
 }
 
 static scree_status write_all(writer *w) {
-  scree_status status = scree_database_open(w->study, true, &w->database, w->error);
-  if (status != SCREE_OK) return status;
-  status = scree_database_run(&w->database, "BEGIN IMMEDIATE", w->error);
+  SCREE_TRY(scree_database_open(w->study, true, &w->database, w->error));
+  scree_status status = scree_database_run(&w->database, "BEGIN IMMEDIATE", w->error);
   if (status == SCREE_OK) status = put_facts(w);
   if (status == SCREE_OK) status = put_shapes(w);
   if (status == SCREE_OK) status = put_points(w);

@@ -28,28 +28,27 @@ scree_status scree_study_read_command(scree_study *study, const scree_yaml *comm
                                       scree_error *error) {
   bool list = command->kind == SCREE_YAML_SEQUENCE;
   size_t most = list ? command->item_count : command->text ? strlen(command->text) : 0;
-  scree_status status = SCREE_OK;
   study->command.items = scree_arena_take(&study->arena, most, sizeof *study->command.items);
   if (!study->command.items) return scree_fail_memory(error, most, "a command");
-  for (size_t i = 0; list && status == SCREE_OK && i < most; i++) {
+  for (size_t i = 0; list && i < most; i++) {
     const char *text = command->items[i].text;
-    status = command->items[i].kind == SCREE_YAML_SCALAR
-                 ? add_word(study, text, strlen(text), error)
-                 : scree_fail(error, SCREE_BAD_FILE, "command: its words must be single values");
+    SCREE_TRY(command->items[i].kind == SCREE_YAML_SCALAR
+                  ? add_word(study, text, strlen(text), error)
+                  : scree_fail(error, SCREE_BAD_FILE, "command: its words must be single values"));
   }
-  for (const char *rest = list || !most ? "" : command->text; status == SCREE_OK;) {
+  for (const char *rest = list || !most ? "" : command->text;;) {
     rest += strspn(rest, " \t\n");
     size_t length = strcspn(rest, " \t\n");
     if (length == 0) break;
-    status = add_word(study, rest, length, error);
+    SCREE_TRY(add_word(study, rest, length, error));
     rest += length;
   }
-  if (status == SCREE_OK && study->command.count == 0)
-    status = scree_fail(error, SCREE_BAD_FILE, "command: must be a program and its words");
-  if (status == SCREE_OK && study->command.count > MOST_WORDS)
-    status = scree_fail(error, SCREE_BAD_FILE, "command: %zu words, at most %d",
-                        study->command.count, MOST_WORDS);
-  return status;
+  if (study->command.count == 0)
+    return scree_fail(error, SCREE_BAD_FILE, "command: must be a program and its words");
+  if (study->command.count > MOST_WORDS)
+    return scree_fail(error, SCREE_BAD_FILE, "command: %zu words, at most %d", study->command.count,
+                      MOST_WORDS);
+  return SCREE_OK;
 }
 
 bool scree_study_command_has(const scree_study *study, const char *key) {
@@ -196,10 +195,9 @@ scree_status scree_study_record_command(const scree_study *study, size_t run, co
   char output[4200];
   long process;
   snprintf(output, sizeof output, "%.4100s/output.txt", folder);
-  scree_status status = start(study, run, folder, output, &process, error);
-  if (status == SCREE_OK) status = wait_for(process, watch, context, error);
-  if (status == SCREE_OK) status = scree_study_answer_command(study, folder, record, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(start(study, run, folder, output, &process, error));
+  SCREE_TRY(wait_for(process, watch, context, error));
+  SCREE_TRY(scree_study_answer_command(study, folder, record, error));
   record->result = scree_no_result();
-  return status;
+  return SCREE_OK;
 }

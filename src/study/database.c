@@ -2,9 +2,7 @@
 
 #include "base/platform.h"
 
-#include <math.h>
 #include <sqlite3.h>
-#include <string.h>
 
 /* "scrS" and the version of the tables */
 enum { APPLICATION = 0x73637253, SCHEMA = 2, BUSY_MS = 60000 };
@@ -71,9 +69,8 @@ static scree_status ask_number(scree_database *d, const char *sql, int64_t *numb
                                scree_error *error) {
   sqlite3_stmt *statement;
   bool row;
-  scree_status status = scree_database_prepare(d, sql, &statement, error);
-  if (status != SCREE_OK) return status;
-  status = scree_database_step(d, statement, &row, error);
+  SCREE_TRY(scree_database_prepare(d, sql, &statement, error));
+  scree_status status = scree_database_step(d, statement, &row, error);
   if (status == SCREE_OK) *number = row ? sqlite3_column_int64(statement, 0) : 0;
   sqlite3_finalize(statement);
   return status;
@@ -82,11 +79,9 @@ static scree_status ask_number(scree_database *d, const char *sql, int64_t *numb
 /* An empty file becomes ours; another one must be. */
 static scree_status adopt(scree_database *d, bool writing, scree_error *error) {
   int64_t application = 0, version = 0, tables = 0;
-  scree_status status = ask_number(d, "PRAGMA application_id", &application, error);
-  if (status == SCREE_OK) status = ask_number(d, "PRAGMA user_version", &version, error);
-  if (status == SCREE_OK)
-    status = ask_number(d, "SELECT count(*) FROM sqlite_master", &tables, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(ask_number(d, "PRAGMA application_id", &application, error));
+  SCREE_TRY(ask_number(d, "PRAGMA user_version", &version, error));
+  SCREE_TRY(ask_number(d, "SELECT count(*) FROM sqlite_master", &tables, error));
   if (writing && application == 0 && tables == 0) {
     char sql[sizeof schema + 160];
     snprintf(sql, sizeof sql,

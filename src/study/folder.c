@@ -66,9 +66,9 @@ scree_status scree_study_open(scree_study *study, const char *folder, scree_erro
   if (!copy) return scree_fail_memory(error, strlen(folder), "a path");
   scree_free(study->folder);
   study->folder = copy;
-  scree_status status = make_folders(study, error);
-  if (status == SCREE_OK) status = keep_copy(study, error);
-  return status == SCREE_OK ? scree_study_keep_scene(study, error) : status;
+  SCREE_TRY(make_folders(study, error));
+  SCREE_TRY(keep_copy(study, error));
+  return scree_study_keep_scene(study, error);
 }
 
 scree_status scree_study_open_folder(const char *folder, scree_study **study, scree_error *error) {

@@ -255,14 +255,13 @@ static scree_status read_base(const reader *r, const scree_yaml *base) {
     return place_error(r, command, scree_study_read_command(study, command, &error), &error);
   const scree_yaml *scene = scree_yaml_find(base, "scene"),
                    *template = scree_yaml_find(base, "template"), *of = scene ? scene : template;
-  scree_status status = of ? need_scalar(r, of) : SCREE_OK;
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(of ? need_scalar(r, of) : SCREE_OK);
   if (scene && template) return fail_at(r, template, "template: the base is a scene already");
-  status = scene ? scree_study_read_scene(study, scene->text, &error)
-                 : scree_study_take_template(study, template ? template->text : "repose", &error);
+  scree_status status =
+      scene ? scree_study_read_scene(study, scene->text, &error)
+            : scree_study_take_template(study, template ? template->text : "repose", &error);
   if (status != SCREE_OK) return place_error(r, of ? of : base, status, &error);
-  status = read_settings(r, base, of);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(read_settings(r, base, of));
   return place_error(r, base, scree_study_look(study, &error), &error);
 }
 
@@ -295,8 +294,7 @@ static scree_status read_answer(const reader *r, const scree_yaml *item, scree_a
   } else if (only && only->kind == SCREE_YAML_MAPPING) {
     window_fields window;
     column = only->key;
-    scree_status status = read_record(r, only, column, &window_record, &window);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(read_record(r, only, column, &window_record, &window));
     bool at = !isnan(window.at), mean = !isnan(window.from) || !isnan(window.until);
     if (at && mean) return fail_at(r, only, "%s: at, or from and until", column);
     a->mean = !at;
@@ -329,16 +327,16 @@ static scree_status read_answers(const reader *r, const scree_yaml *node) {
     return fail_at(r, node, "answers: must be a list of columns, as in [torque.power]");
   study->answers = scree_arena_take(&study->arena, node->item_count, sizeof *study->answers);
   if (!study->answers) return fail_memory(r);
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < node->item_count; i++) {
-    status = read_answer(r, &node->items[i], &study->answers[i]);
-    if (status == SCREE_OK && study->scene_text && !study->answers[i].outline &&
-        !scree_study_has_column(study, study->answers[i].column, &study->answers[i].unit))
-      status = fail_at(r, &node->items[i], "no column '%s' in the scene; its sensors are %s",
-                       study->answers[i].column, scree_study_sensor_names(study));
-    study->answer_count += status == SCREE_OK;
+  for (size_t i = 0; i < node->item_count; i++) {
+    scree_answer *answer = &study->answers[i];
+    SCREE_TRY(read_answer(r, &node->items[i], answer));
+    if (study->scene_text && !answer->outline &&
+        !scree_study_has_column(study, answer->column, &answer->unit))
+      return fail_at(r, &node->items[i], "no column '%s' in the scene; its sensors are %s",
+                     answer->column, scree_study_sensor_names(study));
+    study->answer_count++;
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- shapes ---- */
@@ -377,8 +375,7 @@ static bool known_sample(const char *name) {
 /* The index of the shape of this word, a new one where it is not there yet. */
 static scree_status find_shape(const reader *r, const scree_yaml *node, size_t *index) {
   scree_study *study = r->study;
-  scree_status status = need_scalar(r, node);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(need_scalar(r, node));
   for (*index = 0; *index < study->shape_count; ++*index)
     if (!strcmp(study->shapes[*index].word, node->text)) return SCREE_OK;
   if (study->shape_count == SCREE_MOST_SHAPES)
@@ -408,8 +405,7 @@ static scree_status read_set(const reader *r, const scree_yaml *node, size_t *in
   size_t *shapes = scree_arena_take(&study->arena, count, sizeof *shapes), size = 1;
   if (!shapes) return fail_memory(r);
   for (size_t i = 0; i < count; i++) {
-    scree_status status = find_shape(r, list ? &node->items[i] : node, &shapes[i]);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(find_shape(r, list ? &node->items[i] : node, &shapes[i]));
     for (size_t j = 0; j < i; j++)
       if (shapes[j] == shapes[i])
         return fail_at(r, &node->items[i], "the shape '%s' stands here twice", node->items[i].text);
@@ -473,8 +469,7 @@ static scree_status level_text(const reader *r, const scree_yaml *node, const ch
   if (try_value(&quiet, node, key, number) != SCREE_OK)
     snprintf(number, sizeof number, "%.0f", value);
   reader loud = {r->study, r->name, kept};
-  scree_status status = try_value(&loud, node, key, number);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(try_value(&loud, node, key, number));
   *text = scree_arena_text(&r->study->arena, number);
   return *text ? SCREE_OK : fail_memory(r);
 }
@@ -509,8 +504,7 @@ static scree_status check_range(const reader *r, const scree_yaml *node, scree_f
 /* {from: A, to: B, scale: linear|log, levels: N} */
 static scree_status read_range(const reader *r, const scree_yaml *node, scree_factor *f) {
   range_fields range;
-  scree_status status = read_record(r, node, f->key, &range_record, &range);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(read_record(r, node, f->key, &range_record, &range));
   if (isnan(range.from) || isnan(range.to))
     return fail_at(r, node, "%s: a range needs from and to", f->key);
   f->range = true;
@@ -527,12 +521,11 @@ static scree_status add_factor(const reader *r, const char *key, const scree_yam
   if (!f.key) return fail_memory(r);
   if (!strcmp(key, "seed") && study->design != SCREE_DESIGN_LIST)
     return fail_at(r, node, "seed is no factor: `replicates: N` counts it up");
-  scree_status status = node->kind == SCREE_YAML_SEQUENCE  ? read_levels(r, node, &f)
-                        : node->kind == SCREE_YAML_MAPPING ? read_range(r, node, &f)
-                                                           : fail_at(r, node,
-                                                                     "%s: must be a list of levels "
-                                                                     "or {from: A, to: B}",
-                                                                     key);
+  scree_status status =
+      node->kind == SCREE_YAML_SEQUENCE ? read_levels(r, node, &f)
+      : node->kind == SCREE_YAML_MAPPING
+          ? read_range(r, node, &f)
+          : fail_at(r, node, "%s: must be a list of levels or {from: A, to: B}", key);
   if (status == SCREE_OK) study->factors[study->factor_count++] = f;
   return status;
 }
@@ -546,20 +539,19 @@ static bool is_range(const scree_yaml *node) {
 static scree_status read_factors(const reader *r, const scree_yaml *node) {
   if (node->kind != SCREE_YAML_MAPPING)
     return fail_at(r, node, "factors: must be `key: [levels]` lines");
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < node->item_count; i++) {
+  for (size_t i = 0; i < node->item_count; i++) {
     const scree_yaml *item = &node->items[i];
     if (item->kind != SCREE_YAML_MAPPING || is_range(item)) {
-      status = add_factor(r, item->key, item);
+      SCREE_TRY(add_factor(r, item->key, item));
       continue;
     }
-    for (size_t k = 0; status == SCREE_OK && k < item->item_count; k++) {
+    for (size_t k = 0; k < item->item_count; k++) {
       char key[128];
       snprintf(key, sizeof key, "%s.%s", item->key, item->items[k].key);
-      status = add_factor(r, key, &item->items[k]);
+      SCREE_TRY(add_factor(r, key, &item->items[k]));
     }
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- the whole ---- */
@@ -591,9 +583,8 @@ static scree_status check_whole(const reader *r, const scree_yaml *root) {
     points *= (double)study->factors[i].level_count;
   }
   if (!study->has_pile && !study->answer_count)
-    return fail_at(r, root,
-                   "a study of a command, or of a scene without a pile, needs answers: [NAME, "
-                   "...]");
+    return fail_at(
+        r, root, "a study of a command, or of a scene without a pile, needs answers: [NAME, ...]");
   if (varied && scree_yaml_find(root, "shapes"))
     return fail_at(r, root, "shapes stands both by itself and as a factor");
   bool named = study->scene_is_file || study->command.count;
@@ -645,23 +636,21 @@ static scree_status read_root(const reader *r, const scree_yaml *root) {
   study->shapes = scree_arena_take(&study->arena, SCREE_MOST_SHAPES, sizeof *study->shapes);
   if (!study->factors || !study->sets || !study->shapes) return fail_memory(r);
   size_t set;
-  scree_status status = read_record(r, root, "", &study_record, &f);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(read_record(r, root, "", &study_record, &f));
   take_fields(study, &f);
   const scree_yaml none = {.kind = SCREE_YAML_MAPPING, .line = root->line, .column = root->column};
-  status = read_base(r, f.base ? f.base : &none);
-  if (status == SCREE_OK && f.shapes && study->command.count)
+  SCREE_TRY(read_base(r, f.base ? f.base : &none));
+  if (f.shapes && study->command.count)
     return fail_at(r, f.shapes, "shapes: what a command needs stands in its words");
   bool varied =
       f.factors && f.factors->kind == SCREE_YAML_MAPPING && scree_yaml_find(f.factors, "shapes");
   study->own_shapes = !study->command.count && (f.shapes || varied);
-  if (status == SCREE_OK && scree_yaml_find(root, "seed")) study->seed = f.seed;
-  if (status == SCREE_OK && f.shapes) status = read_set(r, f.shapes, &set);
-  if (status == SCREE_OK && f.answers) status = read_answers(r, f.answers);
-  if (status == SCREE_OK && f.factors) status = read_factors(r, f.factors);
-  if (status == SCREE_OK && study->set_count == 0)
-    study->sets[study->set_count++] = (scree_shape_set){"", NULL, 0};
-  return status == SCREE_OK ? check_whole(r, root) : status;
+  if (scree_yaml_find(root, "seed")) study->seed = f.seed;
+  if (f.shapes) SCREE_TRY(read_set(r, f.shapes, &set));
+  if (f.answers) SCREE_TRY(read_answers(r, f.answers));
+  if (f.factors) SCREE_TRY(read_factors(r, f.factors));
+  if (study->set_count == 0) study->sets[study->set_count++] = (scree_shape_set){"", NULL, 0};
+  return check_whole(r, root);
 }
 
 static scree_status start(scree_study *study, const char *path, scree_error *error) {
@@ -679,8 +668,7 @@ static scree_status start(scree_study *study, const char *path, scree_error *err
 static scree_status read_text(scree_study *study, const char *path, scree_error *error) {
   char *bytes;
   size_t count;
-  scree_status status = scree_file_read(path, LARGEST_FILE, &bytes, &count, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_file_read(path, LARGEST_FILE, &bytes, &count, error));
   char *text = scree_arena_take(&study->arena, count + 1, 1);
   if (text) memcpy(text, bytes, count + 1);
   scree_free(bytes);

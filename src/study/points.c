@@ -64,9 +64,8 @@ static scree_status check_point(const scree_study *study, const scree_study_poin
   scree_scene_file *file;
   scree_error reason;
   if (study->command.count) return SCREE_OK; /* its values are the command's to judge */
-  scree_status status = scree_study_scene(study, point, &file, error);
-  if (status != SCREE_OK) return status;
-  status = scree_scene_file_check(file, &reason);
+  SCREE_TRY(scree_study_scene(study, point, &file, error));
+  scree_status status = scree_scene_file_check(file, &reason);
   scree_scene_file_free(file);
   if (status == SCREE_OK) return SCREE_OK;
   return scree_fail(error, status, "%s: at the point %s: %.500s", study->path, point->label,
@@ -113,10 +112,8 @@ scree_status scree_study_make_points(scree_study *study, scree_error *error) {
     scree_design_latin(study->seed, study->point_count, dimensions, order, unit);
   if (study->design == SCREE_DESIGN_SOBOL)
     scree_design_sobol(study->seed, study->point_count, dimensions, unit);
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < study->point_count; i++)
-    status = make_point(study, i, unit, error);
-  return status;
+  for (size_t i = 0; i < study->point_count; i++) SCREE_TRY(make_point(study, i, unit, error));
+  return SCREE_OK;
 }
 
 /* ---- runs ---- */
@@ -156,12 +153,11 @@ static scree_status write_files(const scree_study *study, const scree_scene_file
 static scree_status write_command_identity(const scree_study *study, size_t run, FILE *stream,
                                            scree_error *error) {
   char text[1024];
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < study->command.count; i++) {
-    status = scree_study_command_word(study, run, i, NULL, text, sizeof text, error);
-    if (status == SCREE_OK) fprintf(stream, "word=%s\n", text);
+  for (size_t i = 0; i < study->command.count; i++) {
+    SCREE_TRY(scree_study_command_word(study, run, i, NULL, text, sizeof text, error));
+    fprintf(stream, "word=%s\n", text);
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* Everything that the run's numbers follow from, as text: the scene but for how often it is
@@ -171,9 +167,8 @@ static scree_status write_identity(const scree_study *study, size_t run, FILE *s
   scree_scene_file *file;
   char unit[SCREE_NUMBER_SIZE];
   if (study->command.count) return write_command_identity(study, run, stream, error);
-  scree_status status = scree_study_run_scene(study, run, &file, error);
-  if (status != SCREE_OK) return status;
-  status = scree_scene_file_set(file, "output.frames", "0", error);
+  SCREE_TRY(scree_study_run_scene(study, run, &file, error));
+  scree_status status = scree_scene_file_set(file, "output.frames", "0", error);
   if (status == SCREE_OK) status = scree_scene_file_set(file, "output.checkpoint", "60", error);
   if (status == SCREE_OK) status = scree_scene_file_print(file, stream, error);
   if (status == SCREE_OK) status = write_files(study, file, stream, error);

@@ -160,8 +160,7 @@ static void write_series(FILE *stream, const scree_study_record *record) {
 scree_status scree_study_record_write(const scree_study_record *record, const char *path,
                                       scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, true, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, true, &output, error));
   fputs("{", output.stream);
   for (int i = 0; i < FIELD_COUNT; i++) {
     fprintf(output.stream, "%s\"%s\": ", i ? " " : "", fields[i].key);
@@ -284,9 +283,8 @@ scree_status scree_study_record_read(const char *path, scree_study_record *recor
   size_t byte_count;
   scree_yaml root;
   scree_study_record made = {0};
-  scree_status status = scree_file_read(path, LARGEST_RECORD, &bytes, &byte_count, error);
-  if (status != SCREE_OK) return status;
-  status = scree_yaml_parse(bytes, byte_count, path, &root, error);
+  SCREE_TRY(scree_file_read(path, LARGEST_RECORD, &bytes, &byte_count, error));
+  scree_status status = scree_yaml_parse(bytes, byte_count, path, &root, error);
   scree_free(bytes);
   if (status != SCREE_OK) return status;
   status = root.kind == SCREE_YAML_MAPPING

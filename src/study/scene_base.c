@@ -2,7 +2,6 @@
  * of its sensors as an answer, and shapes of its own where the study names some. It stands in the
  * study as its own text. */
 #include "base/file.h"
-#include "base/number.h"
 #include "base/platform.h"
 #include "study/outline.h"
 #include "study/record.h"
@@ -71,8 +70,7 @@ scree_status scree_study_read_scene(scree_study *study, const char *name, scree_
 
 scree_status scree_study_take_template(scree_study *study, const char *name, scree_error *error) {
   scree_scene_file *file; /* tells which there are */
-  scree_status status = scree_scene_file_template(name, &file, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_file_template(name, &file, error));
   scree_scene_file_free(file);
   study->scene_is_file = false;
   return keep_text(study, name, scree_scene_template(name), error);
@@ -113,13 +111,12 @@ static scree_status pour_set(const scree_study *study, size_t set_index, scree_s
 static scree_status set_level(const scree_study *study, size_t set_index, const char *rp,
                               scree_scene_file *file, scree_error *error) {
   const scree_shape_set *set = &study->sets[set_index];
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < set->count; i++) {
+  for (size_t i = 0; i < set->count; i++) {
     char field[160];
     snprintf(field, sizeof field, "shapes.%s.rp", study->shapes[set->shapes[i]].name);
-    status = scree_scene_file_set(file, field, rp, error);
+    SCREE_TRY(scree_scene_file_set(file, field, rp, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_study_scene(const scree_study *study, const scree_study_point *point,
@@ -146,11 +143,10 @@ scree_status scree_study_scene(const scree_study *study, const scree_study_point
 scree_status scree_study_run_scene(const scree_study *study, size_t run, scree_scene_file **file,
                                    scree_error *error) {
   char seed[32];
-  scree_status status =
-      scree_study_scene(study, &study->points[scree_study_run_point(study, run)], file, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(
+      scree_study_scene(study, &study->points[scree_study_run_point(study, run)], file, error));
   snprintf(seed, sizeof seed, "%" PRIu64, scree_study_run_seed(study, run));
-  status = scree_scene_file_set(*file, "seed", seed, error);
+  scree_status status = scree_scene_file_set(*file, "seed", seed, error);
   if (status != SCREE_OK) scree_scene_file_free(*file);
   return status;
 }
@@ -158,9 +154,8 @@ scree_status scree_study_run_scene(const scree_study *study, size_t run, scree_s
 scree_status scree_study_try(const scree_study *study, const char *key, const char *value,
                              scree_error *error) {
   scree_scene_file *file;
-  scree_status status = scree_study_scene(study, NULL, &file, error);
-  if (status != SCREE_OK) return status;
-  status = scree_scene_file_try(file, key, value, error);
+  SCREE_TRY(scree_study_scene(study, NULL, &file, error));
+  scree_status status = scree_scene_file_try(file, key, value, error);
   scree_scene_file_free(file);
   return status;
 }
@@ -169,9 +164,8 @@ scree_status scree_study_try(const scree_study *study, const char *key, const ch
 scree_status scree_study_look(scree_study *study, scree_error *error) {
   scree_scene_file *file;
   scree_plan plan;
-  scree_status status = scree_study_scene(study, NULL, &file, error);
-  if (status != SCREE_OK) return status;
-  status = scree_scene_file_plan(file, &study->arena, &plan, error);
+  SCREE_TRY(scree_study_scene(study, NULL, &file, error));
+  scree_status status = scree_scene_file_plan(file, &study->arena, &plan, error);
   scree_scene_file_free(file);
   if (status != SCREE_OK) return status;
   study->seed = plan.seed;
@@ -393,8 +387,7 @@ scree_status scree_study_record_scene(const scree_study *study, const scree_scen
   scree_scene_get_book(scene, &book);
   scree_world_observe(world, &o);
   scree_checksum_text(scree_world_hash(world), record->hash);
-  status = scree_study_answer_scene(study, scene, record, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_study_answer_scene(study, scene, record, error));
   record_costs(scene, &record->costs);
   size_t bodies = scree_scene_pile_name(scene, 0) ? pile.body_count : book.inside_count;
   record->result = (scree_record_result){.repose = pile.repose,

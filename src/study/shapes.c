@@ -74,8 +74,7 @@ static scree_status know_shape(const scree_study *study, scree_study_shape *shap
 scree_status scree_study_know_shapes(scree_study *study, scree_error *error) {
   bool all = true;
   for (size_t i = 0; i < study->shape_count; i++) {
-    scree_status status = know_shape(study, &study->shapes[i], error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(know_shape(study, &study->shapes[i], error));
     all = all && study->shapes[i].known;
   }
   return all ? scree_study_make_keys(study, error) : SCREE_OK;
@@ -183,12 +182,11 @@ static scree_status read_scan(const scree_study *study, const scree_study_shape 
   scree_repair_options repair = scree_default_repair_options();
   scree_scan scan;
   read.ignore_comment_unit = true;
-  scree_status status = scree_scan_read(shape->path, &read, &scan, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scan_read(shape->path, &read, &scan, error));
   double unit = scan.comment_unit_m > 0 ? scan.comment_unit_m : study->unit_m;
   *scale = scan.states_unit ? 1 : unit / read.unit_m;
   *sum = scan.checksum;
-  status = scree_mesh_prepare(&scan.mesh, &repair, progress, &scan.mesh, NULL, error);
+  scree_status status = scree_mesh_prepare(&scan.mesh, &repair, progress, &scan.mesh, NULL, error);
   if (status != SCREE_OK)
     scree_scan_free(&scan);
   else
@@ -282,9 +280,8 @@ static scree_status decimate(const scree_study *study, size_t index, scree_mesh 
   scree_curve *curve;
   scree_choice choice = {0};
   simplify.method = study->method;
-  scree_status status = scree_curve_build_scaled(mesh, scale, &simplify, progress, &curve, error);
-  if (status != SCREE_OK) return status;
-  status = scree_choose(curve, mesh, NULL, progress, &choice, error);
+  SCREE_TRY(scree_curve_build_scaled(mesh, scale, &simplify, progress, &curve, error));
+  scree_status status = scree_choose(curve, mesh, NULL, progress, &choice, error);
   if (status == SCREE_OK) {
     made->triangle_count = choice.triangle_count;
     made->area = choice.area;
@@ -374,8 +371,7 @@ static scree_status check_unchanged(const scree_study_shape *shape, scree_error 
   char *bytes;
   size_t count;
   if (!shape->path || !exists(shape->path)) return SCREE_OK; /* the levels are all that is needed */
-  scree_status status = scree_file_read(shape->path, 0, &bytes, &count, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_file_read(shape->path, 0, &bytes, &count, error));
   scree_checksum sum = scree_checksum_of(bytes, count);
   scree_free(bytes);
   if (sum.high == shape->checksum.high && sum.low == shape->checksum.low) return SCREE_OK;
@@ -404,9 +400,8 @@ static scree_status read_mesh_particle(const char *path, scree_particle **partic
   scree_read_options read = scree_default_read_options();
   scree_scan scan;
   read.unit_m = 1;
-  scree_status status = scree_scan_read(path, &read, &scan, error);
-  if (status != SCREE_OK) return status;
-  status = scree_particle_from_mesh(&scan.mesh, NULL, particle, error);
+  SCREE_TRY(scree_scan_read(path, &read, &scan, error));
+  scree_status status = scree_particle_from_mesh(&scan.mesh, NULL, particle, error);
   scree_scan_free(&scan);
   return status;
 }
@@ -436,8 +431,7 @@ scree_status scree_study_make_shape(const scree_study *study, size_t shape, cons
                              .recommended = known->recommended_rp,
                              .checksum = known->checksum};
   scree_particle_measures m;
-  scree_status status = make_particle(study, known, rp, &result.particle, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(make_particle(study, known, rp, &result.particle, error));
   scree_particle_measure(result.particle, &m);
   result.triangle_count = m.triangle_count;
   *made = result;

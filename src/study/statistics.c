@@ -5,8 +5,6 @@
 #include "study/special.h"
 #include "study/study.h"
 
-#include <float.h>
-
 static const size_t most_replicates = 10000; /* beyond it count_needed is "never" */
 
 scree_summary scree_summarise(const double *values, size_t count, double confidence) {

@@ -10,7 +10,6 @@
 #include "study/lease.h"
 #include "study/record.h"
 
-#include <errno.h>
 #include <math.h>
 #include <string.h>
 
@@ -131,9 +130,8 @@ static scree_status make_and_simulate(work *w, scree_study_record *record, scree
   scree_scene_file *file;
   scree_shape_store *store;
   if (w->study->command.count) return run_command(w, record, error);
-  scree_status status = scree_study_run_scene(w->study, w->run, &file, error);
-  if (status != SCREE_OK) return status;
-  status = scree_shape_store_create(&store, error);
+  SCREE_TRY(scree_study_run_scene(w->study, w->run, &file, error));
+  scree_status status = scree_shape_store_create(&store, error);
   if (status == SCREE_OK) {
     status = scree_study_stock(w->study, w->run, file, store, &record->triangle_count, error);
     if (status == SCREE_OK) status = simulate(w, file, store, record, error);
@@ -216,18 +214,16 @@ static scree_status take_run(work *w, bool *taken, size_t *open, scree_error *er
     bool ended;
     char name[64];
     w->run = i;
-    scree_status status = has_ended(w, &ended, error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(has_ended(w, &ended, error));
     if (ended && *open == 0) w->first = i + 1;
     if (ended) continue;
     ++*open;
     snprintf(name, sizeof name, "run-%s", w->study->keys[i]);
-    status =
-        scree_lease_take(w->leases, name, w->options->lease_s, w->worker, taken, &w->lease, error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(
+        scree_lease_take(w->leases, name, w->options->lease_s, w->worker, taken, &w->lease, error));
     if (!*taken) continue;
     /* it may have ended between the look and the lease */
-    status = has_ended(w, &ended, error);
+    scree_status status = has_ended(w, &ended, error);
     if (status != SCREE_OK || ended) {
       scree_lease_release(&w->lease);
       *taken = false;
