@@ -5,6 +5,7 @@
 #include "base/math.h"
 #include "base/number.h"
 #include "base/platform.h"
+#include "base/schema_rows.h"
 #include "calibrate/calibration.h"
 
 #include <stdlib.h>
@@ -12,59 +13,54 @@
 
 enum { LARGEST_FILE = 1 << 20, MOST_CURVE = 40 };
 
-#define FIELDS(table) (table), sizeof(table) / sizeof *(table)
 
-#define AT(member) offsetof(scree_plan_experiment, member)
+#define RECORD scree_plan_experiment
 static const scree_field experiment_table[] = {
-    {"scene", SCREE_FIELD_TEXT, AT(scene), 0, 0, "", "file of a scene", NULL},
-    {"command", SCREE_FIELD_TEXTS, AT(command), 0, 0, "", "program and words", NULL},
-    {"set", SCREE_FIELD_NODE, AT(set), 0, 0, "", "fields of the scene that differ here", NULL},
-    {"cost", SCREE_FIELD_REAL, AT(cost), 1e-9, 1e9, "", "of a run, beside the others", NULL},
+    TEXT(scene, "file of a scene"),
+    TEXTS(command, "program and words"),
+    NODE(set, "fields of the scene that differ here"),
+    REAL(cost, 1e-9, 1e9, "", "of a run, beside the others"),
 };
-#undef AT
+#undef RECORD
 static const scree_plan_experiment experiment_defaults = {.cost = NAN};
-static const scree_record experiment_record = {"an experiment", FIELDS(experiment_table),
-                                               sizeof(scree_plan_experiment), &experiment_defaults,
-                                               NULL};
+static const scree_record experiment_record =
+    SCREE_RECORD("an experiment", experiment_table, experiment_defaults, NULL);
 
-#define AT(member) offsetof(scree_plan_parameter, member)
+#define RECORD scree_plan_parameter
 static const scree_field parameter_table[] = {
-    {"field", SCREE_FIELD_TEXTS, AT(fields), 0, 0, "", "of the scenes", NULL},
-    {"from", SCREE_FIELD_REAL, AT(from), -1e300, 1e300, "", "", NULL},
-    {"to", SCREE_FIELD_REAL, AT(to), -1e300, 1e300, "", "", NULL},
-    {"scale", SCREE_FIELD_WORD, AT(scale), 0, 0, "linear|log", "", NULL},
-    {"values", SCREE_FIELD_TEXTS, AT(values), 0, 0, "", "in place of a range", NULL},
+    {"field", SCREE_FIELD_TEXTS, offsetof(RECORD, fields), 0, 0, "", "of the scenes", NULL},
+    REAL(from, -1e300, 1e300, "", ""),
+    REAL(to, -1e300, 1e300, "", ""),
+    WORD(scale, "linear|log", ""),
+    TEXTS(values, "in place of a range"),
 };
-#undef AT
+#undef RECORD
 static const scree_plan_parameter parameter_defaults = {.from = NAN, .to = NAN};
-static const scree_record parameter_record = {"a parameter", FIELDS(parameter_table),
-                                              sizeof(scree_plan_parameter), &parameter_defaults,
-                                              NULL};
+static const scree_record parameter_record =
+    SCREE_RECORD("a parameter", parameter_table, parameter_defaults, NULL);
 
-#define AT(member) offsetof(scree_plan_quantity, member)
+#define RECORD scree_plan_quantity
 #define ANSWER                                                                                     \
-  {"experiment", SCREE_FIELD_TEXT, AT(experiment), 0, 0, "", "", NULL},                            \
-      {"answer", SCREE_FIELD_TEXT, AT(answer), 0, 0, "", "column of a sensor, or outline", NULL},  \
-      {"at", SCREE_FIELD_REAL, AT(at), -1e9, 1e9, "", "s; of an outline m", NULL},                 \
-      {"from", SCREE_FIELD_REAL, AT(from), 0, 1e9, "s", "of the mean over a window", NULL},        \
-      {"until", SCREE_FIELD_REAL, AT(until), 0, 1e9, "s", "", NULL}, {                             \
-    "take", SCREE_FIELD_WORD, AT(take), 0, 0, "last|mean|sd", "over the sensor's window", NULL     \
+  TEXT(experiment, ""), TEXT(answer, "column of a sensor, or outline"),                            \
+      REAL(at, -1e9, 1e9, "", "s; of an outline m"),                                               \
+      REAL(from, 0, 1e9, "s", "of the mean over a window"), REAL(until, 0, 1e9, "s", ""), {        \
+    "take", SCREE_FIELD_WORD, offsetof(RECORD, take), 0, 0, "last|mean|sd",                        \
+        "over the sensor's window", NULL                                                           \
   }
 #define MEASURED                                                                                   \
-  {"value", SCREE_FIELD_REAL, AT(value), -1e300, 1e300, "", "measured", NULL},                     \
-      {"measured", SCREE_FIELD_NODE, AT(measured), 0, 0, "", "repeats, a list", NULL},             \
-      {"curve", SCREE_FIELD_TEXT, AT(curve), 0, 0, "", "file of two columns", NULL},               \
-      {"uncertainty", SCREE_FIELD_REAL, AT(uncertainty), 0, 1e300, "", "standard", NULL}, {        \
-    "repeats", SCREE_FIELD_COUNT, AT(repeats), 1, 1e6, "", "that the value is the mean of", NULL   \
+  REAL(value, -1e300, 1e300, "", "measured"), NODE(measured, "repeats, a list"),                   \
+      TEXT(curve, "file of two columns"), REAL(uncertainty, 0, 1e300, "", "standard"), {           \
+    "repeats", SCREE_FIELD_COUNT, offsetof(RECORD, repeats), 1, 1e6, "",                           \
+        "that the value is the mean of", NULL                                                      \
   }
 static const scree_field target_table[] = {ANSWER, MEASURED};
 static const scree_field sought_table[] = {ANSWER};
 static const scree_field limit_table[] = {
     ANSWER,
-    {"at_most", SCREE_FIELD_REAL, AT(at_most), -1e300, 1e300, "", "", NULL},
-    {"at_least", SCREE_FIELD_REAL, AT(at_least), -1e300, 1e300, "", "", NULL},
+    REAL(at_most, -1e300, 1e300, "", ""),
+    REAL(at_least, -1e300, 1e300, "", ""),
 };
-#undef AT
+#undef RECORD
 static const scree_plan_quantity quantity_defaults = {.at = NAN,
                                                       .from = NAN,
                                                       .until = NAN,
@@ -73,54 +69,53 @@ static const scree_plan_quantity quantity_defaults = {.at = NAN,
                                                       .repeats = 1,
                                                       .at_most = NAN,
                                                       .at_least = NAN};
-static const scree_record target_record = {"a target", FIELDS(target_table),
-                                           sizeof(scree_plan_quantity), &quantity_defaults, NULL};
-static const scree_record sought_record = {"what is sought", FIELDS(sought_table),
-                                           sizeof(scree_plan_quantity), &quantity_defaults, NULL};
-static const scree_record limit_record = {"a limit", FIELDS(limit_table),
-                                          sizeof(scree_plan_quantity), &quantity_defaults, NULL};
+static const scree_record target_record =
+    SCREE_RECORD("a target", target_table, quantity_defaults, NULL);
+static const scree_record sought_record =
+    SCREE_RECORD("what is sought", sought_table, quantity_defaults, NULL);
+static const scree_record limit_record =
+    SCREE_RECORD("a limit", limit_table, quantity_defaults, NULL);
 
-#define AT(member) offsetof(scree_plan_budget, member)
+#define RECORD scree_plan_budget
 static const scree_field budget_table[] = {
-    {"runs", SCREE_FIELD_COUNT, AT(runs), 2, 1000, "", "of all experiments together", NULL},
-    {"time", SCREE_FIELD_REAL, AT(time), 0, 1e12, "s", "of the processor", NULL},
+    COUNT(runs, 2, 1000, "of all experiments together"),
+    REAL(time, 0, 1e12, "s", "of the processor"),
 };
-#undef AT
+#undef RECORD
 static const scree_plan_budget budget_defaults = {.runs = 100, .time = NAN};
-static const scree_record budget_record = {"the budget", FIELDS(budget_table),
-                                           sizeof(scree_plan_budget), &budget_defaults, NULL};
+static const scree_record budget_record =
+    SCREE_RECORD("the budget", budget_table, budget_defaults, NULL);
 
-#define AT(member) offsetof(scree_plan_start, member)
+#define RECORD scree_plan_start
 static const scree_field start_table[] = {
-    {"points", SCREE_FIELD_COUNT, AT(points), 2, 1000, "", "of each experiment", NULL},
+    COUNT(points, 2, 1000, "of each experiment"),
 };
-#undef AT
+#undef RECORD
 static const scree_plan_start start_defaults = {.points = 0};
-static const scree_record start_record = {"the start", FIELDS(start_table),
-                                          sizeof(scree_plan_start), &start_defaults, NULL};
+static const scree_record start_record =
+    SCREE_RECORD("the start", start_table, start_defaults, NULL);
 
-#define AT(member) offsetof(scree_plan_calibration, member)
+#define RECORD scree_plan_calibration
 static const scree_field calibration_table[] = {
-    {"title", SCREE_FIELD_TEXT, AT(title), 0, 0, "", "", NULL},
-    {"seed", SCREE_FIELD_SEED, AT(seed), 0, 0, "", "", NULL},
-    {"experiments", SCREE_FIELD_NAMED, AT(experiments), 0, 0, "", "", &experiment_record},
-    {"parameters", SCREE_FIELD_NAMED, AT(parameters), 0, 0, "", "", &parameter_record},
-    {"targets", SCREE_FIELD_NAMED, AT(targets), 0, 0, "", "", &target_record},
-    {"predict", SCREE_FIELD_NAMED, AT(predict), 0, 0, "", "", &target_record},
-    {"minimise", SCREE_FIELD_RECORD, AT(minimise), 0, 0, "", "", &sought_record},
-    {"maximise", SCREE_FIELD_RECORD, AT(maximise), 0, 0, "", "", &sought_record},
-    {"limits", SCREE_FIELD_NAMED, AT(limits), 0, 0, "", "", &limit_record},
-    {"budget", SCREE_FIELD_RECORD, AT(budget), 0, 0, "", "", &budget_record},
-    {"start", SCREE_FIELD_RECORD, AT(start), 0, 0, "", "", &start_record},
-    {"batch", SCREE_FIELD_COUNT, AT(batch), 1, 1000, "", "runs planned at a time", NULL},
-    {"confidence", SCREE_FIELD_REAL, AT(confidence), 0.5, 0.9999, "", "of intervals", NULL},
+    TEXT(title, ""),
+    SEED(seed, ""),
+    NAMED(experiments, "", &experiment_record),
+    NAMED(parameters, "", &parameter_record),
+    NAMED(targets, "", &target_record),
+    NAMED(predict, "", &target_record),
+    GROUP(minimise, "", &sought_record),
+    GROUP(maximise, "", &sought_record),
+    NAMED(limits, "", &limit_record),
+    GROUP(budget, "", &budget_record),
+    GROUP(start, "", &start_record),
+    COUNT(batch, 1, 1000, "runs planned at a time"),
+    REAL(confidence, 0.5, 0.9999, "", "of intervals"),
 };
-#undef AT
+#undef RECORD
 static const scree_plan_calibration calibration_defaults = {
     .seed = 1, .batch = 8, .confidence = 0.9};
-static const scree_record calibration_record = {"a calibration", FIELDS(calibration_table),
-                                                sizeof(scree_plan_calibration),
-                                                &calibration_defaults, NULL};
+static const scree_record calibration_record =
+    SCREE_RECORD("a calibration", calibration_table, calibration_defaults, NULL);
 
 typedef struct reader {
   scree_calibration *c;

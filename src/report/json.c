@@ -1,7 +1,6 @@
 #include "report/json.h"
 
 #include "base/file.h"
-#include "base/file.h"
 #include "base/number.h"
 #include "report/utf8.h"
 
@@ -116,15 +115,6 @@ void scree_json_matrix(scree_json *json, const char *key, const double values[3]
   scree_json_row_array(json, key);
   for (int i = 0; i < 3; i++) scree_json_numbers(json, NULL, values[i], 3);
   scree_json_end(json);
-}
-
-scree_status scree_json_file(const char *path, bool overwrite, scree_json_writer *write,
-                             const void *what, scree_error *error) {
-  scree_output output;
-  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
-  scree_json json = scree_json_start(output.stream);
-  write(&json, what);
-  return scree_output_commit(&output, error);
 }
 
 scree_status scree_json_file(const char *path, bool overwrite, scree_json_writer *write,

@@ -74,44 +74,6 @@ typedef void scree_json_writer(scree_json *json, const void *what);
 scree_status scree_json_file(const char *path, bool overwrite, scree_json_writer *write,
                              const void *what, scree_error *error);
 
-/* Members of *object under their own names, up to ten, each as its type is written. */
-#define SCREE_JSON_MEMBERS(json, object, ...)                                                      \
-  SCREE_JSON_CHOSEN(__VA_ARGS__, SCREE_JSON_10, SCREE_JSON_9, SCREE_JSON_8, SCREE_JSON_7,          \
-                    SCREE_JSON_6, SCREE_JSON_5, SCREE_JSON_4, SCREE_JSON_3, SCREE_JSON_2,          \
-                    SCREE_JSON_1, )                                                                \
-  (json, object, __VA_ARGS__)
-#define SCREE_JSON_CHOSEN(a, b, c, d, e, f, g, h, i, j, name, ...) name
-#define SCREE_JSON_1(json, object, member)                                                         \
-  _Generic((object)->member, double                                                                \
-           : scree_json_number, bool                                                               \
-           : scree_json_bool, const char *                                                         \
-           : scree_json_text, char *                                                               \
-           : scree_json_text, default                                                              \
-           : scree_json_count)(json, #member, (object)->member)
-#define SCREE_JSON_2(json, object, m, ...)                                                         \
-  (SCREE_JSON_1(json, object, m), SCREE_JSON_1(json, object, __VA_ARGS__))
-#define SCREE_JSON_3(json, object, m, ...)                                                        \
-  (SCREE_JSON_1(json, object, m), SCREE_JSON_2(json, object, __VA_ARGS__))
-#define SCREE_JSON_4(json, object, m, ...)                                                        \
-  (SCREE_JSON_1(json, object, m), SCREE_JSON_3(json, object, __VA_ARGS__))
-#define SCREE_JSON_5(json, object, m, ...)                                                        \
-  (SCREE_JSON_1(json, object, m), SCREE_JSON_4(json, object, __VA_ARGS__))
-#define SCREE_JSON_6(json, object, m, ...)                                                        \
-  (SCREE_JSON_1(json, object, m), SCREE_JSON_5(json, object, __VA_ARGS__))
-#define SCREE_JSON_7(json, object, m, ...)                                                        \
-  (SCREE_JSON_1(json, object, m), SCREE_JSON_6(json, object, __VA_ARGS__))
-#define SCREE_JSON_8(json, object, m, ...)                                                        \
-  (SCREE_JSON_1(json, object, m), SCREE_JSON_7(json, object, __VA_ARGS__))
-#define SCREE_JSON_9(json, object, m, ...)                                                        \
-  (SCREE_JSON_1(json, object, m), SCREE_JSON_8(json, object, __VA_ARGS__))
-#define SCREE_JSON_10(json, object, m, ...)                                                       \
-  (SCREE_JSON_1(json, object, m), SCREE_JSON_9(json, object, __VA_ARGS__))
-
-/* A whole file, written by `write`. "-" is stdout. */
-typedef void scree_json_writer(scree_json *json, const void *what);
-scree_status scree_json_file(const char *path, bool overwrite, scree_json_writer *write,
-                             const void *what, scree_error *error);
-
 /* Fields that many files have. Of what: a file's format, checksum, and unit of length in metres. */
 void scree_json_source(scree_json *json, const char *format, scree_checksum checksum,
                        double unit_m);

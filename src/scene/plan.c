@@ -46,82 +46,70 @@ scree_status scree_plan_check_direction(const scree_reader *r, const scree_place
 
 /* ---- materials ---- */
 
-#define AT(member) offsetof(scree_plan_material, member)
+#define RECORD scree_plan_material
 static const scree_field material_fields[] = {
-    {"young", SCREE_FIELD_REAL, AT(young), 1, 1e16, "Pa",
-     "stiffness of a contact over size; of the law hertz Young's modulus", NULL},
-    {"density", SCREE_FIELD_REAL, AT(density), 1e-3, 1e6, "kg/m3", "of particles", NULL},
-    {"restitution", SCREE_FIELD_REAL, AT(restitution), 0.01, 1, "",
-     "of a pair, the lower of the two, unless `pairs` says more", NULL},
-    {"friction", SCREE_FIELD_REAL, AT(friction), 0, 100, "", "likewise", NULL},
-    {"rolling_friction", SCREE_FIELD_REAL, AT(rolling_friction), 0, 100, "",
-     "of spheres, likewise; 0: they roll freely", NULL},
-    {"surface_energy", SCREE_FIELD_REAL, AT(surface_energy), 0, 1e6, "J/m2",
-     "of cohesion, likewise; 0: nothing sticks", NULL},
-    {"poisson", SCREE_FIELD_REAL, AT(poisson), 0, 0.5, "", "Poisson's ratio, of the law hertz",
-     NULL},
+    REAL(young, 1, 1e16, "Pa",
+         "stiffness of a contact over size; of the law hertz Young's modulus"),
+    REAL(density, 1e-3, 1e6, "kg/m3", "of particles"),
+    REAL(restitution, 0.01, 1, "", "of a pair, the lower of the two, unless `pairs` says more"),
+    REAL(friction, 0, 100, "", "likewise"),
+    REAL(rolling_friction, 0, 100, "", "of spheres, likewise; 0: they roll freely"),
+    REAL(surface_energy, 0, 1e6, "J/m2", "of cohesion, likewise; 0: nothing sticks"),
+    REAL(poisson, 0, 0.5, "", "Poisson's ratio, of the law hertz"),
 };
-#undef AT
+#undef RECORD
 static const scree_plan_material material_defaults = {{0}, 1e8, 2000, 0.3, 0.5, 0, 0, 0.3};
-static const scree_record material_record = {"a material", FIELDS(material_fields),
-                                             sizeof(scree_plan_material), &material_defaults, NULL};
+static const scree_record material_record =
+    SCREE_RECORD("a material", material_fields, material_defaults, NULL);
 
-#define AT(member) offsetof(scree_plan_pair, member)
+#define RECORD scree_plan_pair
 static const scree_field pair_fields[] = {
-    {"between", SCREE_FIELD_TEXTS, AT(between), 0, 0, "", "two materials, or one twice", NULL},
-    {"restitution", SCREE_FIELD_REAL, AT(restitution), 0.01, 1, "", "", NULL},
-    {"friction", SCREE_FIELD_REAL, AT(friction), 0, 100, "", "", NULL},
-    {"rolling_friction", SCREE_FIELD_REAL, AT(rolling_friction), 0, 100, "", "of spheres", NULL},
-    {"surface_energy", SCREE_FIELD_REAL, AT(surface_energy), 0, 1e6, "J/m2", "of cohesion", NULL},
-    {"pull_off", SCREE_FIELD_REAL, AT(pull_off), 0, 1e9, "N", "that holds any two that touch",
-     NULL},
-    {"wear", SCREE_FIELD_REAL, AT(wear), 0, 1, "1/Pa",
-     "Archard's: volume that geometry loses over load and way of sliding", NULL},
+    TEXTS(between, "two materials, or one twice"),
+    REAL(restitution, 0.01, 1, "", ""),
+    REAL(friction, 0, 100, "", ""),
+    REAL(rolling_friction, 0, 100, "", "of spheres"),
+    REAL(surface_energy, 0, 1e6, "J/m2", "of cohesion"),
+    REAL(pull_off, 0, 1e9, "N", "that holds any two that touch"),
+    REAL(wear, 0, 1, "1/Pa", "Archard's: volume that geometry loses over load and way of sliding"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_pair(const scree_reader *r, const void *record) {
   const scree_plan_pair *p = record;
   if (p->between.count == 2) return SCREE_OK;
   return scree_fail_place(r, &p->place, "needs between: [material, material]");
 }
 static const scree_plan_pair pair_defaults = {{0}, {0}, NAN, NAN, NAN, NAN, NAN, 0};
-static const scree_record pair_record = {"a pair", FIELDS(pair_fields), sizeof(scree_plan_pair),
-                                         &pair_defaults, check_pair};
+static const scree_record pair_record =
+    SCREE_RECORD("a pair", pair_fields, pair_defaults, check_pair);
 
 /* ---- shapes ---- */
 
-#define AT(member) offsetof(scree_plan_shape, member)
+#define RECORD scree_plan_shape
 static const scree_field shape_fields[] = {
-    {"file", SCREE_FIELD_TEXT, AT(file), 0, 0, "", "a scan, or a table of spheres", NULL},
-    {"sample", SCREE_FIELD_TEXT, AT(sample), 0, 0, "", "a built-in one, as sp-1", NULL},
-    {"sphere", SCREE_FIELD_REAL, AT(sphere), 1e-9, 1e3, "m", "diameter", NULL},
-    {"clump", SCREE_FIELD_TEXT, AT(clump), 0, 0, "",
-     "a table of spheres: x, y, z, radius; or so many that stand for the shape", NULL},
-    {"box", SCREE_FIELD_VECTOR, AT(box), 1e-9, 1e3, "m", "three sides", NULL},
-    {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, SCREE_PLAN_UNITS,
-     "of the file's lengths; not given: as the file says, else mm", NULL},
-    {"resolution", SCREE_FIELD_REAL, AT(resolution), 0.02e-3, 5e-3, "m", "of a sample's vertices",
-     NULL},
-    {"noise", SCREE_FIELD_REAL, AT(noise), 0, 2e-3, "m", "of a sample's vertices", NULL},
-    {"sample_seed", SCREE_FIELD_SEED, AT(sample_seed), 0, 0, "", "of that noise", NULL},
-    {"repair", SCREE_FIELD_FLAG, AT(repair), 0, 0, "",
-     "what is no closed surface; false: it is refused", NULL},
-    {"triangles", SCREE_FIELD_TEXT, AT(triangles), 0, 0, "",
-     "recommended (as `scree choose` does), all, or at most so many", NULL},
-    {"rp", SCREE_FIELD_TEXT, AT(rp), 0, 0, "",
-     "or its level: this share of the triangles; recommended, or as 0.5*recommended a multiple; "
-     "scan; clump:20; spheres",
-     NULL},
-    {"method", SCREE_FIELD_WORD, AT(method), 0, 0, "volume|qecd", "of decimation", NULL},
-    {"mass_from", SCREE_FIELD_WORD, AT(mass_from), 0, 0, "mesh|scan",
-     "volume that gives the mass: of the decimated mesh, or of the scan at every level", NULL},
-    {"material", SCREE_FIELD_TEXT, AT(material), 0, 0, "", "", NULL},
-    {"density", SCREE_FIELD_REAL, AT(density), 1e-3, 1e6, "kg/m3", "another than its material's",
-     NULL},
-    {"size", SCREE_FIELD_RECORD, AT(size), 0, 0, "",
-     "of many sizes, each the diameter of the sphere of equal volume", &scree_plan_size_record},
+    TEXT(file, "a scan, or a table of spheres"),
+    TEXT(sample, "a built-in one, as sp-1"),
+    REAL(sphere, 1e-9, 1e3, "m", "diameter"),
+    TEXT(clump, "a table of spheres: x, y, z, radius; or so many that stand for the shape"),
+    VECTOR(box, 1e-9, 1e3, "m", "three sides"),
+    WORD(unit, SCREE_PLAN_UNITS, "of the file's lengths; not given: as the file says, else mm"),
+    REAL(resolution, 0.02e-3, 5e-3, "m", "of a sample's vertices"),
+    REAL(noise, 0, 2e-3, "m", "of a sample's vertices"),
+    SEED(sample_seed, "of that noise"),
+    FLAG(repair, "what is no closed surface; false: it is refused"),
+    TEXT(triangles, "recommended (as `scree choose` does), all, or at most so many"),
+    TEXT(
+        rp,
+        "or its level: this share of the triangles; recommended, or as 0.5*recommended a multiple; "
+        "scan; clump:20; spheres"),
+    WORD(method, "volume|qecd", "of decimation"),
+    WORD(mass_from, "mesh|scan",
+         "volume that gives the mass: of the decimated mesh, or of the scan at every level"),
+    TEXT(material, ""),
+    REAL(density, 1e-3, 1e6, "kg/m3", "another than its material's"),
+    GROUP(size, "of many sizes, each the diameter of the sphere of equal volume",
+          &scree_plan_size_record),
 };
-#undef AT
+#undef RECORD
 
 /* 4 or more: fewer triangles enclose nothing. */
 static bool is_count(const char *text) {
@@ -193,68 +181,63 @@ static const scree_plan_shape shape_defaults = {.sphere = NAN,
                                                 .sample_seed = 1,
                                                 .unit = -1,
                                                 .repair = true};
-static const scree_record shape_record = {"a shape", FIELDS(shape_fields), sizeof(scree_plan_shape),
-                                          &shape_defaults, check_shape};
+static const scree_record shape_record =
+    SCREE_RECORD("a shape", shape_fields, shape_defaults, check_shape);
 
 /* ---- geometry ---- */
 
-#define AT(member) offsetof(scree_plan_turn, member)
+#define RECORD scree_plan_turn
 static const scree_field turn_fields[] = {
-    {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "", NULL},
-    {"angle_deg", SCREE_FIELD_REAL, AT(angle_deg), -360, 360, "deg", "right-handed about the axis",
-     NULL},
+    VECTOR(axis, 0, 0, "", ""),
+    REAL(angle_deg, -360, 360, "deg", "right-handed about the axis"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_turn(const scree_reader *r, const void *record) {
   const scree_plan_turn *t = record;
   return scree_plan_check_direction(r, &t->place, "axis", t->axis);
 }
 static const scree_plan_turn turn_defaults = {{0}, {0, 0, 1}, 0};
-static const scree_record turn_record = {"a turn", FIELDS(turn_fields), sizeof(scree_plan_turn),
-                                         &turn_defaults, check_turn};
+static const scree_record turn_record =
+    SCREE_RECORD("a turn", turn_fields, turn_defaults, check_turn);
 
-#define AT(member) offsetof(scree_plan_disc, member)
+#define RECORD scree_plan_disc
 static const scree_field disc_fields[] = {
-    {"radius", SCREE_FIELD_REAL, AT(radius), 1e-9, 1e6, "m", "", NULL},
-    {"normal", SCREE_FIELD_VECTOR, AT(normal), 0, 0, "", "", NULL},
+    REAL(radius, 1e-9, 1e6, "m", ""),
+    VECTOR(normal, 0, 0, "", ""),
 };
-#undef AT
+#undef RECORD
 static scree_status check_disc(const scree_reader *r, const void *record) {
   const scree_plan_disc *d = record;
   if (!given(&d->radius)) return scree_fail_place(r, &d->place, "needs a radius");
   return scree_plan_check_direction(r, &d->place, "normal", d->normal);
 }
 static const scree_plan_disc disc_defaults = {{0}, {0, 0, 1}, NAN};
-static const scree_record disc_record = {"a disc", FIELDS(disc_fields), sizeof(scree_plan_disc),
-                                         &disc_defaults, check_disc};
+static const scree_record disc_record =
+    SCREE_RECORD("a disc", disc_fields, disc_defaults, check_disc);
 
-#define AT(member) offsetof(scree_plan_cylinder, member)
+#define RECORD scree_plan_cylinder
 static const scree_field cylinder_fields[] = {
-    {"radius", SCREE_FIELD_REAL, AT(radius), 1e-9, 1e6, "m",
-     "inside; of geometry with layers in it not given: as wide as what they pour will be high",
-     NULL},
-    {"length", SCREE_FIELD_REAL, AT(length), 0, 1e6, "m", "along the axis; of geometry 0: endless",
-     NULL},
-    {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "", NULL},
-    {"at", SCREE_FIELD_VECTOR, AT(at), -1e6, 1e6, "m",
-     "of a region: the middle of the end it begins at", NULL},
+    REAL(radius, 1e-9, 1e6, "m",
+         "inside; of geometry with layers in it not given: as wide as what they pour will be high"),
+    REAL(length, 0, 1e6, "m", "along the axis; of geometry 0: endless"),
+    VECTOR(axis, 0, 0, "", ""),
+    VECTOR(at, -1e6, 1e6, "m", "of a region: the middle of the end it begins at"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_cylinder(const scree_reader *r, const void *record) {
   const scree_plan_cylinder *c = record;
   return scree_plan_check_direction(r, &c->place, "axis", c->axis);
 }
 static const scree_plan_cylinder cylinder_defaults = {{0}, NONE, {0, 0, 1}, NAN, 0};
-const scree_record scree_plan_cylinder_record = {"a cylinder", FIELDS(cylinder_fields),
-                                                 sizeof(scree_plan_cylinder), &cylinder_defaults,
-                                                 check_cylinder};
+const scree_record scree_plan_cylinder_record =
+    SCREE_RECORD("a cylinder", cylinder_fields, cylinder_defaults, check_cylinder);
 
-#define AT(member) offsetof(scree_plan_box, member)
+#define RECORD scree_plan_box
 static const scree_field box_fields[] = {
-    {"min", SCREE_FIELD_VECTOR, AT(min), -1e6, 1e6, "m", "corner", NULL},
-    {"max", SCREE_FIELD_VECTOR, AT(max), -1e6, 1e6, "m", "opposite corner", NULL},
+    VECTOR(min, -1e6, 1e6, "m", "corner"),
+    VECTOR(max, -1e6, 1e6, "m", "opposite corner"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_corners(const scree_reader *r, const scree_place *place,
                                   const double *min, const double *max) {
   if (!given(min) || !given(max))
@@ -270,19 +253,19 @@ static scree_status check_box(const scree_reader *r, const void *record) {
   return check_corners(r, &b->place, b->min, b->max);
 }
 static const scree_plan_box box_defaults = {{0}, NONE, NONE};
-const scree_record scree_plan_box_record = {"a box", FIELDS(box_fields), sizeof(scree_plan_box),
-                                            &box_defaults, check_box};
+const scree_record scree_plan_box_record =
+    SCREE_RECORD("a box", box_fields, box_defaults, check_box);
 
-#define AT(member) offsetof(scree_plan_shaft, member)
+#define RECORD scree_plan_shaft
 static const scree_field shaft_fields[] = {
-    {"width", SCREE_FIELD_REAL, AT(width), 1e-9, 1e6, "m",
-     "inside, along x; with layers in it not given: as wide as what they pour will be high", NULL},
-    {"depth", SCREE_FIELD_REAL, AT(depth), 1e-9, 1e6, "m", "along y; not given: the width", NULL},
+    REAL(width, 1e-9, 1e6, "m",
+         "inside, along x; with layers in it not given: as wide as what they pour will be high"),
+    REAL(depth, 1e-9, 1e6, "m", "along y; not given: the width"),
 };
-#undef AT
+#undef RECORD
 static const scree_plan_shaft shaft_defaults = {{0}, NAN, NAN};
-static const scree_record shaft_record = {"a shaft", FIELDS(shaft_fields), sizeof(scree_plan_shaft),
-                                          &shaft_defaults, NULL};
+static const scree_record shaft_record =
+    SCREE_RECORD("a shaft", shaft_fields, shaft_defaults, NULL);
 
 scree_status scree_plan_check_window(const scree_reader *r, const scree_place *place, double from,
                                      double until) {
@@ -292,42 +275,32 @@ scree_status scree_plan_check_window(const scree_reader *r, const scree_place *p
 
 /* ---- geometry, whole ---- */
 
-#define AT(member) offsetof(scree_plan_geometry, member)
+#define RECORD scree_plan_geometry
 static const scree_field geometry_fields[] = {
-    {"file", SCREE_FIELD_TEXTS, AT(file), 0, 0, "", "a mesh, or several that move together", NULL},
-    {"box", SCREE_FIELD_VECTOR, AT(box), 1e-9, 1e6, "m", "three sides, about `at`", NULL},
-    {"plane", SCREE_FIELD_VECTOR, AT(plane), 0, 0, "", "normal, out of the solid", NULL},
-    {"disc", SCREE_FIELD_RECORD, AT(disc), 0, 0, "", "", &disc_record},
-    {"cylinder", SCREE_FIELD_RECORD, AT(cylinder), 0, 0, "", "a sheet from `at` along its axis",
-     &scree_plan_cylinder_record},
-    {"shaft", SCREE_FIELD_RECORD, AT(shaft), 0, 0, "", "four endless walls about z", &shaft_record},
-    {"loop", SCREE_FIELD_RECORD, AT(loop), 0, 0, "",
-     "a sheet round two wheels, one of them at `at`", &scree_plan_loop_record},
-    {"screw", SCREE_FIELD_RECORD, AT(screw), 0, 0, "", "a flight on a shaft",
-     &scree_plan_screw_record},
-    {"sieve", SCREE_FIELD_RECORD, AT(sieve), 0, 0, "", "a plate with round holes, flat or bent",
-     &scree_plan_sieve_record},
-    {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, SCREE_PLAN_UNITS, "of the file's lengths", NULL},
-    {"at", SCREE_FIELD_VECTOR, AT(at), -1e6, 1e6, "m", "where its origin goes", NULL},
-    {"turn", SCREE_FIELD_RECORD, AT(turn), 0, 0, "", "about its origin, before it goes there",
-     &turn_record},
-    {"side", SCREE_FIELD_WORD, AT(side), 0, 0, "auto|outside|inside|both",
-     "of a closed mesh or box: where bodies are; auto: where the inlets are", NULL},
-    {"material", SCREE_FIELD_TEXT, AT(material), 0, 0, "", "", NULL},
-    {"copies", SCREE_FIELD_RECORD, AT(copies), 0, 0, "", "of it, about an axis or along a chain",
-     &scree_plan_copies_record},
-    {"motion", SCREE_FIELD_LIST, AT(motion), 0, 0, "", "in this order", &scree_plan_motion_record},
-    {"slide", SCREE_FIELD_RECORD, AT(slide), 0, 0, "", "moved by forces along a direction",
-     &scree_plan_slide_record},
-    {"hinge", SCREE_FIELD_RECORD, AT(hinge), 0, 0, "", "turned by forces about an axis",
-     &scree_plan_hinge_record},
-    {"surface_velocity", SCREE_FIELD_VECTOR, AT(surface_velocity), -1e3, 1e3, "m/s",
-     "of a belt that stays where it is", NULL},
-    {"belt", SCREE_FIELD_RECORD, AT(belt), 0, 0, "",
-     "of a file or loop that is closed about an axis: its surface runs round",
-     &scree_plan_belt_record},
+    TEXTS(file, "a mesh, or several that move together"),
+    VECTOR(box, 1e-9, 1e6, "m", "three sides, about `at`"),
+    VECTOR(plane, 0, 0, "", "normal, out of the solid"),
+    GROUP(disc, "", &disc_record),
+    GROUP(cylinder, "a sheet from `at` along its axis", &scree_plan_cylinder_record),
+    GROUP(shaft, "four endless walls about z", &shaft_record),
+    GROUP(loop, "a sheet round two wheels, one of them at `at`", &scree_plan_loop_record),
+    GROUP(screw, "a flight on a shaft", &scree_plan_screw_record),
+    GROUP(sieve, "a plate with round holes, flat or bent", &scree_plan_sieve_record),
+    WORD(unit, SCREE_PLAN_UNITS, "of the file's lengths"),
+    VECTOR(at, -1e6, 1e6, "m", "where its origin goes"),
+    GROUP(turn, "about its origin, before it goes there", &turn_record),
+    WORD(side, "auto|outside|inside|both",
+         "of a closed mesh or box: where bodies are; auto: where the inlets are"),
+    TEXT(material, ""),
+    GROUP(copies, "of it, about an axis or along a chain", &scree_plan_copies_record),
+    LIST(motion, "in this order", &scree_plan_motion_record),
+    GROUP(slide, "moved by forces along a direction", &scree_plan_slide_record),
+    GROUP(hinge, "turned by forces about an axis", &scree_plan_hinge_record),
+    VECTOR(surface_velocity, -1e3, 1e3, "m/s", "of a belt that stays where it is"),
+    GROUP(belt, "of a file or loop that is closed about an axis: its surface runs round",
+          &scree_plan_belt_record),
 };
-#undef AT
+#undef RECORD
 static scree_status check_geometry(const scree_reader *r, const void *record) {
   const scree_plan_geometry *g = record;
   const bool there[] = {g->file.count > 0, given(g->box),       given(g->plane),
@@ -368,29 +341,25 @@ static scree_status check_geometry(const scree_reader *r, const void *record) {
 }
 static const scree_plan_geometry geometry_defaults = {
     .box = NONE, .plane = NONE, .surface_velocity = NONE, .unit = 2};
-static const scree_record geometry_record = {"geometry", FIELDS(geometry_fields),
-                                             sizeof(scree_plan_geometry), &geometry_defaults,
-                                             check_geometry};
+static const scree_record geometry_record =
+    SCREE_RECORD("geometry", geometry_fields, geometry_defaults, check_geometry);
 
 /* ---- inlets and outlets ---- */
 
-#define AT(member) offsetof(scree_plan_layers, member)
+#define RECORD scree_plan_layers
 static const scree_field layers_fields[] = {
-    {"packed", SCREE_FIELD_WORD, AT(packed), 0, 0, "random|grid",
-     "as many as random places hold, or one in every cell of a square grid", NULL},
-    {"pack_time", SCREE_FIELD_REAL, AT(pack_time), 0, 1e6, "s",
-     "in which all enter; not given: each layer as the one before has made room by falling", NULL},
-    {"in", SCREE_FIELD_TEXT, AT(in), 0, 0, "",
-     "a cylinder or shaft that they fill, in place of a box or cylinder of their own", NULL},
-    {"begin", SCREE_FIELD_WORD, AT(begin), 0, 0, "heap|top",
-     "in it: from near its bottom, or above where all will lie loosely", NULL},
-    {"bottom", SCREE_FIELD_REAL, AT(bottom), 0, 1e6, "m",
-     "from near its bottom: height of the first; not given: as `above`", NULL},
-    {"above", SCREE_FIELD_REAL, AT(above), 0, 1e3, "m", "the highest body, at least", NULL},
-    {"clearance", SCREE_FIELD_REAL, AT(clearance), 0, 1e3, "m",
-     "kept free around a body; not given: half a hundredth of the mean size", NULL},
+    WORD(packed, "random|grid",
+         "as many as random places hold, or one in every cell of a square grid"),
+    REAL(pack_time, 0, 1e6, "s",
+         "in which all enter; not given: each layer as the one before has made room by falling"),
+    TEXT(in, "a cylinder or shaft that they fill, in place of a box or cylinder of their own"),
+    WORD(begin, "heap|top", "in it: from near its bottom, or above where all will lie loosely"),
+    REAL(bottom, 0, 1e6, "m", "from near its bottom: height of the first; not given: as `above`"),
+    REAL(above, 0, 1e3, "m", "the highest body, at least"),
+    REAL(clearance, 0, 1e3, "m",
+         "kept free around a body; not given: half a hundredth of the mean size"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_layers(const scree_reader *r, const void *record) {
   const scree_plan_layers *l = record;
   if (!l->packed) return SCREE_OK;
@@ -402,29 +371,26 @@ static scree_status check_layers(const scree_reader *r, const void *record) {
 }
 static const scree_plan_layers layers_defaults = {
     .pack_time = NAN, .bottom = NAN, .clearance = NAN};
-static const scree_record layers_record = {
-    "layers", FIELDS(layers_fields), sizeof(scree_plan_layers), &layers_defaults, check_layers};
+static const scree_record layers_record =
+    SCREE_RECORD("layers", layers_fields, layers_defaults, check_layers);
 
-#define AT(member) offsetof(scree_plan_inlet, member)
+#define RECORD scree_plan_inlet
 static const scree_field inlet_fields[] = {
-    {"box", SCREE_FIELD_RECORD, AT(box), 0, 0, "", "bodies begin wholly inside",
-     &scree_plan_box_record},
-    {"cylinder", SCREE_FIELD_RECORD, AT(cylinder), 0, 0, "", "likewise",
-     &scree_plan_cylinder_record},
-    {"shapes", SCREE_FIELD_WEIGHTS, AT(shapes), 0, 1e12, "", "and their shares by number", NULL},
-    {"rate", SCREE_FIELD_REAL, AT(rate), 0, 1e9, "1/s", "bodies a second", NULL},
-    {"mass_rate", SCREE_FIELD_REAL, AT(mass_rate), 0, 1e9, "kg/s", "or mass a second", NULL},
-    {"count", SCREE_FIELD_COUNT, AT(count), 1, 1e9, "",
-     "at most so many; without a rate as soon as there is room", NULL},
+    GROUP(box, "bodies begin wholly inside", &scree_plan_box_record),
+    GROUP(cylinder, "likewise", &scree_plan_cylinder_record),
+    WEIGHTS(shapes, 0, 1e12, "", "and their shares by number"),
+    REAL(rate, 0, 1e9, "1/s", "bodies a second"),
+    REAL(mass_rate, 0, 1e9, "kg/s", "or mass a second"),
+    COUNT(count, 1, 1e9, "at most so many; without a rate as soon as there is room"),
     WINDOW(scree_plan_inlet),
-    {"velocity", SCREE_FIELD_VECTOR, AT(velocity), -1e3, 1e3, "m/s", "on entering", NULL},
-    {"orientation", SCREE_FIELD_WORD, AT(orientation), 0, 0, "random|fixed",
-     "fixed: axes as in the shape's file", NULL},
-    {"layers", SCREE_FIELD_RECORD, AT(layers), 0, 0, "",
-     "batches, each above all that is there; the region is what they cover and where they begin",
-     &layers_record},
+    VECTOR(velocity, -1e3, 1e3, "m/s", "on entering"),
+    WORD(orientation, "random|fixed", "fixed: axes as in the shape's file"),
+    GROUP(
+        layers,
+        "batches, each above all that is there; the region is what they cover and where they begin",
+        &layers_record),
 };
-#undef AT
+#undef RECORD
 static scree_status check_layered(const scree_reader *r, const scree_plan_inlet *i) {
   const scree_plan_cylinder *c = i->cylinder;
   if (!i->layers->in && (i->layers->begin || given(&i->layers->bottom)))
@@ -466,33 +432,31 @@ static scree_status check_inlet(const scree_reader *r, const void *record) {
   return scree_plan_check_window(r, &i->place, i->from, i->until);
 }
 static const scree_plan_inlet inlet_defaults = {.rate = NAN, .mass_rate = NAN, .until = NAN};
-static const scree_record inlet_record = {"an inlet", FIELDS(inlet_fields),
-                                          sizeof(scree_plan_inlet), &inlet_defaults, check_inlet};
+static const scree_record inlet_record =
+    SCREE_RECORD("an inlet", inlet_fields, inlet_defaults, check_inlet);
 
-#define AT(member) offsetof(scree_plan_outlet, member)
+#define RECORD scree_plan_outlet
 static const scree_field outlet_fields[] = {
-    {"box", SCREE_FIELD_RECORD, AT(box), 0, 0, "", "bodies whose centre is inside are taken out",
-     &scree_plan_box_record},
+    GROUP(box, "bodies whose centre is inside are taken out", &scree_plan_box_record),
     WINDOW(scree_plan_outlet),
 };
-#undef AT
+#undef RECORD
 static scree_status check_outlet(const scree_reader *r, const void *record) {
   const scree_plan_outlet *o = record;
   if (!o->box) return scree_fail_place(r, &o->place, "needs a box: {min: ..., max: ...}");
   return scree_plan_check_window(r, &o->place, o->from, o->until);
 }
 static const scree_plan_outlet outlet_defaults = {.until = NAN};
-static const scree_record outlet_record = {
-    "an outlet", FIELDS(outlet_fields), sizeof(scree_plan_outlet), &outlet_defaults, check_outlet};
+static const scree_record outlet_record =
+    SCREE_RECORD("an outlet", outlet_fields, outlet_defaults, check_outlet);
 
-#define AT(member) offsetof(scree_plan_domain, member)
+#define RECORD scree_plan_domain
 static const scree_field domain_fields[] = {
-    {"min", SCREE_FIELD_VECTOR, AT(min), -1e9, 1e9, "m", "corner", NULL},
-    {"max", SCREE_FIELD_VECTOR, AT(max), -1e9, 1e9, "m", "opposite corner", NULL},
-    {"periodic", SCREE_FIELD_TEXTS, AT(periodic), 0, 0, "",
-     "axes along which what leaves enters again", NULL},
+    VECTOR(min, -1e9, 1e9, "m", "corner"),
+    VECTOR(max, -1e9, 1e9, "m", "opposite corner"),
+    TEXTS(periodic, "axes along which what leaves enters again"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_domain(const scree_reader *r, const void *record) {
   const scree_plan_domain *d = record;
   SCREE_TRY(check_corners(r, &d->place, d->min, d->max));
@@ -506,27 +470,24 @@ static scree_status check_domain(const scree_reader *r, const void *record) {
   return SCREE_OK;
 }
 static const scree_plan_domain domain_defaults = {{0}, NONE, NONE, {0}};
-static const scree_record domain_record = {
-    "the domain", FIELDS(domain_fields), sizeof(scree_plan_domain), &domain_defaults, check_domain};
+static const scree_record domain_record =
+    SCREE_RECORD("the domain", domain_fields, domain_defaults, check_domain);
 
 /* ---- the rest ---- */
 
-#define AT(member) offsetof(scree_plan_contact, member)
+#define RECORD scree_plan_contact
 static const scree_field contact_fields[] = {
-    {"law", SCREE_FIELD_WORD, AT(law), 0, 0, "linear|hysteretic|hertz",
-     "docs/background/physics.md", NULL},
-    {"steps", SCREE_FIELD_REAL, AT(steps), 15, 1e6, "",
-     "time steps in a quarter of the fastest contact's period", NULL},
-    {"stiffness_factor", SCREE_FIELD_REAL, AT(stiffness_factor), 1e-9, 1e9, "",
-     "multiplies every stiffness: below 1 steps are longer and overlaps deeper", NULL},
-    {"tangential_ratio", SCREE_FIELD_REAL, AT(tangential_ratio), 1e-6, 1, "",
-     "tangential over normal stiffness", NULL},
-    {"time_step", SCREE_FIELD_REAL, AT(time_step), 0, 1, "s", "0: by steps", NULL},
+    WORD(law, "linear|hysteretic|hertz", "docs/background/physics.md"),
+    REAL(steps, 15, 1e6, "", "time steps in a quarter of the fastest contact's period"),
+    REAL(stiffness_factor, 1e-9, 1e9, "",
+         "multiplies every stiffness: below 1 steps are longer and overlaps deeper"),
+    REAL(tangential_ratio, 1e-6, 1, "", "tangential over normal stiffness"),
+    REAL(time_step, 0, 1, "s", "0: by steps"),
 };
-#undef AT
+#undef RECORD
 static const scree_plan_contact contact_defaults = {{0}, 0, 20, 1, 1, 0};
-static const scree_record contact_record = {"contact", FIELDS(contact_fields),
-                                            sizeof(scree_plan_contact), &contact_defaults, NULL};
+static const scree_record contact_record =
+    SCREE_RECORD("contact", contact_fields, contact_defaults, NULL);
 
 static const scree_field bodies_fields[] = {
     {"file", SCREE_FIELD_TEXT, offsetof(scree_plan_bodies, file), 0, 0, "",
@@ -537,37 +498,31 @@ static scree_status check_bodies(const scree_reader *r, const void *record) {
   return b->file ? SCREE_OK : scree_fail_place(r, &b->place, "needs a file");
 }
 static const scree_plan_bodies bodies_defaults = {{0}, NULL};
-static const scree_record bodies_record = {
-    "bodies", FIELDS(bodies_fields), sizeof(scree_plan_bodies), &bodies_defaults, check_bodies};
+static const scree_record bodies_record =
+    SCREE_RECORD("bodies", bodies_fields, bodies_defaults, check_bodies);
 
-#define AT(member) offsetof(scree_plan_stop, member)
+#define RECORD scree_plan_stop
 static const scree_field stop_fields[] = {
-    {"still", SCREE_FIELD_REAL, AT(still), 0, 1e9, "J",
-     "all have entered and move with less energy a body", NULL},
-    {"rest", SCREE_FIELD_REAL, AT(rest), 0, 1e9, "s", "for so long; not given: for ten ticks",
-     NULL},
-    {"filled", SCREE_FIELD_REAL, AT(filled), 0, 1e9, "s", "so long after all have entered", NULL},
-    {"empty", SCREE_FIELD_FLAG, AT(empty), 0, 0, "", "all have entered and left", NULL},
-    {"after", SCREE_FIELD_REAL, AT(after), 0, 1e9, "s", "not before", NULL},
+    REAL(still, 0, 1e9, "J", "all have entered and move with less energy a body"),
+    REAL(rest, 0, 1e9, "s", "for so long; not given: for ten ticks"),
+    REAL(filled, 0, 1e9, "s", "so long after all have entered"),
+    FLAG(empty, "all have entered and left"),
+    REAL(after, 0, 1e9, "s", "not before"),
 };
-#undef AT
+#undef RECORD
 static const scree_plan_stop stop_defaults = {{0}, NAN, NAN, NAN, 0, false};
-static const scree_record stop_record = {"stop", FIELDS(stop_fields), sizeof(scree_plan_stop),
-                                         &stop_defaults, NULL};
+static const scree_record stop_record = SCREE_RECORD("stop", stop_fields, stop_defaults, NULL);
 
-#define AT(member) offsetof(scree_plan_phase, member)
+#define RECORD scree_plan_phase
 static const scree_field phase_fields[] = {
-    {"time", SCREE_FIELD_REAL, AT(time), 0, 1e9, "s", "it lasts, at most", NULL},
-    {"filled", SCREE_FIELD_FLAG, AT(filled), 0, 0, "",
-     "it lasts until all have entered, however long", NULL},
-    {"still", SCREE_FIELD_REAL, AT(still), 0, 1e9, "J",
-     "it ends early when all move with less energy a body", NULL},
-    {"rest", SCREE_FIELD_REAL, AT(rest), 0, 1e9, "s", "for so long", NULL},
-    {"early", SCREE_FIELD_FLAG, AT(early), 0, 0, "", "false: `still` does not end it", NULL},
-    {"clear", SCREE_FIELD_TEXT, AT(clear), 0, 0, "",
-     "a geometry: it ends early only when that is above all bodies", NULL},
+    REAL(time, 0, 1e9, "s", "it lasts, at most"),
+    FLAG(filled, "it lasts until all have entered, however long"),
+    REAL(still, 0, 1e9, "J", "it ends early when all move with less energy a body"),
+    REAL(rest, 0, 1e9, "s", "for so long"),
+    FLAG(early, "false: `still` does not end it"),
+    TEXT(clear, "a geometry: it ends early only when that is above all bodies"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_phase(const scree_reader *r, const void *record) {
   const scree_plan_phase *p = record;
   if (!given(&p->time)) return scree_fail_place(r, &p->place, "needs a time");
@@ -576,41 +531,37 @@ static scree_status check_phase(const scree_reader *r, const void *record) {
   return SCREE_OK;
 }
 static const scree_plan_phase phase_defaults = {{0}, NAN, NAN, 0.1, false, true, NULL};
-static const scree_record phase_record = {"a phase", FIELDS(phase_fields), sizeof(scree_plan_phase),
-                                          &phase_defaults, check_phase};
+static const scree_record phase_record =
+    SCREE_RECORD("a phase", phase_fields, phase_defaults, check_phase);
 
-#define AT(member) offsetof(scree_plan_output, member)
+#define RECORD scree_plan_output
 static const scree_field output_fields[] = {
-    {"frames", SCREE_FIELD_REAL, AT(frames), 0, 1e9, "s", "between files for ParaView; 0: none",
-     NULL},
-    {"bodies", SCREE_FIELD_WORD, AT(bodies), 0, 0, "instances|surfaces",
-     "of files for ParaView: a point for each, and each shape once; or all their triangles", NULL},
-    {"series", SCREE_FIELD_REAL, AT(series), 1e-9, 1e9, "s", "between the lines of series.csv",
-     NULL},
-    {"motion", SCREE_FIELD_REAL, AT(motion), 0, 1e9, "s",
-     "between moments of report.html; 0: a 240th of the time", NULL},
-    {"checkpoint", SCREE_FIELD_REAL, AT(checkpoint), 0.01, 1e9, "s", "of the clock", NULL},
+    REAL(frames, 0, 1e9, "s", "between files for ParaView; 0: none"),
+    WORD(bodies, "instances|surfaces",
+         "of files for ParaView: a point for each, and each shape once; or all their triangles"),
+    REAL(series, 1e-9, 1e9, "s", "between the lines of series.csv"),
+    REAL(motion, 0, 1e9, "s", "between moments of report.html; 0: a 240th of the time"),
+    REAL(checkpoint, 0.01, 1e9, "s", "of the clock"),
 };
-#undef AT
+#undef RECORD
 static const scree_plan_output output_defaults = {{0}, 0, 0.01, 60, 0, 0};
-static const scree_record output_record = {"output", FIELDS(output_fields),
-                                           sizeof(scree_plan_output), &output_defaults, NULL};
+static const scree_record output_record =
+    SCREE_RECORD("output", output_fields, output_defaults, NULL);
 
 /* ---- names for what is set together ---- */
 
-#define AT(member) offsetof(scree_scene_parameter, member)
+#define RECORD scree_scene_parameter
 static const scree_field parameter_fields[] = {
-    {"name", SCREE_FIELD_TEXT, AT(name), 0, 0, "", "", NULL},
-    {"sets", SCREE_FIELD_TEXTS, AT(sets), 0, 0, "", "fields; * is every name of a group", NULL},
-    {"factor", SCREE_FIELD_REAL, AT(factor), -1e9, 1e9, "", "times the value", NULL},
-    {"least", SCREE_FIELD_REAL, AT(least), -1e300, 1e300, "", "of the value", NULL},
-    {"most", SCREE_FIELD_REAL, AT(most), -1e300, 1e300, "", "", NULL},
-    {"below", SCREE_FIELD_REAL, AT(below), 1e-9, 1e3, "m",
-     "where the largest shape is smaller, the fields shrink", NULL},
-    {"power", SCREE_FIELD_REAL, AT(power), 0, 10, "",
-     "of the share of that size that they shrink by; 0, once they are set: they do not", NULL},
+    TEXT(name, ""),
+    TEXTS(sets, "fields; * is every name of a group"),
+    REAL(factor, -1e9, 1e9, "", "times the value"),
+    REAL(least, -1e300, 1e300, "", "of the value"),
+    REAL(most, -1e300, 1e300, "", ""),
+    REAL(below, 1e-9, 1e3, "m", "where the largest shape is smaller, the fields shrink"),
+    REAL(power, 0, 10, "",
+         "of the share of that size that they shrink by; 0, once they are set: they do not"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_parameter(const scree_reader *r, const void *record) {
   const scree_scene_parameter *p = record;
   if (!p->name || !p->sets.count)
@@ -623,61 +574,56 @@ static scree_status check_parameter(const scree_reader *r, const void *record) {
 }
 static const scree_scene_parameter parameter_defaults = {
     .factor = NAN, .least = NAN, .most = NAN, .below = NAN, .power = NAN};
-static const scree_record parameter_record = {"a parameter", FIELDS(parameter_fields),
-                                              sizeof(scree_scene_parameter), &parameter_defaults,
-                                              check_parameter};
+static const scree_record parameter_record =
+    SCREE_RECORD("a parameter", parameter_fields, parameter_defaults, check_parameter);
 
-#define AT(member) offsetof(scree_plan_preset, member)
+#define RECORD scree_plan_preset
 static const scree_field preset_fields[] = {
-    {"name", SCREE_FIELD_TEXT, AT(name), 0, 0, "", "", NULL},
-    {"about", SCREE_FIELD_TEXT, AT(about), 0, 0, "", "", NULL},
-    {"set", SCREE_FIELD_VALUES, AT(set), 0, 0, "", "values of parameters and fields", NULL},
+    TEXT(name, ""),
+    TEXT(about, ""),
+    VALUES(set, "values of parameters and fields"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_preset(const scree_reader *r, const void *record) {
   const scree_plan_preset *p = record;
   return p->name ? SCREE_OK : scree_fail_place(r, &p->place, "needs a name");
 }
 static const scree_plan_preset preset_defaults = {.name = NULL};
-static const scree_record preset_record = {
-    "a preset", FIELDS(preset_fields), sizeof(scree_plan_preset), &preset_defaults, check_preset};
+static const scree_record preset_record =
+    SCREE_RECORD("a preset", preset_fields, preset_defaults, check_preset);
 
-#define AT(member) offsetof(scree_plan, member)
+#define RECORD scree_plan
 static const scree_field plan_fields[] = {
-    {"title", SCREE_FIELD_TEXT, AT(title), 0, 0, "", "", NULL},
-    {"preset", SCREE_FIELD_TEXT, AT(preset), 0, 0, "", "of those below, whose values it has", NULL},
-    {"time", SCREE_FIELD_REAL, AT(time), 1e-9, 1e9, "s", "simulated, at most", NULL},
-    {"seed", SCREE_FIELD_SEED, AT(seed), 0, 0, "", "of places, orientations and order", NULL},
-    {"gravity", SCREE_FIELD_VECTOR, AT(gravity), -1e3, 1e3, "m/s2", "", NULL},
-    {"tick", SCREE_FIELD_COUNT, AT(tick), 1, 1e6, "",
-     "steps between looks at inlets, outlets, flows and the end; not given: by the bodies' size",
-     NULL},
-    {"contact", SCREE_FIELD_RECORD, AT(contact), 0, 0, "", "", &contact_record},
-    {"materials", SCREE_FIELD_NAMED, AT(materials), 0, 0, "", "", &material_record},
-    {"pairs", SCREE_FIELD_LIST, AT(pairs), 0, 0, "", "", &pair_record},
-    {"shapes", SCREE_FIELD_NAMED, AT(shapes), 0, 0, "", "", &shape_record},
-    {"geometry", SCREE_FIELD_NAMED, AT(geometry), 0, 0, "", "", &geometry_record},
-    {"bodies", SCREE_FIELD_RECORD, AT(bodies), 0, 0, "", "that are there from the start",
-     &bodies_record},
-    {"inlets", SCREE_FIELD_NAMED, AT(inlets), 0, 0, "", "", &inlet_record},
-    {"outlets", SCREE_FIELD_NAMED, AT(outlets), 0, 0, "", "", &outlet_record},
-    {"domain", SCREE_FIELD_RECORD, AT(domain), 0, 0, "", "what leaves it is taken out",
-     &domain_record},
-    {"sensors", SCREE_FIELD_NAMED, AT(sensors), 0, 0, "", "", &scree_plan_sensor_record},
-    {"forces", SCREE_FIELD_NAMED, AT(forces), 0, 0, "", "on bodies", &scree_plan_force_record},
-    {"phases", SCREE_FIELD_NAMED, AT(phases), 0, 0, "",
-     "follow each other; after the last the scene ends", &phase_record},
-    {"stop", SCREE_FIELD_RECORD, AT(stop), 0, 0, "", "what ends it before its time", &stop_record},
-    {"output", SCREE_FIELD_RECORD, AT(output), 0, 0, "", "", &output_record},
-    {"parameters", SCREE_FIELD_LIST, AT(parameters), 0, 0, "", "names for fields set together",
-     &parameter_record},
-    {"presets", SCREE_FIELD_LIST, AT(presets), 0, 0, "", "values for many", &preset_record},
+    TEXT(title, ""),
+    TEXT(preset, "of those below, whose values it has"),
+    REAL(time, 1e-9, 1e9, "s", "simulated, at most"),
+    SEED(seed, "of places, orientations and order"),
+    VECTOR(gravity, -1e3, 1e3, "m/s2", ""),
+    COUNT(tick, 1, 1e6,
+          "steps between looks at inlets, outlets, flows and the end; not given: by the bodies' "
+          "size"),
+    GROUP(contact, "", &contact_record),
+    NAMED(materials, "", &material_record),
+    LIST(pairs, "", &pair_record),
+    NAMED(shapes, "", &shape_record),
+    NAMED(geometry, "", &geometry_record),
+    GROUP(bodies, "that are there from the start", &bodies_record),
+    NAMED(inlets, "", &inlet_record),
+    NAMED(outlets, "", &outlet_record),
+    GROUP(domain, "what leaves it is taken out", &domain_record),
+    NAMED(sensors, "", &scree_plan_sensor_record),
+    NAMED(forces, "on bodies", &scree_plan_force_record),
+    NAMED(phases, "follow each other; after the last the scene ends", &phase_record),
+    GROUP(stop, "what ends it before its time", &stop_record),
+    GROUP(output, "", &output_record),
+    LIST(parameters, "names for fields set together", &parameter_record),
+    LIST(presets, "values for many", &preset_record),
 };
-#undef AT
+#undef RECORD
 
 static const scree_plan plan_defaults = {.time = NAN, .seed = 1, .gravity = {0, 0, -9.81}};
-const scree_record scree_plan_record = {"a scene", FIELDS(plan_fields), sizeof(scree_plan),
-                                        &plan_defaults, scree_plan_check};
+const scree_record scree_plan_record =
+    SCREE_RECORD("a scene", plan_fields, plan_defaults, scree_plan_check);
 
 /* Groups that may be left out, and then have their defaults. */
 static scree_status fill_in(const scree_reader *r, const scree_record *kind, void **record) {

@@ -1,13 +1,13 @@
 /* What the tables of fields of a scene share. */
 #pragma once
 
+#include "base/schema_rows.h"
 #include "scene/plan.h"
 
 #include <math.h>
 
 #define NONE                                                                                       \
   { NAN, NAN, NAN }
-#define FIELDS(table) (table), sizeof(table) / sizeof *(table)
 
 /* A window of time, of a record with `from` and `until`. */
 #define WINDOW(type)                                                                               \

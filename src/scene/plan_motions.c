@@ -3,16 +3,14 @@
 
 #include "base/vec.h"
 
-#define AT(member) offsetof(scree_plan_translate, member)
+#define RECORD scree_plan_translate
 static const scree_field translate_fields[] = {
-    {"velocity", SCREE_FIELD_VECTOR, AT(velocity), -1e3, 1e3, "m/s", "", NULL},
-    {"along", SCREE_FIELD_VECTOR, AT(along), 0, 0, "", "direction of what the table says", NULL},
-    {"table", SCREE_FIELD_TABLE, AT(table), 0, 0, "s|m/s",
-     "[time in s, speed in m/s], linear between", NULL},
-    {"positions", SCREE_FIELD_TABLE, AT(positions), 0, 0, "s|m",
-     "or [time in s, way in m], linear between", NULL},
+    VECTOR(velocity, -1e3, 1e3, "m/s", ""),
+    VECTOR(along, 0, 0, "", "direction of what the table says"),
+    TABLE(table, "s|m/s", "[time in s, speed in m/s], linear between"),
+    TABLE(positions, "s|m", "or [time in s, way in m], linear between"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_translate(const scree_reader *r, const void *record) {
   const scree_plan_translate *t = record;
   const bool there[] = {given(t->velocity), t->table.count > 0, t->positions.count > 0};
@@ -23,25 +21,21 @@ static scree_status check_translate(const scree_reader *r, const void *record) {
   return scree_plan_check_direction(r, &t->place, "along", t->along);
 }
 static const scree_plan_translate translate_defaults = {{0}, NONE, NONE, {0}, {0}};
-static const scree_record translate_record = {"translate", FIELDS(translate_fields),
-                                              sizeof(scree_plan_translate), &translate_defaults,
-                                              check_translate};
+static const scree_record translate_record =
+    SCREE_RECORD("translate", translate_fields, translate_defaults, check_translate);
 
-#define AT(member) offsetof(scree_plan_rotate, member)
+#define RECORD scree_plan_rotate
 static const scree_field rotate_fields[] = {
-    {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "", NULL},
-    {"through", SCREE_FIELD_VECTOR, AT(through), -1e6, 1e6, "m", "a point of the axis", NULL},
-    {"speed", SCREE_FIELD_REAL, AT(speed), -1e4, 1e4, "rad/s", "right-handed about the axis", NULL},
-    {"table", SCREE_FIELD_TABLE, AT(table), 0, 0, "s|rad/s",
-     "[time in s, speed in rad/s], linear between", NULL},
-    {"positions", SCREE_FIELD_TABLE, AT(positions), 0, 0, "s|rad",
-     "or [time in s, angle in rad], linear between", NULL},
-    {"amplitude", SCREE_FIELD_REAL, AT(amplitude), 0, 1e3, "rad", "or it rocks so far both ways",
-     NULL},
-    {"frequency", SCREE_FIELD_REAL, AT(frequency), 0, 1e5, "Hz", "", NULL},
-    {"phase", SCREE_FIELD_REAL, AT(phase), -7, 7, "rad", "of the sine", NULL},
+    VECTOR(axis, 0, 0, "", ""),
+    VECTOR(through, -1e6, 1e6, "m", "a point of the axis"),
+    REAL(speed, -1e4, 1e4, "rad/s", "right-handed about the axis"),
+    TABLE(table, "s|rad/s", "[time in s, speed in rad/s], linear between"),
+    TABLE(positions, "s|rad", "or [time in s, angle in rad], linear between"),
+    REAL(amplitude, 0, 1e3, "rad", "or it rocks so far both ways"),
+    REAL(frequency, 0, 1e5, "Hz", ""),
+    REAL(phase, -7, 7, "rad", "of the sine"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_rotate(const scree_reader *r, const void *record) {
   const scree_plan_rotate *t = record;
   const bool there[] = {given(&t->speed), t->table.count > 0, t->positions.count > 0,
@@ -53,17 +47,17 @@ static scree_status check_rotate(const scree_reader *r, const void *record) {
 }
 static const scree_plan_rotate rotate_defaults = {
     .axis = {0, 0, 1}, .speed = NAN, .amplitude = NAN, .frequency = NAN};
-static const scree_record rotate_record = {
-    "rotate", FIELDS(rotate_fields), sizeof(scree_plan_rotate), &rotate_defaults, check_rotate};
+static const scree_record rotate_record =
+    SCREE_RECORD("rotate", rotate_fields, rotate_defaults, check_rotate);
 
-#define AT(member) offsetof(scree_plan_vibrate, member)
+#define RECORD scree_plan_vibrate
 static const scree_field vibrate_fields[] = {
-    {"along", SCREE_FIELD_VECTOR, AT(along), 0, 0, "", "", NULL},
-    {"amplitude", SCREE_FIELD_REAL, AT(amplitude), 0, 1e3, "m", "", NULL},
-    {"frequency", SCREE_FIELD_REAL, AT(frequency), 0, 1e5, "Hz", "", NULL},
-    {"phase", SCREE_FIELD_REAL, AT(phase), -7, 7, "rad", "of the sine", NULL},
+    VECTOR(along, 0, 0, "", ""),
+    REAL(amplitude, 0, 1e3, "m", ""),
+    REAL(frequency, 0, 1e5, "Hz", ""),
+    REAL(phase, -7, 7, "rad", "of the sine"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_vibrate(const scree_reader *r, const void *record) {
   const scree_plan_vibrate *v = record;
   if (!given(&v->amplitude) || !given(&v->frequency))
@@ -71,19 +65,18 @@ static scree_status check_vibrate(const scree_reader *r, const void *record) {
   return scree_plan_check_direction(r, &v->place, "along", v->along);
 }
 static const scree_plan_vibrate vibrate_defaults = {{0}, {0, 0, 1}, NAN, NAN, 0};
-static const scree_record vibrate_record = {"vibrate", FIELDS(vibrate_fields),
-                                            sizeof(scree_plan_vibrate), &vibrate_defaults,
-                                            check_vibrate};
+static const scree_record vibrate_record =
+    SCREE_RECORD("vibrate", vibrate_fields, vibrate_defaults, check_vibrate);
 
-#define AT(member) offsetof(scree_plan_crank, member)
+#define RECORD scree_plan_crank
 static const scree_field crank_fields[] = {
-    {"along", SCREE_FIELD_VECTOR, AT(along), 0, 0, "", "away from the shaft", NULL},
-    {"radius", SCREE_FIELD_REAL, AT(radius), 1e-9, 1e3, "m", "of the crank: half the stroke", NULL},
-    {"rod", SCREE_FIELD_REAL, AT(rod), 1e-9, 1e6, "m", "its length, more than the radius", NULL},
-    {"speed", SCREE_FIELD_REAL, AT(speed), 1e-9, 1e5, "rad/s", "of the shaft", NULL},
-    {"phase", SCREE_FIELD_REAL, AT(phase), -7, 7, "rad", "at the start; 0: farthest out", NULL},
+    VECTOR(along, 0, 0, "", "away from the shaft"),
+    REAL(radius, 1e-9, 1e3, "m", "of the crank: half the stroke"),
+    REAL(rod, 1e-9, 1e6, "m", "its length, more than the radius"),
+    REAL(speed, 1e-9, 1e5, "rad/s", "of the shaft"),
+    REAL(phase, -7, 7, "rad", "at the start; 0: farthest out"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_crank(const scree_reader *r, const void *record) {
   const scree_plan_crank *c = record;
   if (!given(&c->radius) || !given(&c->rod) || !given(&c->speed))
@@ -94,8 +87,8 @@ static scree_status check_crank(const scree_reader *r, const void *record) {
   return scree_plan_check_direction(r, &c->place, "along", c->along);
 }
 static const scree_plan_crank crank_defaults = {{0}, {0, 0, 1}, NAN, NAN, NAN, 0};
-static const scree_record crank_record = {"a crank", FIELDS(crank_fields), sizeof(scree_plan_crank),
-                                          &crank_defaults, check_crank};
+static const scree_record crank_record =
+    SCREE_RECORD("a crank", crank_fields, crank_defaults, check_crank);
 
 static const scree_field travel_fields[] = {
     {"speed", SCREE_FIELD_REAL, offsetof(scree_plan_travel, speed), -1e3, 1e3, "m/s",
@@ -106,39 +99,35 @@ static scree_status check_travel(const scree_reader *r, const void *record) {
   return given(&t->speed) ? SCREE_OK : scree_fail_place(r, &t->place, "needs a speed");
 }
 static const scree_plan_travel travel_defaults = {{0}, NAN};
-static const scree_record travel_record = {
-    "round", FIELDS(travel_fields), sizeof(scree_plan_travel), &travel_defaults, check_travel};
+static const scree_record travel_record =
+    SCREE_RECORD("round", travel_fields, travel_defaults, check_travel);
 
-#define AT(member) offsetof(scree_plan_path, member)
+#define RECORD scree_plan_path
 static const scree_field path_fields[] = {
-    {"file", SCREE_FIELD_TEXT, AT(file), 0, 0, "",
-     "a table: t and any of x, y, z, angle_x, angle_y, angle_z, with units as `x [mm]`", NULL},
-    {"through", SCREE_FIELD_VECTOR, AT(through), -1e6, 1e6, "m",
-     "about which it turns, by angle_x first", NULL},
+    TEXT(file, "a table: t and any of x, y, z, angle_x, angle_y, angle_z, with units as `x [mm]`"),
+    VECTOR(through, -1e6, 1e6, "m", "about which it turns, by angle_x first"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_path(const scree_reader *r, const void *record) {
   const scree_plan_path *p = record;
   return p->file ? SCREE_OK : scree_fail_place(r, &p->place, "needs a file");
 }
 static const scree_plan_path path_defaults = {.file = NULL};
-static const scree_record path_record = {"a path", FIELDS(path_fields), sizeof(scree_plan_path),
-                                         &path_defaults, check_path};
+static const scree_record path_record =
+    SCREE_RECORD("a path", path_fields, path_defaults, check_path);
 
-#define AT(member) offsetof(scree_plan_motion, member)
+#define RECORD scree_plan_motion
 static const scree_field motion_fields[] = {
-    {"translate", SCREE_FIELD_RECORD, AT(translate), 0, 0, "", "", &translate_record},
-    {"rotate", SCREE_FIELD_RECORD, AT(rotate), 0, 0, "", "", &rotate_record},
-    {"vibrate", SCREE_FIELD_RECORD, AT(vibrate), 0, 0, "", "", &vibrate_record},
-    {"crank", SCREE_FIELD_RECORD, AT(crank), 0, 0, "", "to and fro by crank and rod",
-     &crank_record},
-    {"round", SCREE_FIELD_RECORD, AT(round), 0, 0, "", "of copies along a chain: with it",
-     &travel_record},
-    {"path", SCREE_FIELD_RECORD, AT(path), 0, 0, "", "by a table in a file", &path_record},
+    GROUP(translate, "", &translate_record),
+    GROUP(rotate, "", &rotate_record),
+    GROUP(vibrate, "", &vibrate_record),
+    GROUP(crank, "to and fro by crank and rod", &crank_record),
+    GROUP(round, "of copies along a chain: with it", &travel_record),
+    GROUP(path, "by a table in a file", &path_record),
     WINDOW(scree_plan_motion),
-    {"during", SCREE_FIELD_TEXT, AT(during), 0, 0, "", "a phase: only while it lasts", NULL},
+    TEXT(during, "a phase: only while it lasts"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_motion(const scree_reader *r, const void *record) {
   const scree_plan_motion *m = record;
   const bool there[] = {m->translate != NULL, m->rotate != NULL, m->vibrate != NULL,
@@ -156,5 +145,5 @@ static scree_status check_motion(const scree_reader *r, const void *record) {
   return status == SCREE_OK ? scree_plan_check_window(r, &m->place, m->from, m->until) : status;
 }
 static const scree_plan_motion motion_defaults = {.until = NAN};
-const scree_record scree_plan_motion_record = {
-    "a motion", FIELDS(motion_fields), sizeof(scree_plan_motion), &motion_defaults, check_motion};
+const scree_record scree_plan_motion_record =
+    SCREE_RECORD("a motion", motion_fields, motion_defaults, check_motion);

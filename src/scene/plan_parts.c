@@ -9,62 +9,56 @@ static scree_status check_servo(const scree_reader *r, const void *record) {
 }
 static const scree_plan_servo servo_defaults = {{0}, NAN, NAN};
 
-#define AT(member) offsetof(scree_plan_servo, member)
+#define RECORD scree_plan_servo
 static const scree_field servo_fields[] = {
-    {"force", SCREE_FIELD_REAL, AT(force), -1e12, 1e12, "N", "on bodies, along the slide", NULL},
-    {"speed", SCREE_FIELD_REAL, AT(speed), 1e-9, 1e3, "m/s", "at most", NULL},
+    REAL(force, -1e12, 1e12, "N", "on bodies, along the slide"),
+    REAL(speed, 1e-9, 1e3, "m/s", "at most"),
 };
 static const scree_field turning_servo_fields[] = {
-    {"torque", SCREE_FIELD_REAL, AT(force), -1e12, 1e12, "N m", "on bodies, about the hinge", NULL},
-    {"speed", SCREE_FIELD_REAL, AT(speed), 1e-9, 1e4, "rad/s", "at most", NULL},
+    {"torque", SCREE_FIELD_REAL, offsetof(RECORD, force), -1e12, 1e12, "N m",
+     "on bodies, about the hinge", NULL},
+    REAL(speed, 1e-9, 1e4, "rad/s", "at most"),
 };
-#undef AT
-static const scree_record servo_record = {"servo", FIELDS(servo_fields), sizeof(scree_plan_servo),
-                                          &servo_defaults, check_servo},
-                          turning_servo_record = {"servo", FIELDS(turning_servo_fields),
-                                                  sizeof(scree_plan_servo), &servo_defaults,
-                                                  check_servo};
+#undef RECORD
+static const scree_record servo_record =
+                              SCREE_RECORD("servo", servo_fields, servo_defaults, check_servo),
+                          turning_servo_record = SCREE_RECORD("servo", turning_servo_fields,
+                                                              servo_defaults, check_servo);
 
-#define AT(member) offsetof(scree_plan_part, member)
+#define RECORD scree_plan_part
 static const scree_field slide_fields[] = {
-    {"along", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "", NULL},
-    {"mass", SCREE_FIELD_REAL, AT(mass), 1e-9, 1e12, "kg", "", NULL},
-    {"spring", SCREE_FIELD_REAL, AT(spring), 0, 1e15, "N/m", "", NULL},
-    {"rest", SCREE_FIELD_REAL, AT(rest), -1e6, 1e6, "m", "way at which the spring is loose", NULL},
-    {"damper", SCREE_FIELD_REAL, AT(damper), 0, 1e15, "N s/m", "", NULL},
-    {"force", SCREE_FIELD_REAL, AT(force), -1e12, 1e12, "N", "that drives it", NULL},
-    {"amplitude", SCREE_FIELD_REAL, AT(amplitude), 0, 1e12, "N", "of a force that swings besides",
-     NULL},
-    {"frequency", SCREE_FIELD_REAL, AT(frequency), 0, 1e5, "Hz", "", NULL},
-    {"from", SCREE_FIELD_REAL, AT(from), 0, 1e9, "s", "held until then", NULL},
-    {"least", SCREE_FIELD_REAL, AT(least), -1e6, 1e6, "m", "where it stops; not given: nowhere",
-     NULL},
-    {"most", SCREE_FIELD_REAL, AT(most), -1e6, 1e6, "m", "likewise", NULL},
-    {"servo", SCREE_FIELD_RECORD, AT(servo), 0, 0, "", "instead of mass and forces", &servo_record},
+    {"along", SCREE_FIELD_VECTOR, offsetof(RECORD, axis), 0, 0, "", "", NULL},
+    REAL(mass, 1e-9, 1e12, "kg", ""),
+    REAL(spring, 0, 1e15, "N/m", ""),
+    REAL(rest, -1e6, 1e6, "m", "way at which the spring is loose"),
+    REAL(damper, 0, 1e15, "N s/m", ""),
+    REAL(force, -1e12, 1e12, "N", "that drives it"),
+    REAL(amplitude, 0, 1e12, "N", "of a force that swings besides"),
+    REAL(frequency, 0, 1e5, "Hz", ""),
+    REAL(from, 0, 1e9, "s", "held until then"),
+    REAL(least, -1e6, 1e6, "m", "where it stops; not given: nowhere"),
+    REAL(most, -1e6, 1e6, "m", "likewise"),
+    GROUP(servo, "instead of mass and forces", &servo_record),
 };
 static const scree_field hinge_fields[] = {
-    {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "", NULL},
-    {"through", SCREE_FIELD_VECTOR, AT(through), -1e6, 1e6, "m", "a point of the axis", NULL},
-    {"inertia", SCREE_FIELD_REAL, AT(inertia), 1e-15, 1e15, "kg m2", "about the axis", NULL},
-    {"mass", SCREE_FIELD_REAL, AT(mass), 0, 1e12, "kg", "for its weight", NULL},
-    {"centre", SCREE_FIELD_VECTOR, AT(centre), -1e6, 1e6, "m",
-     "of mass, at the start; not given: on the axis", NULL},
-    {"spring", SCREE_FIELD_REAL, AT(spring), 0, 1e15, "N m/rad", "", NULL},
-    {"rest", SCREE_FIELD_REAL, AT(rest), -1e6, 1e6, "rad", "angle at which the spring is loose",
+    VECTOR(axis, 0, 0, "", ""),
+    VECTOR(through, -1e6, 1e6, "m", "a point of the axis"),
+    REAL(inertia, 1e-15, 1e15, "kg m2", "about the axis"),
+    REAL(mass, 0, 1e12, "kg", "for its weight"),
+    VECTOR(centre, -1e6, 1e6, "m", "of mass, at the start; not given: on the axis"),
+    REAL(spring, 0, 1e15, "N m/rad", ""),
+    REAL(rest, -1e6, 1e6, "rad", "angle at which the spring is loose"),
+    REAL(damper, 0, 1e15, "N m s/rad", ""),
+    {"torque", SCREE_FIELD_REAL, offsetof(RECORD, force), -1e12, 1e12, "N m", "that drives it",
      NULL},
-    {"damper", SCREE_FIELD_REAL, AT(damper), 0, 1e15, "N m s/rad", "", NULL},
-    {"torque", SCREE_FIELD_REAL, AT(force), -1e12, 1e12, "N m", "that drives it", NULL},
-    {"amplitude", SCREE_FIELD_REAL, AT(amplitude), 0, 1e12, "N m",
-     "of a torque that swings besides", NULL},
-    {"frequency", SCREE_FIELD_REAL, AT(frequency), 0, 1e5, "Hz", "", NULL},
-    {"from", SCREE_FIELD_REAL, AT(from), 0, 1e9, "s", "held until then", NULL},
-    {"least", SCREE_FIELD_REAL, AT(least), -1e6, 1e6, "rad", "where it stops; not given: nowhere",
-     NULL},
-    {"most", SCREE_FIELD_REAL, AT(most), -1e6, 1e6, "rad", "likewise", NULL},
-    {"servo", SCREE_FIELD_RECORD, AT(servo), 0, 0, "", "instead of inertia and torques",
-     &turning_servo_record},
+    REAL(amplitude, 0, 1e12, "N m", "of a torque that swings besides"),
+    REAL(frequency, 0, 1e5, "Hz", ""),
+    REAL(from, 0, 1e9, "s", "held until then"),
+    REAL(least, -1e6, 1e6, "rad", "where it stops; not given: nowhere"),
+    REAL(most, -1e6, 1e6, "rad", "likewise"),
+    GROUP(servo, "instead of inertia and torques", &turning_servo_record),
 };
-#undef AT
+#undef RECORD
 
 static scree_status check_part(const scree_reader *r, const scree_plan_part *p, double inertia,
                                const char *what) {
@@ -91,7 +85,7 @@ static const scree_plan_part slide_defaults = {
     .axis = {0, 0, 1}, .mass = NAN, .inertia = NAN, .centre = NONE, .least = NAN, .most = NAN};
 static const scree_plan_part hinge_defaults = {
     .axis = {0, 0, 1}, .inertia = NAN, .centre = NONE, .least = NAN, .most = NAN};
-const scree_record scree_plan_slide_record = {
-    "a slide", FIELDS(slide_fields), sizeof(scree_plan_part), &slide_defaults, check_slide};
-const scree_record scree_plan_hinge_record = {
-    "a hinge", FIELDS(hinge_fields), sizeof(scree_plan_part), &hinge_defaults, check_hinge};
+const scree_record scree_plan_slide_record =
+    SCREE_RECORD("a slide", slide_fields, slide_defaults, check_slide);
+const scree_record scree_plan_hinge_record =
+    SCREE_RECORD("a hinge", hinge_fields, hinge_defaults, check_hinge);

@@ -3,15 +3,14 @@
 
 #include "base/vec.h"
 
-#define AT(member) offsetof(scree_plan_loop, member)
+#define RECORD scree_plan_loop
 static const scree_field loop_fields[] = {
-    {"span", SCREE_FIELD_VECTOR, AT(span), -1e6, 1e6, "m", "from the wheel at `at` to the other",
-     NULL},
-    {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "of the wheels, square to the span", NULL},
-    {"radius", SCREE_FIELD_REAL, AT(radius), 1e-9, 1e6, "m", "of the wheels", NULL},
-    {"width", SCREE_FIELD_REAL, AT(width), 1e-9, 1e6, "m", "along the axis", NULL},
+    VECTOR(span, -1e6, 1e6, "m", "from the wheel at `at` to the other"),
+    VECTOR(axis, 0, 0, "", "of the wheels, square to the span"),
+    REAL(radius, 1e-9, 1e6, "m", "of the wheels"),
+    REAL(width, 1e-9, 1e6, "m", "along the axis"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_span(const scree_reader *r, const scree_place *place,
                                const double axis[3], const double span[3]) {
   const vec3 a = vec3_load(axis), s = vec3_load(span);
@@ -28,21 +27,19 @@ static scree_status check_loop(const scree_reader *r, const void *record) {
   return check_span(r, &l->place, l->axis, l->span);
 }
 static const scree_plan_loop loop_defaults = {{0}, {0, 1, 0}, NONE, NAN, NAN};
-const scree_record scree_plan_loop_record = {"a loop", FIELDS(loop_fields), sizeof(scree_plan_loop),
-                                             &loop_defaults, check_loop};
+const scree_record scree_plan_loop_record =
+    SCREE_RECORD("a loop", loop_fields, loop_defaults, check_loop);
 
-#define AT(member) offsetof(scree_plan_screw, member)
+#define RECORD scree_plan_screw
 static const scree_field screw_fields[] = {
-    {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "from `at` on; the flight is right-handed",
-     NULL},
-    {"radius", SCREE_FIELD_REAL, AT(radius), 1e-9, 1e6, "m", "of the flight", NULL},
-    {"shaft", SCREE_FIELD_REAL, AT(shaft), 1e-9, 1e6, "m", "radius of the shaft", NULL},
-    {"pitch", SCREE_FIELD_REAL, AT(pitch), 1e-9, 1e6, "m", "", NULL},
-    {"length", SCREE_FIELD_REAL, AT(length), 1e-9, 1e6, "m", "", NULL},
-    {"thickness", SCREE_FIELD_REAL, AT(thickness), 1e-9, 1e6, "m", "of the flight, along the axis",
-     NULL},
+    VECTOR(axis, 0, 0, "", "from `at` on; the flight is right-handed"),
+    REAL(radius, 1e-9, 1e6, "m", "of the flight"),
+    REAL(shaft, 1e-9, 1e6, "m", "radius of the shaft"),
+    REAL(pitch, 1e-9, 1e6, "m", ""),
+    REAL(length, 1e-9, 1e6, "m", ""),
+    REAL(thickness, 1e-9, 1e6, "m", "of the flight, along the axis"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_screw(const scree_reader *r, const void *record) {
   const scree_plan_screw *s = record;
   if (!given(&s->radius) || !given(&s->shaft) || !given(&s->pitch) || !given(&s->length) ||
@@ -60,20 +57,18 @@ static scree_status check_screw(const scree_reader *r, const void *record) {
 }
 static const scree_plan_screw screw_defaults = {
     .axis = {1, 0, 0}, .radius = NAN, .shaft = NAN, .pitch = NAN, .length = NAN, .thickness = NAN};
-const scree_record scree_plan_screw_record = {
-    "a screw", FIELDS(screw_fields), sizeof(scree_plan_screw), &screw_defaults, check_screw};
+const scree_record scree_plan_screw_record =
+    SCREE_RECORD("a screw", screw_fields, screw_defaults, check_screw);
 
-#define AT(member) offsetof(scree_plan_sieve, member)
+#define RECORD scree_plan_sieve
 static const scree_field sieve_fields[] = {
-    {"size", SCREE_FIELD_VECTOR, AT(size), 1e-9, 1e6, "m", "along x and y, and its thickness",
-     NULL},
-    {"hole", SCREE_FIELD_REAL, AT(hole), 1e-9, 1e6, "m", "diameter", NULL},
-    {"pitch", SCREE_FIELD_REAL, AT(pitch), 1e-9, 1e6, "m", "from hole to hole, along x and y",
-     NULL},
-    {"bend", SCREE_FIELD_REAL, AT(bend), 1e-9, 1e6, "m",
-     "radius of the upper face about a line along y above it; not given: flat", NULL},
+    VECTOR(size, 1e-9, 1e6, "m", "along x and y, and its thickness"),
+    REAL(hole, 1e-9, 1e6, "m", "diameter"),
+    REAL(pitch, 1e-9, 1e6, "m", "from hole to hole, along x and y"),
+    REAL(bend, 1e-9, 1e6, "m",
+         "radius of the upper face about a line along y above it; not given: flat"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_sieve(const scree_reader *r, const void *record) {
   const scree_plan_sieve *s = record;
   if (!given(s->size) || !given(&s->hole) || !given(&s->pitch))
@@ -92,38 +87,37 @@ static scree_status check_sieve(const scree_reader *r, const void *record) {
 }
 static const scree_plan_sieve sieve_defaults = {
     .size = NONE, .hole = NAN, .pitch = NAN, .bend = NAN};
-const scree_record scree_plan_sieve_record = {
-    "a sieve", FIELDS(sieve_fields), sizeof(scree_plan_sieve), &sieve_defaults, check_sieve};
+const scree_record scree_plan_sieve_record =
+    SCREE_RECORD("a sieve", sieve_fields, sieve_defaults, check_sieve);
 
-#define AT(member) offsetof(scree_plan_belt, member)
+#define RECORD scree_plan_belt
 static const scree_field belt_fields[] = {
-    {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "of its pulleys", NULL},
-    {"speed", SCREE_FIELD_REAL, AT(speed), -1e3, 1e3, "m/s",
-     "along itself; above 0 right-handed about the axis", NULL},
+    VECTOR(axis, 0, 0, "", "of its pulleys"),
+    REAL(speed, -1e3, 1e3, "m/s", "along itself; above 0 right-handed about the axis"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_belt(const scree_reader *r, const void *record) {
   const scree_plan_belt *b = record;
   if (!given(&b->speed)) return scree_fail_place(r, &b->place, "needs a speed");
   return scree_plan_check_direction(r, &b->place, "axis", b->axis);
 }
 static const scree_plan_belt belt_defaults = {{0}, {0, 1, 0}, NAN};
-const scree_record scree_plan_belt_record = {"a belt", FIELDS(belt_fields), sizeof(scree_plan_belt),
-                                             &belt_defaults, check_belt};
+const scree_record scree_plan_belt_record =
+    SCREE_RECORD("a belt", belt_fields, belt_defaults, check_belt);
 
 /* ---- copies ---- */
 
-#define AT(member) offsetof(scree_plan_round, member)
+#define RECORD scree_plan_round
 static const scree_field copies_fields[] = {
-    {"count", SCREE_FIELD_COUNT, AT(count), 1, 1000, "", "of all, at equal distances", NULL},
-    {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "about which they stand", NULL},
-    {"through", SCREE_FIELD_VECTOR, AT(through), -1e6, 1e6, "m", "a point of it", NULL},
-    {"span", SCREE_FIELD_VECTOR, AT(span), -1e6, 1e6, "m",
-     "of a chain: from the wheel there to the other; the first copy begins the strand along it",
-     NULL},
-    {"radius", SCREE_FIELD_REAL, AT(radius), 1e-9, 1e6, "m", "of the wheels, to the chain", NULL},
+    COUNT(count, 1, 1000, "of all, at equal distances"),
+    VECTOR(axis, 0, 0, "", "about which they stand"),
+    VECTOR(through, -1e6, 1e6, "m", "a point of it"),
+    VECTOR(
+        span, -1e6, 1e6, "m",
+        "of a chain: from the wheel there to the other; the first copy begins the strand along it"),
+    REAL(radius, 1e-9, 1e6, "m", "of the wheels, to the chain"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_copies(const scree_reader *r, const void *record) {
   const scree_plan_round *c = record;
   if (!c->count) return scree_fail_place(r, &c->place, "needs a count");
@@ -133,5 +127,5 @@ static scree_status check_copies(const scree_reader *r, const void *record) {
   return check_span(r, &c->place, c->axis, c->span);
 }
 static const scree_plan_round copies_defaults = {.axis = {0, 0, 1}, .radius = NAN};
-const scree_record scree_plan_copies_record = {
-    "copies", FIELDS(copies_fields), sizeof(scree_plan_round), &copies_defaults, check_copies};
+const scree_record scree_plan_copies_record =
+    SCREE_RECORD("copies", copies_fields, copies_defaults, check_copies);

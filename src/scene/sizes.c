@@ -15,54 +15,50 @@ enum { SLICES = 200, MOST_CLASSES = 100 }; /* of a class, for its integrals */
 
 /* ---- fields ---- */
 
-#define AT(member) offsetof(scree_plan_rosin_rammler, member)
+#define RECORD scree_plan_rosin_rammler
 static const scree_field rosin_rammler_fields[] = {
-    {"size", SCREE_FIELD_REAL, AT(size), 1e-9, 1e3, "m", "63.2 % is finer", NULL},
-    {"spread", SCREE_FIELD_REAL, AT(spread), 0.1, 100, "", "exponent n: the greater the narrower",
-     NULL},
+    REAL(size, 1e-9, 1e3, "m", "63.2 % is finer"),
+    REAL(spread, 0.1, 100, "", "exponent n: the greater the narrower"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_rosin_rammler(const scree_reader *r, const void *record) {
   const scree_plan_rosin_rammler *d = record;
   if (given(&d->size) && given(&d->spread)) return SCREE_OK;
   return scree_fail_place(r, &d->place, "needs size and spread");
 }
 static const scree_plan_rosin_rammler rosin_rammler_defaults = {{0}, NAN, NAN};
-static const scree_record rosin_rammler_record = {"rosin_rammler", FIELDS(rosin_rammler_fields),
-                                                  sizeof(scree_plan_rosin_rammler),
-                                                  &rosin_rammler_defaults, check_rosin_rammler};
+static const scree_record rosin_rammler_record = SCREE_RECORD(
+    "rosin_rammler", rosin_rammler_fields, rosin_rammler_defaults, check_rosin_rammler);
 
-#define AT(member) offsetof(scree_plan_lognormal, member)
+#define RECORD scree_plan_lognormal
 static const scree_field lognormal_fields[] = {
-    {"median", SCREE_FIELD_REAL, AT(median), 1e-9, 1e3, "m", "half is finer", NULL},
-    {"deviation", SCREE_FIELD_REAL, AT(deviation), 1e-3, 5, "",
-     "standard deviation of the natural logarithm", NULL},
+    REAL(median, 1e-9, 1e3, "m", "half is finer"),
+    REAL(deviation, 1e-3, 5, "", "standard deviation of the natural logarithm"),
 };
-#undef AT
+#undef RECORD
 static scree_status check_lognormal(const scree_reader *r, const void *record) {
   const scree_plan_lognormal *d = record;
   if (given(&d->median) && given(&d->deviation)) return SCREE_OK;
   return scree_fail_place(r, &d->place, "needs median and deviation");
 }
 static const scree_plan_lognormal lognormal_defaults = {{0}, NAN, NAN};
-static const scree_record lognormal_record = {"lognormal", FIELDS(lognormal_fields),
-                                              sizeof(scree_plan_lognormal), &lognormal_defaults,
-                                              check_lognormal};
+static const scree_record lognormal_record =
+    SCREE_RECORD("lognormal", lognormal_fields, lognormal_defaults, check_lognormal);
 
-#define AT(member) offsetof(scree_plan_size, member)
+#define RECORD scree_plan_size
 static const scree_field size_fields[] = {
-    {"distribution", SCREE_FIELD_TABLE, AT(distribution), 0, 1e6, "m|", "[size in m, share]", NULL},
-    {"cumulative", SCREE_FIELD_FLAG, AT(cumulative), 0, 0, "",
-     "the shares are of what is finer, from 0 to 1; even between two sizes", NULL},
-    {"rosin_rammler", SCREE_FIELD_RECORD, AT(rosin_rammler), 0, 0, "", "", &rosin_rammler_record},
-    {"lognormal", SCREE_FIELD_RECORD, AT(lognormal), 0, 0, "", "", &lognormal_record},
-    {"uniform", SCREE_FIELD_FLAG, AT(uniform), 0, 0, "", "even from least to most", NULL},
-    {"by", SCREE_FIELD_WORD, AT(by), 0, 0, "mass|number", "what the shares are of", NULL},
-    {"least", SCREE_FIELD_REAL, AT(least), 1e-9, 1e3, "m", "none is finer", NULL},
-    {"most", SCREE_FIELD_REAL, AT(most), 1e-9, 1e3, "m", "none is coarser", NULL},
-    {"classes", SCREE_FIELD_COUNT, AT(classes), 1, MOST_CLASSES, "", "of a continuous one", NULL},
+    {"distribution", SCREE_FIELD_TABLE, offsetof(RECORD, distribution), 0, 1e6, "m|",
+     "[size in m, share]", NULL},
+    FLAG(cumulative, "the shares are of what is finer, from 0 to 1; even between two sizes"),
+    GROUP(rosin_rammler, "", &rosin_rammler_record),
+    GROUP(lognormal, "", &lognormal_record),
+    FLAG(uniform, "even from least to most"),
+    WORD(by, "mass|number", "what the shares are of"),
+    REAL(least, 1e-9, 1e3, "m", "none is finer"),
+    REAL(most, 1e-9, 1e3, "m", "none is coarser"),
+    COUNT(classes, 1, MOST_CLASSES, "of a continuous one"),
 };
-#undef AT
+#undef RECORD
 
 static scree_status check_table(const scree_reader *r, const scree_plan_size *s) {
   const scree_table *t = &s->distribution;
@@ -104,8 +100,8 @@ static scree_status check_size(const scree_reader *r, const void *record) {
   return SCREE_OK;
 }
 static const scree_plan_size size_defaults = {.least = NAN, .most = NAN, .classes = 8};
-const scree_record scree_plan_size_record = {"size", FIELDS(size_fields), sizeof(scree_plan_size),
-                                             &size_defaults, check_size};
+const scree_record scree_plan_size_record =
+    SCREE_RECORD("size", size_fields, size_defaults, check_size);
 
 /* ---- classes ---- */
 

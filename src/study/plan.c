@@ -1,6 +1,7 @@
 /* The study's file, strictly: every key is known, every value in its range, every error has line
  * and column. Values of the scene are tried on a copy at once, so that no run meets one that cannot
  * be. */
+#include "base/schema_rows.h"
 #include "scene/plan.h"
 #include "base/file.h"
 #include "base/number.h"
@@ -51,74 +52,71 @@ typedef struct window_fields {
   double from, until, at;
 } window_fields;
 
-#define FIELDS(table) (table), sizeof(table) / sizeof *(table)
 
-#define AT(member) offsetof(sample_fields, member)
+#define RECORD sample_fields
 static const scree_field sample_table[] = {
-    {"resolution", SCREE_FIELD_REAL, AT(resolution), 0.02e-3, 5e-3, "m", "", NULL},
-    {"noise", SCREE_FIELD_REAL, AT(noise), 0, 1.25e-3, "m", "", NULL},
-    {"seed", SCREE_FIELD_SEED, AT(seed), 0, 0, "", "", NULL},
+    REAL(resolution, 0.02e-3, 5e-3, "m", ""),
+    REAL(noise, 0, 1.25e-3, "m", ""),
+    SEED(seed, ""),
 };
-#undef AT
+#undef RECORD
 static const sample_fields sample_defaults = {.resolution = NAN, .noise = NAN, .seed = 1};
-static const scree_record sample_record = {"sample", FIELDS(sample_table), sizeof(sample_fields),
-                                           &sample_defaults, NULL};
+static const scree_record sample_record =
+    SCREE_RECORD("sample", sample_table, sample_defaults, NULL);
 
-#define AT(member) offsetof(analysis_fields, member)
+#define RECORD analysis_fields
 static const scree_field analysis_table[] = {
-    {"angle", SCREE_FIELD_WORD, AT(angle), 0, 0, "sector|cone|silhouette", "", NULL},
-    {"margin_deg", SCREE_FIELD_REAL, AT(margin_deg), 1e-6, 90, "deg", "", NULL},
-    {"confidence", SCREE_FIELD_REAL, AT(confidence), 0.5, 0.9999, "", "", NULL},
+    WORD(angle, "sector|cone|silhouette", ""),
+    REAL(margin_deg, 1e-6, 90, "deg", ""),
+    REAL(confidence, 0.5, 0.9999, "", ""),
 };
-#undef AT
+#undef RECORD
 static const analysis_fields analysis_defaults = {.margin_deg = 2, .confidence = 0.95};
-static const scree_record analysis_record = {"analysis", FIELDS(analysis_table),
-                                             sizeof(analysis_fields), &analysis_defaults, NULL};
+static const scree_record analysis_record =
+    SCREE_RECORD("analysis", analysis_table, analysis_defaults, NULL);
 
-#define AT(member) offsetof(study_fields, member)
+#define RECORD study_fields
 static const scree_field study_table[] = {
-    {"name", SCREE_FIELD_TEXT, AT(name), 0, 0, "", "", NULL},
-    {"seed", SCREE_FIELD_SEED, AT(seed), 0, 0, "", "", NULL},
-    {"replicates", SCREE_FIELD_COUNT, AT(replicates), 1, 100000, "", "", NULL},
-    {"attempts", SCREE_FIELD_COUNT, AT(attempts), 1, 1000, "", "", NULL},
-    {"shapes", SCREE_FIELD_NODE, AT(shapes), 0, 0, "", "", NULL},
-    {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, SCREE_PLAN_UNITS, "", NULL},
-    {"sample", SCREE_FIELD_RECORD, AT(sample), 0, 0, "", "", &sample_record},
-    {"method", SCREE_FIELD_WORD, AT(method), 0, 0, "volume|qecd", "", NULL},
-    {"base", SCREE_FIELD_NODE, AT(base), 0, 0, "", "", NULL},
-    {"answers", SCREE_FIELD_NODE, AT(answers), 0, 0, "", "", NULL},
-    {"factors", SCREE_FIELD_NODE, AT(factors), 0, 0, "", "", NULL},
-    {"design", SCREE_FIELD_WORD, AT(design), 0, 0, "grid|latin|sobol|list", "", NULL},
-    {"points", SCREE_FIELD_COUNT, AT(points), 1, 1e6, "", "", NULL},
-    {"analysis", SCREE_FIELD_RECORD, AT(analysis), 0, 0, "", "", &analysis_record},
+    TEXT(name, ""),
+    SEED(seed, ""),
+    COUNT(replicates, 1, 100000, ""),
+    COUNT(attempts, 1, 1000, ""),
+    NODE(shapes, ""),
+    WORD(unit, SCREE_PLAN_UNITS, ""),
+    GROUP(sample, "", &sample_record),
+    WORD(method, "volume|qecd", ""),
+    NODE(base, ""),
+    NODE(answers, ""),
+    NODE(factors, ""),
+    WORD(design, "grid|latin|sobol|list", ""),
+    COUNT(points, 1, 1e6, ""),
+    GROUP(analysis, "", &analysis_record),
 };
-#undef AT
+#undef RECORD
 static const study_fields study_defaults = {.replicates = 10, .attempts = 5, .unit = 2};
-static const scree_record study_record = {"a study", FIELDS(study_table), sizeof(study_fields),
-                                          &study_defaults, NULL};
+static const scree_record study_record = SCREE_RECORD("a study", study_table, study_defaults, NULL);
 
-#define AT(member) offsetof(range_fields, member)
+#define RECORD range_fields
 static const scree_field range_table[] = {
-    {"from", SCREE_FIELD_REAL, AT(from), -1e300, 1e300, "", "", NULL},
-    {"to", SCREE_FIELD_REAL, AT(to), -1e300, 1e300, "", "", NULL},
-    {"scale", SCREE_FIELD_WORD, AT(scale), 0, 0, "linear|log", "", NULL},
-    {"levels", SCREE_FIELD_COUNT, AT(levels), 2, 10000, "", "", NULL},
+    REAL(from, -1e300, 1e300, "", ""),
+    REAL(to, -1e300, 1e300, "", ""),
+    WORD(scale, "linear|log", ""),
+    COUNT(levels, 2, 10000, ""),
 };
-#undef AT
+#undef RECORD
 static const range_fields range_defaults = {.from = NAN, .to = NAN};
-static const scree_record range_record = {"a range", FIELDS(range_table), sizeof(range_fields),
-                                          &range_defaults, NULL};
+static const scree_record range_record = SCREE_RECORD("a range", range_table, range_defaults, NULL);
 
-#define AT(member) offsetof(window_fields, member)
+#define RECORD window_fields
 static const scree_field window_table[] = {
-    {"from", SCREE_FIELD_REAL, AT(from), 0, 1e9, "s", "", NULL},
-    {"until", SCREE_FIELD_REAL, AT(until), 0, 1e9, "s", "", NULL},
-    {"at", SCREE_FIELD_REAL, AT(at), -1e9, 1e9, "s", "", NULL},
+    REAL(from, 0, 1e9, "s", ""),
+    REAL(until, 0, 1e9, "s", ""),
+    REAL(at, -1e9, 1e9, "s", ""),
 };
-#undef AT
+#undef RECORD
 static const window_fields window_defaults = {.from = NAN, .until = NAN, .at = NAN};
-static const scree_record window_record = {"an answer", FIELDS(window_table), sizeof(window_fields),
-                                           &window_defaults, NULL};
+static const scree_record window_record =
+    SCREE_RECORD("an answer", window_table, window_defaults, NULL);
 
 /* ---- reading ---- */
 

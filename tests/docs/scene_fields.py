@@ -17,7 +17,7 @@ page = read("docs/reference/scenes.md")
 named = set(re.findall(r"[\w-]+", " ".join(re.findall(r"`[^`\n]+`", page))))
 source = "".join(read(f"src/scene/{name}.c") for name in ("plan", "plan_sensors", "plan_parts", "plan_forces", "sizes"))
 tables = re.findall(r"^static const scree_field (\w+)_fields\[\] = \{\n(.*?)^\};", source, re.MULTILINE | re.DOTALL)
-missing = [f"{record}: {key}" for record, body in tables for key in re.findall(r'\{"(\w+)", SCREE_FIELD', body)
+missing = [f"{record}: {key}" for record, body in tables for key in re.findall(r'^ +(?:\{"|[A-Z]+\()\s*(\w+)"?,', body, re.MULTILINE)
            if key not in named]
 said = subprocess.run([program, "run", "--template", "-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 templates = re.search(r"there are (.*)", said.stderr)[1].split(", ")
