@@ -46,11 +46,9 @@ static scree_status take_record(scree_answers *g, size_t experiment, const scree
   scree_study_record record;
   char mark[SCREE_CHECKSUM_TEXT];
   double *answers = g->answers[experiment] + run * study->answer_count;
-  char *path = scree_study_path(study, "results", study->keys[run], ".yaml");
-  if (!path) return scree_fail_memory(error, 0, "a path");
+  const char *path = SCREE_STUDY_PATH(study, "results", study->keys[run], ".yaml");
   bool there = scree_path_exists(path);
   scree_status status = there ? scree_study_record_read(path, &record, error) : SCREE_OK;
-  scree_free(path);
   if (status == SCREE_BAD_FILE) there = false; /* the next worker puts it aside */
   if (there && status == SCREE_OK && !record.failed) {
     scree_study_answers_mark(study, mark);

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
+#include "base/path.h"
 #include "base/platform.h"
 #include "cli/clump.h"
 #include "cli/options.h"
@@ -13,7 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PATH_BYTES = 4200 };
 /* By the bits of `views`. */
 static const char *const kinds[CLI_FRAME_KINDS] = {"-bodies", "-points", "-contacts", "-geometry"};
 static const char *const collections[CLI_FRAME_KINDS] = {"bodies.pvd", "points.pvd", "contacts.pvd",
@@ -51,11 +51,8 @@ static scree_status no_memory(scree_error *error) {
   return error->status;
 }
 
-static scree_status path_of(const cli_scene_run *r, const char *name, char path[PATH_BYTES],
-                            scree_error *error) {
-  if (snprintf(path, PATH_BYTES, "%s/%s", r->output, name) < PATH_BYTES) return SCREE_OK;
-  return cli_refuse(error, SCREE_LIMIT, r->output, "the folder's name is too long");
-}
+/* A file of the folder, until the end of the block. */
+#define IN_FOLDER(run, name) SCREE_PATH_IN((run)->output, name)
 
 /* ---- while it runs ---- */
 
@@ -77,9 +74,9 @@ static scree_status write_view(const cli_scene_run *r, const scree_scene *scene,
                                scree_error *error) {
   static const scree_world_view views[] = {SCREE_VIEW_SURFACES, SCREE_VIEW_POINTS,
                                            SCREE_VIEW_CONTACTS};
-  char name[CLI_FRAME_NAME], path[PATH_BYTES];
+  char name[CLI_FRAME_NAME];
   cli_frame_name(r->frames.count, kinds[kind], name);
-  SCREE_TRY(path_of(r, name, path, error));
+  const char *path = IN_FOLDER(r, name);
   if (1u << kind == CLI_GEOMETRY) return scree_scene_walls_vtp_write(scene, path, true, error);
   if (1u << kind == CLI_BODIES && r->forecast.frames_are_instances)
     return scree_scene_bodies_vtp_write(scene, path, true, error);
@@ -88,9 +85,8 @@ static scree_status write_view(const cli_scene_run *r, const scree_scene *scene,
 
 static scree_status write_collections(const cli_scene_run *r, scree_error *error) {
   for (int kind = 0; kind < CLI_FRAME_KINDS; kind++) {
-    char path[PATH_BYTES];
     if (!(r->views & 1u << kind)) continue;
-    SCREE_TRY(path_of(r, collections[kind], path, error));
+    const char *path = IN_FOLDER(r, collections[kind]);
     SCREE_TRY(cli_frames_list(&r->frames, kinds[kind], path, error));
   }
   return SCREE_OK;
@@ -111,10 +107,9 @@ static scree_status write_shapes(const cli_scene_run *r, const scree_scene *scen
   if (!r->output || !(r->forecast.frame_interval > 0) || !r->forecast.frames_are_instances)
     return SCREE_OK;
   for (size_t i = 0; scree_scene_shape_name(scene, i); i++) {
-    char name[32], path[PATH_BYTES];
+    char name[32];
     snprintf(name, sizeof name, "shape-%zu.vtp", i);
-    SCREE_TRY(path_of(r, name, path, error));
-    SCREE_TRY(scree_scene_shape_vtp_write(scene, i, path, true, error));
+    SCREE_TRY(scree_scene_shape_vtp_write(scene, i, IN_FOLDER(r, name), true, error));
   }
   return SCREE_OK;
 }
@@ -172,19 +167,15 @@ static void print_forecast(scree_scene_forecast f) {
 
 static scree_status on_begin(void *context, scree_scene *scene, bool resumed, scree_error *error) {
   cli_scene_run *r = context;
-  char path[PATH_BYTES];
-  scree_status status = SCREE_OK;
   scree_scene_foretell(scene, &r->forecast);
-  if (resumed)
-    status =
-        cli_frames_recall(&r->frames, r->forecast.frame_interval, scree_scene_view(scene), error);
   r->scene = scene;
-  if (status == SCREE_OK && r->output) {
-    status = path_of(r, "scene.yaml", path, error);
-    if (status == SCREE_OK) status = scree_text_write(scree_scene_text(scene), path, true, error);
-  }
-  if (status == SCREE_OK) status = write_shapes(r, scene, error);
-  if (status != SCREE_OK || r->call->quiet || r->json) return status;
+  if (resumed)
+    SCREE_TRY(
+        cli_frames_recall(&r->frames, r->forecast.frame_interval, scree_scene_view(scene), error));
+  if (r->output)
+    SCREE_TRY(scree_text_write(scree_scene_text(scene), IN_FOLDER(r, "scene.yaml"), true, error));
+  SCREE_TRY(write_shapes(r, scene, error));
+  if (r->call->quiet || r->json) return SCREE_OK;
   cli_terminal_end();
   if (!resumed && !r->states) remark_values(scree_scene_text(scene));
   if (!resumed) remark_sizes(scene);
@@ -343,13 +334,10 @@ static void print_costs(const scree_scene *scene) {
 
 static scree_status write_json(const cli_scene_run *r, const char *stopped, double seconds,
                                const char *path, scree_error *error) {
-  char kept[PATH_BYTES]; /* what one goes on with that no file was given for */
-  const bool given = r->file_name != NULL;
-  SCREE_TRY(given || !r->output ? SCREE_OK : path_of(r, "scene.yaml", kept, error));
+  const char *file = r->file_name; /* without it one goes on with what is kept */
+  if (!file && r->output) file = IN_FOLDER(r, "scene.yaml");
   scree_scene_entry entry = {.scene = r->scene,
-                             .file = given       ? r->file_name
-                                     : r->output ? kept
-                                                 : NULL,
+                             .file = file,
                              .stopped_because = stopped,
                              .command_line = r->call->command_line,
                              .seconds = seconds};
@@ -366,14 +354,13 @@ static scree_status render(const cli_scene_run *r, const scree_render_options *o
 }
 
 static scree_status draw(const cli_scene_run *r, scree_error *error) {
-  char path[PATH_BYTES];
   scree_image image = {0};
   scree_render_options o = scree_default_render_options();
   if (r->no_picture) return SCREE_OK;
   o.samples = r->rays;
-  scree_status status = path_of(r, "scene.png", path, error);
-  if (status == SCREE_OK) status = render(r, &o, &image, error);
-  if (status == SCREE_OK) status = scree_image_write_png(&image, path, true, error);
+  scree_status status = render(r, &o, &image, error);
+  if (status == SCREE_OK)
+    status = scree_image_write_png(&image, IN_FOLDER(r, "scene.png"), true, error);
   scree_image_free(&image);
   if (status != SCREE_UNSUPPORTED && status != SCREE_CANCELLED) return status;
   fprintf(stderr, "no picture: %s\n", error->message);
@@ -381,29 +368,20 @@ static scree_status draw(const cli_scene_run *r, scree_error *error) {
 }
 
 static scree_status write_page(const cli_scene_run *r, scree_error *error) {
-  char path[PATH_BYTES];
-  scree_status status = path_of(r, "provenance.json", path, error);
-  if (status == SCREE_OK)
-    status = scree_provenance_write(&r->start, r->call->command_line, path, true, error);
-  if (status != SCREE_OK || r->common_page) return status;
-  SCREE_TRY(path_of(r, "report.html", path, error));
-  return scree_page_write(&r->output, 1, path, true, error);
+  SCREE_TRY(scree_provenance_write(&r->start, r->call->command_line,
+                                   IN_FOLDER(r, "provenance.json"), true, error));
+  if (r->common_page) return SCREE_OK;
+  return scree_page_write(&r->output, 1, IN_FOLDER(r, "report.html"), true, error);
 }
 
 static scree_status write_all(const cli_scene_run *r, const char *stopped, double seconds,
                               const char *text, scree_error *error) {
-  char path[PATH_BYTES];
   SCREE_TRY(write_collections(r, error));
-  SCREE_TRY(path_of(r, "result.json", path, error));
-  SCREE_TRY(write_json(r, stopped, seconds, path, error));
-  SCREE_TRY(path_of(r, "bodies.csv", path, error));
-  SCREE_TRY(scree_scene_bodies_write(r->scene, path, true, error));
-  if (scree_scene_has_maps(r->scene)) {
-    SCREE_TRY(path_of(r, "walls.vtp", path, error));
-    SCREE_TRY(scree_scene_walls_vtp_write(r->scene, path, true, error));
-  }
-  SCREE_TRY(path_of(r, "result.txt", path, error));
-  SCREE_TRY(scree_text_write(text, path, true, error));
+  SCREE_TRY(write_json(r, stopped, seconds, IN_FOLDER(r, "result.json"), error));
+  SCREE_TRY(scree_scene_bodies_write(r->scene, IN_FOLDER(r, "bodies.csv"), true, error));
+  if (scree_scene_has_maps(r->scene))
+    SCREE_TRY(scree_scene_walls_vtp_write(r->scene, IN_FOLDER(r, "walls.vtp"), true, error));
+  SCREE_TRY(scree_text_write(text, IN_FOLDER(r, "result.txt"), true, error));
   SCREE_TRY(draw(r, error));
   return write_page(r, error);
 }
@@ -444,9 +422,7 @@ scree_status cli_clear_scene_output(const cli_call *call, const char *folder, sc
 
 /* The state in which the scene failed: the report plays up to it, and nothing goes on from it. */
 static void keep_end(const cli_scene_run *r) {
-  char path[PATH_BYTES];
-  if (r->output && path_of(r, "checkpoint.scree", path, NULL) == SCREE_OK)
-    (void)scree_scene_save(r->scene, path, true, NULL);
+  if (r->output) (void)scree_scene_save(r->scene, IN_FOLDER(r, "checkpoint.scree"), true, NULL);
 }
 
 scree_status cli_run_scene(cli_scene_run *r, scree_error *error) {

@@ -6,6 +6,7 @@
 
 #include "base/alloc.h"
 #include "base/file.h"
+#include "base/path.h"
 #include "base/platform.h"
 
 #include <errno.h>
@@ -34,26 +35,12 @@ static double now_of(const work *w) {
   return scree_world_time(w->scene->world);
 }
 
-/* folder/name, to be freed; NULL after filling the error. */
-static char *path_in(const work *w, const char *name, scree_error *error) {
-  size_t size = strlen(w->job->folder) + strlen(name) + 2;
-  char *path = scree_alloc(size, 1);
-  if (!path)
-    scree_fail_memory(error, size, "a path");
-  else
-    snprintf(path, size, "%s/%s", w->job->folder, name);
-  return path;
-}
-
 static scree_status checkpoint(work *w, scree_error *error) {
   w->last_checkpoint = scree_now();
   if (!w->job->folder) return SCREE_OK;
-  char *path = path_in(w, checkpoint_name, error);
-  if (!path) return SCREE_OUT_OF_MEMORY;
-  scree_status status = scree_scene_save(w->scene, path, true, error);
-  if (status == SCREE_OK) status = scree_scene_write_tables(w->scene, w->job->folder, error);
-  scree_free(path);
-  return status;
+  SCREE_TRY(
+      scree_scene_save(w->scene, SCREE_PATH_IN(w->job->folder, checkpoint_name), true, error));
+  return scree_scene_write_tables(w->scene, w->job->folder, error);
 }
 
 /* ---- series.csv ---- */
@@ -77,10 +64,7 @@ static scree_status write_rows(work *w, scree_error *error) {
 /* Anew, with all rows so far: what was written after a checkpoint is written again. */
 static scree_status open_series(work *w, scree_error *error) {
   const scree_scene *scene = w->scene;
-  char *path = path_in(w, "series.csv", error);
-  if (!path) return SCREE_OUT_OF_MEMORY;
-  w->series = scree_open_stream(path, "wb");
-  scree_free(path);
+  w->series = scree_open_stream(SCREE_PATH_IN(w->job->folder, "series.csv"), "wb");
   if (!w->series) return fail_series(error);
   fprintf(w->series, "# scree %s, %s\n", scree_version(),
           scene->plan.title ? scene->plan.title : "");
@@ -102,11 +86,7 @@ static double next_frame(const work *w) {
 
 static scree_status save_state(work *w, const char *name, scree_error *error) {
   if (!w->job->folder || !w->job->states) return SCREE_OK;
-  char *path = path_in(w, name, error);
-  if (!path) return SCREE_OUT_OF_MEMORY;
-  scree_status status = scree_scene_save_frame(w->scene, path, true, error);
-  scree_free(path);
-  return status;
+  return scree_scene_save_frame(w->scene, SCREE_PATH_IN(w->job->folder, name), true, error);
 }
 
 static scree_status put_frames(work *w, bool last, scree_error *error) {
@@ -125,12 +105,9 @@ static scree_status open_motion(work *w, bool go_on, scree_error *error) {
   const scree_plan *plan = &w->scene->plan;
   double interval = plan->output->motion > 0 ? plan->output->motion
                                              : scree_scene_duration(w->scene) / MOTION_FRAMES;
-  char *path = path_in(w, "motion.scree", error);
-  if (!path) return SCREE_OUT_OF_MEMORY;
   interval = fmax(interval, w->scene->time_step); /* one may end at its beginning */
-  scree_status status = scree_motion_open(&w->motion, path, interval, go_on, now_of(w), error);
-  scree_free(path);
-  return status;
+  return scree_motion_open(&w->motion, SCREE_PATH_IN(w->job->folder, "motion.scree"), interval,
+                           go_on, now_of(w), error);
 }
 
 static scree_status put_motion(work *w, bool last, scree_error *error) {
@@ -180,13 +157,9 @@ static void tune_chunk(work *w, double seconds) {
 /* One that leaves the range of the contact law leaves a state shortly before. */
 static scree_status keep_state(work *w, scree_error *error) {
   if (!w->job->folder) return SCREE_OK;
-  char *path = path_in(w, stopped_name, error);
-  if (!path) return SCREE_OUT_OF_MEMORY;
+  const char *path = SCREE_PATH_IN(w->job->folder, stopped_name);
   (void)scree_path_remove(path); /* what an earlier try left; mostly there is none */
-  scree_status status =
-      scree_world_keep_all(w->scene->world, path, KEEP_STEPS, scree_scene_pack, w->scene, error);
-  scree_free(path);
-  return status;
+  return scree_world_keep_all(w->scene->world, path, KEEP_STEPS, scree_scene_pack, w->scene, error);
 }
 
 static scree_status cancel(work *w, scree_error *error) {
@@ -317,28 +290,20 @@ static scree_status check_found(work *w, const char *path, scree_error *error) {
 
 /* Loads the checkpoint into w->scene, which stays NULL where there is none. */
 static scree_status find_checkpoint(work *w, scree_error *error) {
-  char *path = path_in(w, checkpoint_name, error);
-  if (!path) return SCREE_OUT_OF_MEMORY;
-  scree_status status = SCREE_OK;
-  if (!scree_path_exists(path)) goto done;
-  if (!w->job->resume) {
-    if (!w->job->overwrite)
-      status = scree_fail(error, SCREE_EXISTS, "%s: exists already: a scene was begun here", path);
-    goto done;
-  }
-  status = scree_scene_load(path, &w->scene, error);
-  if (status == SCREE_OK) status = check_found(w, path, error);
-  if (status != SCREE_OK) goto done;
+  const char *path = SCREE_PATH_IN(w->job->folder, checkpoint_name);
+  if (!scree_path_exists(path) || (!w->job->resume && w->job->overwrite)) return SCREE_OK;
+  if (!w->job->resume)
+    return scree_fail(error, SCREE_EXISTS, "%s: exists already: a scene was begun here", path);
+  SCREE_TRY(scree_scene_load(path, &w->scene, error));
+  SCREE_TRY(check_found(w, path, error));
   w->scene->costs.piece_count++;
   if (w->job->change_count) {
-    status = scree_scene_change(&w->scene, w->job->changes, w->job->change_count, error);
-    if (status == SCREE_OK) status = scree_scene_save(w->scene, path, true, error);
+    SCREE_TRY(scree_scene_change(&w->scene, w->job->changes, w->job->change_count, error));
+    SCREE_TRY(scree_scene_save(w->scene, path, true, error));
   }
   /* that of this very moment comes after its checkpoint */
   while (now_of(w) - 0.5 * w->scene->time_step > next_frame(w)) w->frame_count++;
-done:
-  scree_free(path);
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status make_scene(work *w, scree_error *error) {

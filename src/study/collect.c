@@ -16,7 +16,7 @@ static const double writer_lease = 120; /* s */
 typedef struct writer {
   const scree_study *study;
   scree_database database;
-  char *leases;
+  const char *leases;
   scree_error *error;
 } writer;
 
@@ -269,14 +269,12 @@ static scree_status put_failures(writer *w, const char *key) {
     char ending[32];
     scree_study_record record;
     snprintf(ending, sizeof ending, ".failed-%d", n);
-    char *path = scree_study_path(w->study, "results", key, ending);
-    if (!path) return scree_fail_memory(w->error, 0, "a path");
+    const char *path = SCREE_STUDY_PATH(w->study, "results", key, ending);
     bool there = scree_path_exists(path);
     if (there && scree_study_record_read(path, &record, NULL) == SCREE_OK) {
       status = put_failure(w, key, n, &record);
       scree_study_record_free(&record);
     }
-    scree_free(path);
     if (!there) break;
   }
   return status;
@@ -285,10 +283,9 @@ static scree_status put_failures(writer *w, const char *key) {
 static scree_status put_state(writer *w, const char *key, sqlite3_stmt *update) {
   char name[64], last[SCREE_LEASE_NAME] = "";
   const char *state = "waiting";
-  scree_lease_view view;
   double fraction = NAN;
   snprintf(name, sizeof name, "run-%s", key);
-  SCREE_TRY(scree_lease_look(w->leases, name, 300, &view, w->error));
+  scree_lease_view view = scree_lease_look(w->leases, name, 300);
   if (view.held && view.alive) {
     bool running = !strncmp(view.note, "running ", 8);
     state = running ? "running" : "leased";
@@ -323,11 +320,9 @@ static bool in_already(writer *w, const char *key, sqlite3_stmt *ask, double end
 
 static scree_status put_record(writer *w, const char *key, sqlite3_stmt *ask, bool *found) {
   scree_study_record record;
-  char *path = scree_study_path(w->study, "results", key, ".yaml");
-  if (!path) return scree_fail_memory(w->error, 0, "a path");
+  const char *path = SCREE_STUDY_PATH(w->study, "results", key, ".yaml");
   *found = scree_path_exists(path);
   scree_status status = *found ? scree_study_record_read(path, &record, w->error) : SCREE_OK;
-  scree_free(path);
   if (status == SCREE_BAD_FILE) { /* the next worker puts it aside */
     *found = false;
     return SCREE_OK;
@@ -390,8 +385,7 @@ scree_status scree_study_collect(scree_study *study, bool wait, scree_error *err
   bool taken = false;
   scree_lease lease;
   scree_lease_default_worker(worker);
-  w.leases = scree_study_path(study, "leases", "", "");
-  if (!w.leases) return scree_fail_memory(error, 0, "a path");
+  w.leases = SCREE_STUDY_PATH(study, "leases", "", "");
   scree_status status;
   for (;;) {
     status = scree_lease_take(w.leases, "writer", writer_lease, worker, &taken, &lease, error);
@@ -402,6 +396,5 @@ scree_status scree_study_collect(scree_study *study, bool wait, scree_error *err
     status = write_all(&w);
     scree_lease_release(&lease);
   }
-  scree_free(w.leases);
   return status;
 }

@@ -104,8 +104,8 @@ static scree_status adopt(scree_database *d, bool writing, scree_error *error) {
 /* A rollback journal, not WAL, which shared folders cannot do. */
 scree_status scree_database_open(const scree_study *study, bool writing, scree_database *database,
                                  scree_error *error) {
-  scree_database d = {.path = scree_study_path(study, "", "study.sqlite", "")};
-  if (!d.path) return scree_fail_memory(error, 0, "a path");
+  scree_database d = {0};
+  scree_study_path(study, "", "study.sqlite", "", d.path);
   scree_status status = SCREE_OK;
   if (!writing && !scree_path_exists(d.path))
     status = scree_fail(error, SCREE_IO, "%s: not there yet", d.path);
@@ -127,6 +127,5 @@ scree_status scree_database_open(const scree_study *study, bool writing, scree_d
 
 void scree_database_close(scree_database *database) {
   sqlite3_close(database->handle);
-  scree_free(database->path);
   *database = (scree_database){0};
 }

@@ -8,7 +8,7 @@ struct sqlite3_stmt;
 
 typedef struct scree_database {
   struct sqlite3 *handle;
-  char *path;
+  char path[SCREE_PATH_BYTES];
 } scree_database;
 
 /* Opens FOLDER/study.sqlite; for writing it is made where it is not there. SCREE_BAD_FILE where it

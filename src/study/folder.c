@@ -18,47 +18,29 @@ scree_study_options scree_default_study_options(void) {
   return (scree_study_options){.lease_s = 300, .poll_s = 1, .wait = true};
 }
 
-char *scree_study_path(const scree_study *study, const char *kind, const char *name,
-                       const char *ending) {
-  size_t size = strlen(study->folder) + strlen(kind) + strlen(name) + strlen(ending) + 3;
-  char *path = scree_alloc(size, 1);
-  if (path)
-    snprintf(path, size, "%s/%s%s%s%s", study->folder, kind, *kind && *name ? "/" : "", name,
-             ending);
+const char *scree_study_path(const scree_study *study, const char *kind, const char *name,
+                             const char *ending, char path[SCREE_PATH_BYTES]) {
+  snprintf(path, SCREE_PATH_BYTES, "%s/%s%s%s%s", study->folder, kind, *kind && *name ? "/" : "",
+           name, ending);
   return path;
 }
 
 static scree_status make_folders(const scree_study *study, scree_error *error) {
   static const char *const kinds[] = {"shapes", "leases", "runs", "results"};
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < sizeof kinds / sizeof *kinds; i++) {
-    char *path = scree_study_path(study, kinds[i], "", "");
-    if (!path) return scree_fail_memory(error, 0, "a path");
-    status = scree_folder_create(path, error);
-    scree_free(path);
-  }
-  return status;
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+    SCREE_TRY(scree_folder_create(SCREE_STUDY_PATH(study, kinds[i], "", ""), error));
+  return SCREE_OK;
 }
 
 /* Writes the copy where it is not the same already, so that a folder in use is left alone. */
 static scree_status keep_copy(const scree_study *study, scree_error *error) {
-  char *path = scree_study_path(study, "", "study.yaml", ""), *old = NULL;
+  const char *path = SCREE_STUDY_PATH(study, "", "study.yaml", "");
+  char *old = NULL;
   size_t size = 0;
-  if (!path) return scree_fail_memory(error, 0, "a path");
-  scree_status status = SCREE_OK;
   bool same = scree_path_exists(path) && scree_file_read(path, 0, &old, &size, NULL) == SCREE_OK &&
               size == study->text_size && !memcmp(old, study->text, size);
   scree_free(old);
-  if (!same) {
-    scree_output output;
-    status = scree_output_open(path, true, &output, error);
-    if (status == SCREE_OK) {
-      fwrite(study->text, 1, study->text_size, output.stream);
-      status = scree_output_commit(&output, error);
-    }
-  }
-  scree_free(path);
-  return status;
+  return same ? SCREE_OK : scree_text_write(study->text, path, true, error);
 }
 
 scree_status scree_study_open(scree_study *study, const char *folder, scree_error *error) {
@@ -72,18 +54,14 @@ scree_status scree_study_open(scree_study *study, const char *folder, scree_erro
 }
 
 scree_status scree_study_open_folder(const char *folder, scree_study **study, scree_error *error) {
-  size_t size = strlen(folder) + 16;
-  char *path = scree_alloc(size, 1);
-  if (!path) return scree_fail_memory(error, size, "a path");
-  snprintf(path, size, "%s/study.yaml", folder);
+  const char *path = SCREE_PATH_IN(folder, "study.yaml");
   scree_study *made = NULL;
   scree_status status =
       scree_path_exists(path)
           ? scree_study_read(path, &made, error)
           : scree_fail(error, SCREE_IO, "%s: is no folder of a study: no study.yaml in it", folder);
-  scree_free(path);
   if (status == SCREE_OK && !(made->folder = scree_strdup(folder)))
-    status = scree_fail_memory(error, size, "a path");
+    status = scree_fail_memory(error, strlen(folder), "a path");
   if (status == SCREE_OK) status = scree_study_know_shapes(made, error);
   if (status == SCREE_OK)
     *study = made;

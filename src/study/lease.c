@@ -57,12 +57,12 @@ void scree_lease_default_worker(char worker[SCREE_LEASE_NAME]) {
 
 /* ---- files ---- */
 
-static char *join(const char *folder, const char *name, const char *ending) {
-  size_t size = strlen(folder) + strlen(name) + strlen(ending) + 2;
-  char *path = scree_alloc(size, 1);
-  if (path) snprintf(path, size, "%s/%s%s", folder, name, ending);
+static const char *join(const char *folder, const char *name, const char *ending,
+                        char path[SCREE_PATH_BYTES]) {
+  snprintf(path, SCREE_PATH_BYTES, "%s/%s%s", folder, name, ending);
   return path;
 }
+#define JOIN(folder, name, ending) join(folder, name, ending, (char[SCREE_PATH_BYTES]){0})
 
 static void take_line(const char **text, char *line, size_t size) {
   size_t length = strcspn(*text, "\n");
@@ -85,15 +85,10 @@ static bool read_content(const char *path, content *c) {
   return true;
 }
 
-/* A complete file beside the lease, *modified its time; NULL after filling the error. */
-static char *write_aside(const char *folder, const char *token, const char *worker,
-                         const char *note, double *modified, scree_error *error) {
+/* A complete file beside the lease, *modified its time. */
+static scree_status write_aside(const char *path, const char *token, const char *worker,
+                                const char *note, double *modified, scree_error *error) {
   char machine[MACHINE], text[CONTENT];
-  char *path = join(folder, ".new-", token);
-  if (!path) {
-    scree_fail_memory(error, 0, "a lease");
-    return NULL;
-  }
   scree_machine_identity(machine);
   int size =
       snprintf(text, sizeof text, "%s\n%s\n%ld\n%llu\n%.150s\n%.90s\n", token, machine,
@@ -107,12 +102,10 @@ static char *write_aside(const char *folder, const char *token, const char *work
   if (fd >= 0) scree_close(fd);
   if (good) {
     *modified = info.modified;
-    return path;
+    return SCREE_OK;
   }
-  scree_fail(error, SCREE_IO, "%s: cannot write: %s", path, strerror(reason));
   scree_path_remove(path);
-  scree_free(path);
-  return NULL;
+  return scree_fail(error, SCREE_IO, "%s: cannot write: %s", path, strerror(reason));
 }
 
 static bool is_dead(const content *c, double now, double lease_s) {
@@ -123,48 +116,36 @@ static bool is_dead(const content *c, double now, double lease_s) {
 }
 
 static void note_death(const char *folder, const char *name, const content *c) {
-  char *path = join(folder, name, ".deaths");
-  FILE *stream = path ? scree_open_stream(path, "a") : NULL;
-  if (stream) {
-    fprintf(stream, "%s\n", c->worker);
-    fclose(stream);
-  }
-  scree_free(path);
+  FILE *stream = scree_open_stream(JOIN(folder, name, ".deaths"), "a");
+  if (!stream) return;
+  fprintf(stream, "%s\n", c->worker);
+  fclose(stream);
 }
 
 /* Moves the dead holder's file away; false where it is not the one that was judged any more. */
 static bool bury(const char *path, const char *aside, const content *dead) {
-  size_t size = strlen(aside) + 8;
-  char *grave = scree_alloc(size, 1);
+  char grave[SCREE_PATH_BYTES + sizeof ".dead"];
   content found;
-  bool moved = false;
-  if (!grave) return false;
-  snprintf(grave, size, "%s.dead", aside);
-  if (scree_path_rename(path, grave)) {
-    moved = read_content(grave, &found) && !strcmp(found.token, dead->token) &&
-            found.modified == dead->modified;
-    if (!moved && !scree_path_link(grave, path))
-      moved = false; /* somebody was quicker: both go on */
-    scree_path_remove(grave);
-  }
-  scree_free(grave);
+  snprintf(grave, sizeof grave, "%s.dead", aside);
+  if (!scree_path_rename(path, grave)) return false;
+  bool moved = read_content(grave, &found) && !strcmp(found.token, dead->token) &&
+               found.modified == dead->modified;
+  if (!moved) (void)scree_path_link(grave, path); /* or somebody was quicker: both go on */
+  scree_path_remove(grave);
   return moved;
 }
 
 scree_status scree_lease_take(const char *folder, const char *name, double lease_s,
                               const char *worker, bool *taken, scree_lease *lease,
                               scree_error *error) {
-  scree_lease made = {.folder = scree_strdup(folder), .path = join(folder, name, "")};
+  scree_lease made = {.last_renewal = 0};
   double now = 0;
-  scree_status status = SCREE_OK;
   make_token(made.token);
+  join(folder, name, "", made.path);
   snprintf(made.worker, sizeof made.worker, "%s", worker);
-  char *aside = NULL;
+  const char *aside = join(folder, ".new-", made.token, made.aside);
   *taken = false;
-  if (!made.folder || !made.path)
-    status = scree_fail_memory(error, 0, "a lease");
-  else if (!(aside = write_aside(folder, made.token, worker, "leased", &now, error)))
-    status = error ? error->status : SCREE_IO;
+  scree_status status = write_aside(aside, made.token, worker, "leased", &now, error);
   for (int i = 0; status == SCREE_OK && !*taken && i < MOST_TRIES; i++) {
     content holder;
     *taken = scree_path_link(aside, made.path);
@@ -178,15 +159,9 @@ scree_status scree_lease_take(const char *folder, const char *name, double lease
     if (!is_dead(&holder, now, lease_s)) break;
     if (bury(made.path, aside, &holder)) note_death(folder, name, &holder);
   }
-  if (aside) scree_path_remove(aside);
-  scree_free(aside);
+  scree_path_remove(aside);
   made.last_renewal = scree_now();
-  if (status == SCREE_OK && *taken) {
-    *lease = made;
-    return SCREE_OK;
-  }
-  scree_free(made.folder);
-  scree_free(made.path);
+  if (status == SCREE_OK && *taken) *lease = made;
   return status;
 }
 
@@ -200,50 +175,38 @@ scree_status scree_lease_renew(scree_lease *lease, const char *note, bool *kept,
   double now;
   *kept = still_ours(lease);
   if (!*kept) return SCREE_OK;
-  char *aside = write_aside(lease->folder, lease->token, lease->worker, note, &now, error);
-  if (!aside) return error ? error->status : SCREE_IO;
-  scree_status status = SCREE_OK;
-  if (!scree_path_rename(aside, lease->path))
-    status = scree_fail(error, SCREE_IO, "%s: cannot renew: %s", lease->path, strerror(errno));
-  scree_free(aside);
+  SCREE_TRY(write_aside(lease->aside, lease->token, lease->worker, note, &now, error));
   lease->last_renewal = scree_now();
-  return status;
+  if (scree_path_rename(lease->aside, lease->path)) return SCREE_OK;
+  return scree_fail(error, SCREE_IO, "%s: cannot renew: %s", lease->path, strerror(errno));
 }
 
 void scree_lease_release(scree_lease *lease) {
-  if (lease->path && still_ours(lease)) scree_path_remove(lease->path);
-  scree_free(lease->folder);
-  scree_free(lease->path);
+  if (*lease->path && still_ours(lease)) scree_path_remove(lease->path);
   *lease = (scree_lease){0};
 }
 
-scree_status scree_lease_look(const char *folder, const char *name, double lease_s,
-                              scree_lease_view *view, scree_error *error) {
+scree_lease_view scree_lease_look(const char *folder, const char *name, double lease_s) {
   content c;
   scree_lease_view seen = {0};
-  char *path = join(folder, name, ""), token[64];
-  if (!path) return scree_fail_memory(error, 0, "a lease");
-  seen.held = read_content(path, &c);
-  scree_free(path);
+  char token[64];
+  seen.held = read_content(JOIN(folder, name, ""), &c);
   if (seen.held) {
-    double now;
+    double now = scree_calendar_time(); /* in a folder that we may only read */
     make_token(token);
-    char *aside = write_aside(folder, token, "", "", &now, NULL);
-    if (!aside) now = scree_calendar_time(); /* a folder we may only read */
-    if (aside) scree_path_remove(aside);
-    scree_free(aside);
+    const char *aside = JOIN(folder, ".new-", token);
+    if (write_aside(aside, token, "", "", &now, NULL) == SCREE_OK) scree_path_remove(aside);
     seen.age = now - c.modified;
     seen.alive = !is_dead(&c, now, lease_s);
     memcpy(seen.worker, c.worker, sizeof seen.worker);
     memcpy(seen.note, c.note, sizeof seen.note);
   }
-  *view = seen;
-  return SCREE_OK;
+  return seen;
 }
 
 size_t scree_lease_deaths(const char *folder, const char *name, char last[SCREE_LEASE_NAME]) {
-  char *path = join(folder, name, ".deaths"), line[SCREE_LEASE_NAME];
-  FILE *stream = path ? scree_open_stream(path, "r") : NULL;
+  char line[SCREE_LEASE_NAME];
+  FILE *stream = scree_open_stream(JOIN(folder, name, ".deaths"), "r");
   size_t count = 0;
   while (stream && fgets(line, sizeof line, stream)) {
     line[strcspn(line, "\n")] = 0;
@@ -251,12 +214,9 @@ size_t scree_lease_deaths(const char *folder, const char *name, char last[SCREE_
     count++;
   }
   if (stream) fclose(stream);
-  scree_free(path);
   return count;
 }
 
 void scree_lease_forget_deaths(const char *folder, const char *name) {
-  char *path = join(folder, name, ".deaths");
-  if (path) scree_path_remove(path);
-  scree_free(path);
+  scree_path_remove(JOIN(folder, name, ".deaths"));
 }

@@ -4,11 +4,13 @@
 #pragma once
 
 #include "base/error.h"
+#include "base/path.h"
 
 enum { SCREE_LEASE_NAME = 160, SCREE_LEASE_NOTE = 96 };
 
 typedef struct scree_lease {
-  char *folder, *path;
+  char path[SCREE_PATH_BYTES];   /* "": there is none */
+  char aside[SCREE_PATH_BYTES];  /* where a new one is written */
   char token[64];                /* ours alone */
   char worker[SCREE_LEASE_NAME]; /* for people */
   double last_renewal;           /* on the clock */
@@ -34,8 +36,7 @@ scree_status scree_lease_renew(scree_lease *lease, const char *note, bool *kept,
 /* Gives it back, if it is still ours. */
 void scree_lease_release(scree_lease *lease);
 
-scree_status scree_lease_look(const char *folder, const char *name, double lease_s,
-                              scree_lease_view *view, scree_error *error);
+scree_lease_view scree_lease_look(const char *folder, const char *name, double lease_s);
 /* How many holders died; *last (may be NULL) gets the last one's name. */
 size_t scree_lease_deaths(const char *folder, const char *name, char last[SCREE_LEASE_NAME]);
 /* Forgets them. */

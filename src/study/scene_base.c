@@ -189,20 +189,14 @@ scree_status scree_study_look(scree_study *study, scree_error *error) {
 }
 
 scree_status scree_study_keep_scene(const scree_study *study, scree_error *error) {
-  char full[4096], *path;
+  char full[4096];
   if (!study->scene_is_file) return SCREE_OK;
   if (!scree_path_full(study->scene_path, full, sizeof full))
     return scree_fail(error, SCREE_IO, "%s: cannot be found", study->scene_path);
-  if (!(path = scree_study_path(study, "", copy_name, "")))
-    return scree_fail_memory(error, 0, "a path");
   scree_output output;
-  scree_status status = scree_output_open(path, true, &output, error);
-  if (status == SCREE_OK) {
-    fprintf(output.stream, "%s%s\n%s", copy_mark, full, study->scene_text);
-    status = scree_output_commit(&output, error);
-  }
-  scree_free(path);
-  return status;
+  SCREE_TRY(scree_output_open(SCREE_STUDY_PATH(study, "", copy_name, ""), true, &output, error));
+  fprintf(output.stream, "%s%s\n%s", copy_mark, full, study->scene_text);
+  return scree_output_commit(&output, error);
 }
 
 /* ---- the shapes of a run ---- */

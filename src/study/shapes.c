@@ -16,10 +16,6 @@
 
 static const double pi = 3.14159265358979324;
 
-static bool exists(const char *path) {
-  return path && scree_path_exists(path);
-}
-
 /* ---- what is known ---- */
 
 static bool number_of(const scree_yaml *root, const char *key, double *value) {
@@ -48,10 +44,9 @@ static bool take_facts(const scree_yaml *root, scree_study_shape *shape) {
 /* Reads NAME.yaml where there is one. */
 static scree_status know_shape(const scree_study *study, scree_study_shape *shape,
                                scree_error *error) {
-  char *path = scree_study_path(study, "shapes", shape->name, ".yaml");
-  if (!path) return scree_fail_memory(error, 0, "a path");
+  const char *path = SCREE_STUDY_PATH(study, "shapes", shape->name, ".yaml");
   scree_status status = SCREE_OK;
-  if (!shape->known && exists(path)) {
+  if (!shape->known && scree_path_exists(path)) {
     scree_yaml root;
     status = scree_yaml_read(path, &root, error);
     if (status == SCREE_OK) {
@@ -67,7 +62,6 @@ static scree_status know_shape(const scree_study *study, scree_study_shape *shap
       scree_yaml_free(&root);
     }
   }
-  scree_free(path);
   return status;
 }
 
@@ -102,8 +96,9 @@ static double rp_of(const scree_study_shape *shape, const char *text) {
   return rp;
 }
 
-/* The file of a shape at an Rp text; NULL when memory is out. */
-static char *level_path(const scree_study *study, const scree_study_shape *shape, const char *rp) {
+/* The file of a shape at an Rp text. */
+static const char *level_path(const scree_study *study, const scree_study_shape *shape,
+                              const char *rp, char path[SCREE_PATH_BYTES]) {
   char ending[64], number[SCREE_NUMBER_SIZE];
   double factor;
   if (!strcmp(rp, "scan")) {
@@ -117,8 +112,9 @@ static char *level_path(const scree_study *study, const scree_study_shape *shape
     scree_number_format_digits(rp_of(shape, rp), 9, number);
     snprintf(ending, sizeof ending, "-rp%s.ply", number);
   }
-  return scree_study_path(study, "shapes", shape->name, ending);
+  return scree_study_path(study, "shapes", shape->name, ending, path);
 }
+#define LEVEL_PATH(study, shape, rp) level_path(study, shape, rp, (char[SCREE_PATH_BYTES]){0})
 
 static bool uses(const scree_study *study, size_t point, size_t shape) {
   const scree_shape_set *set = &study->sets[study->points[point].set];
@@ -128,17 +124,12 @@ static bool uses(const scree_study *study, size_t point, size_t shape) {
 }
 
 /* Whether everything that any run wants of the shape is there. */
-static scree_status is_complete(const scree_study *study, size_t shape, bool *complete,
-                                scree_error *error) {
-  *complete = study->shapes[shape].known;
-  for (size_t p = 0; *complete && p < study->point_count; p++) {
-    if (!uses(study, p, shape) || !strcmp(study->points[p].rp, "spheres")) continue;
-    char *path = level_path(study, &study->shapes[shape], study->points[p].rp);
-    if (!path) return scree_fail_memory(error, 0, "a path");
-    *complete = exists(path);
-    scree_free(path);
-  }
-  return SCREE_OK;
+static bool is_complete(const scree_study *study, size_t shape) {
+  bool complete = study->shapes[shape].known;
+  for (size_t p = 0; complete && p < study->point_count; p++)
+    if (uses(study, p, shape) && strcmp(study->points[p].rp, "spheres") != 0)
+      complete = scree_path_exists(LEVEL_PATH(study, &study->shapes[shape], study->points[p].rp));
+  return complete;
 }
 
 /* ---- making a shape ---- */
@@ -228,10 +219,9 @@ static scree_status write_level(const scree_study *study, const scree_study_shap
                                 const char *rp, const scree_curve *curve,
                                 const scree_progress *progress, scree_error *error) {
   scree_mesh mesh;
-  char *path = level_path(study, shape, rp);
-  if (!path) return scree_fail_memory(error, 0, "a path");
+  const char *path = LEVEL_PATH(study, shape, rp);
   scree_status status = SCREE_OK;
-  if (!exists(path)) {
+  if (!scree_path_exists(path)) {
     size_t spheres = scree_study_spheres(rp);
     status = scree_curve_mesh(curve, find_level(shape, curve, rp), &mesh, error);
     if (status == SCREE_OK) {
@@ -240,13 +230,12 @@ static scree_status write_level(const scree_study *study, const scree_study_shap
       scree_mesh_free(&mesh);
     }
   }
-  scree_free(path);
   return status;
 }
 
 static scree_status write_facts(const scree_study *study, const scree_study_shape *shape,
                                 scree_error *error) {
-  char *path = scree_study_path(study, "shapes", shape->name, ".yaml"), sum[40];
+  char sum[40];
   const struct {
     const char *key;
     double value;
@@ -256,10 +245,8 @@ static scree_status write_facts(const scree_study *study, const scree_study_shap
                {"robust_rp", shape->robust_rp},
                {"recommended_rp", shape->recommended_rp}};
   scree_output output;
-  if (!path) return scree_fail_memory(error, 0, "a path");
-  scree_status status = scree_output_open(path, true, &output, error);
-  scree_free(path);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(SCREE_STUDY_PATH(study, "shapes", shape->name, ".yaml"), true,
+                              &output, error));
   scree_checksum_text(shape->checksum, sum);
   fputs("source: '", output.stream);
   for (const char *c = shape->word; *c; c++) fprintf(output.stream, *c == '\'' ? "''" : "%c", *c);
@@ -342,14 +329,13 @@ static scree_status prepare_shape(scree_study *study, size_t index,
   char name[160], worker[SCREE_LEASE_NAME];
   snprintf(name, sizeof name, "shape-%s", shape->name);
   scree_lease_default_worker(worker);
-  char *folder = scree_study_path(study, "leases", "", "");
-  if (!folder) return scree_fail_memory(error, 0, "a path");
+  const char *folder = SCREE_STUDY_PATH(study, "leases", "", "");
   scree_status status = SCREE_OK;
   for (bool complete = false; status == SCREE_OK;) {
     bool taken;
     scree_lease lease;
     status = know_shape(study, shape, error);
-    if (status == SCREE_OK) status = is_complete(study, index, &complete, error);
+    if (status == SCREE_OK) complete = is_complete(study, index);
     if (status != SCREE_OK || complete) break;
     status = scree_lease_take(folder, name, options->lease_s, worker, &taken, &lease, error);
     if (status != SCREE_OK) break;
@@ -362,7 +348,6 @@ static scree_status prepare_shape(scree_study *study, size_t index,
     status = make_shape(study, index, &keeping, error);
     scree_lease_release(&lease);
   }
-  scree_free(folder);
   return status;
 }
 
@@ -370,7 +355,8 @@ static scree_status prepare_shape(scree_study *study, size_t index,
 static scree_status check_unchanged(const scree_study_shape *shape, scree_error *error) {
   char *bytes;
   size_t count;
-  if (!shape->path || !exists(shape->path)) return SCREE_OK; /* the levels are all that is needed */
+  if (!shape->path || !scree_path_exists(shape->path))
+    return SCREE_OK; /* the levels are all that is needed */
   SCREE_TRY(scree_file_read(shape->path, 0, &bytes, &count, error));
   scree_checksum sum = scree_checksum_of(bytes, count);
   scree_free(bytes);
@@ -412,12 +398,10 @@ static scree_status make_particle(const scree_study *study, const scree_study_sh
     return scree_particle_sphere(scree_cbrt(0.75 * shape->volume / pi), particle, error);
   scree_read_options read = scree_default_read_options();
   read.unit_m = 1;
-  char *path = level_path(study, shape, rp);
-  if (!path) return scree_fail_memory(error, 0, "a path");
+  const char *path = LEVEL_PATH(study, shape, rp);
   scree_status status = scree_study_spheres(rp)
                             ? scree_particle_clump_read(path, &read, particle, error)
                             : read_mesh_particle(path, particle, error);
-  scree_free(path);
   if (status == SCREE_OK || !error) return status;
   scree_error inner = *error;
   return scree_fail(error, status, "%s at rp %s: %.700s", shape->name, rp, inner.message);

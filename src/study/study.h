@@ -1,6 +1,7 @@
 /* A study: what its file says, the points and runs that follow from it, and its folder. */
 #pragma once
 
+#include "base/path.h"
 #include "base/schema.h"
 #include "choice/criterion.h"
 
@@ -163,9 +164,11 @@ scree_status scree_study_command_word(const scree_study *study, size_t run, size
                                       const char *folder, char *text, size_t size,
                                       scree_error *error);
 
-/* folder.c: FOLDER/KIND/NAME ENDING, to be freed with scree_free; NULL when memory is out. */
-char *scree_study_path(const scree_study *study, const char *kind, const char *name,
-                       const char *ending);
+/* folder.c: FOLDER/KIND/NAME ENDING; by the macro until the end of the block. */
+const char *scree_study_path(const scree_study *study, const char *kind, const char *name,
+                             const char *ending, char path[SCREE_PATH_BYTES]);
+#define SCREE_STUDY_PATH(study, kind, name, ending)                                                \
+  scree_study_path(study, kind, name, ending, (char[SCREE_PATH_BYTES]){0})
 
 /* confidence in (0, 1), for example 0.95: of normally distributed values. */
 scree_summary scree_summarise(const double *values, size_t count, double confidence);

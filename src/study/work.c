@@ -20,8 +20,8 @@ typedef struct work {
   const scree_study_options *options;
   const scree_progress *progress;
   char worker[SCREE_LEASE_NAME], machine[160];
-  char *leases; /* folder */
-  size_t first; /* run to look at first: all before it have ended */
+  const char *leases; /* folder */
+  size_t first;       /* run to look at first: all before it have ended */
   /* the run at hand */
   size_t run;
   scree_lease lease;
@@ -38,19 +38,13 @@ static void describe_machine(char machine[160]) {
   snprintf(machine, 160, "%.63s, %.80s", host, processor);
 }
 
-static char *run_file(const work *w, const char *kind, const char *ending, scree_error *error) {
-  char *path = scree_study_path(w->study, kind, w->study->keys[w->run], ending);
-  if (!path) scree_fail_memory(error, 0, "a path");
-  return path;
-}
+/* A file of the run, until the end of the block. */
+#define RUN_FILE(w, kind, ending)                                                                  \
+  SCREE_STUDY_PATH((w)->study, kind, (w)->study->keys[(w)->run], ending)
 
 /* Whether the run has a record. One that cannot be read is put aside, and the run waits again. */
-static scree_status has_ended(const work *w, bool *ended, scree_error *error) {
-  char *path = run_file(w, "results", ".yaml", error);
-  if (!path) return SCREE_OUT_OF_MEMORY;
-  *ended = scree_path_exists(path);
-  scree_free(path);
-  return SCREE_OK;
+static bool has_ended(const work *w) {
+  return scree_path_exists(RUN_FILE(w, "results", ".yaml"));
 }
 
 /* ---- one run ---- */
@@ -81,10 +75,8 @@ static bool watch(void *context, const scree_scene_state *state) {
 static scree_status simulate(work *w, const scree_scene_file *file, scree_shape_store *store,
                              scree_study_record *record, scree_error *error) {
   scree_scene *scene = NULL;
-  char *folder = run_file(w, "runs", "", error);
-  if (!folder) return SCREE_OUT_OF_MEMORY;
   scree_scene_job job = {.file = file,
-                         .folder = folder,
+                         .folder = RUN_FILE(w, "runs", ""),
                          .resume = true,
                          .states = true,
                          /* one of each point to look at */
@@ -104,7 +96,6 @@ static scree_status simulate(work *w, const scree_scene_file *file, scree_shape_
   else if (error)
     *error = own;
   scree_scene_free(scene);
-  scree_free(folder);
   return status;
 }
 
@@ -115,14 +106,12 @@ static bool watch_command(void *context) {
 }
 
 static scree_status run_command(work *w, scree_study_record *record, scree_error *error) {
-  char *folder = run_file(w, "runs", "", error);
-  if (!folder) return SCREE_OUT_OF_MEMORY;
+  const char *folder = RUN_FILE(w, "runs", "");
   double wall = scree_now();
   scree_status status = scree_folder_create(folder, error);
   if (status == SCREE_OK)
     status = scree_study_record_command(w->study, w->run, folder, watch_command, w, record, error);
   record->costs.wall_seconds = record->costs.processor_seconds = scree_now() - wall;
-  scree_free(folder);
   return status;
 }
 
@@ -149,14 +138,9 @@ static bool is_machines_fault(scree_status status) {
 
 static scree_status write_record(const work *w, const scree_study_record *record,
                                  scree_error *error) {
-  char *path = run_file(w, "results", ".yaml", error);
-  if (!path) return SCREE_OUT_OF_MEMORY;
-  scree_status status = scree_study_record_write(record, path, error);
-  scree_free(path);
-  char *checkpoint = status == SCREE_OK ? run_file(w, "runs", "/checkpoint.scree", NULL) : NULL;
-  if (checkpoint) scree_path_remove(checkpoint); /* the last frame stays */
-  scree_free(checkpoint);
-  return status;
+  SCREE_TRY(scree_study_record_write(record, RUN_FILE(w, "results", ".yaml"), error));
+  scree_path_remove(RUN_FILE(w, "runs", "/checkpoint.scree")); /* the last frame stays */
+  return SCREE_OK;
 }
 
 static void record_failure(scree_study_record *record, const char *reason) {
@@ -211,10 +195,9 @@ static scree_status take_run(work *w, bool *taken, size_t *open, scree_error *er
   *taken = false;
   *open = 0;
   for (size_t i = w->first; i < count && !*taken; i++) {
-    bool ended;
     char name[64];
     w->run = i;
-    SCREE_TRY(has_ended(w, &ended, error));
+    bool ended = has_ended(w);
     if (ended && *open == 0) w->first = i + 1;
     if (ended) continue;
     ++*open;
@@ -223,12 +206,9 @@ static scree_status take_run(work *w, bool *taken, size_t *open, scree_error *er
         scree_lease_take(w->leases, name, w->options->lease_s, w->worker, taken, &w->lease, error));
     if (!*taken) continue;
     /* it may have ended between the look and the lease */
-    scree_status status = has_ended(w, &ended, error);
-    if (status != SCREE_OK || ended) {
-      scree_lease_release(&w->lease);
-      *taken = false;
-    }
-    if (status != SCREE_OK) return status;
+    if (!has_ended(w)) continue;
+    scree_lease_release(&w->lease);
+    *taken = false;
   }
   return SCREE_OK;
 }
@@ -242,10 +222,9 @@ static scree_status pause_work(const work *w, scree_error *error) {
 }
 
 /* Records of failures are moved aside: KEY.failed-N. */
-static scree_status reopen_failed(work *w, scree_error *error) {
+static void reopen_failed(work *w) {
   for (w->run = 0; w->run < scree_study_run_count(w->study); w->run++) {
-    char *path = run_file(w, "results", ".yaml", error);
-    if (!path) return SCREE_OUT_OF_MEMORY;
+    const char *path = RUN_FILE(w, "results", ".yaml");
     scree_study_record record;
     bool failed = false;
     if (scree_path_exists(path) && scree_study_record_read(path, &record, NULL) == SCREE_OK) {
@@ -255,19 +234,12 @@ static scree_status reopen_failed(work *w, scree_error *error) {
     for (int n = 1; failed && n < RETRIES_KEPT; n++) {
       char ending[32];
       snprintf(ending, sizeof ending, ".failed-%d", n);
-      char *aside = run_file(w, "results", ending, error);
-      if (!aside) {
-        scree_free(path);
-        return SCREE_OUT_OF_MEMORY;
-      }
-      bool there = scree_path_exists(aside);
-      if (!there) scree_path_rename(path, aside);
-      scree_free(aside);
-      if (!there) break;
+      const char *aside = RUN_FILE(w, "results", ending);
+      if (scree_path_exists(aside)) continue;
+      scree_path_rename(path, aside);
+      break;
     }
-    scree_free(path);
   }
-  return SCREE_OK;
 }
 
 void scree_study_answers_mark(const scree_study *study, char mark[SCREE_CHECKSUM_TEXT]) {
@@ -284,14 +256,13 @@ void scree_study_answers_mark(const scree_study *study, char mark[SCREE_CHECKSUM
 scree_status scree_study_answer_again(const scree_study *study, size_t run,
                                       scree_study_record *record, scree_error *error) {
   bool command = study->command.count > 0;
-  char *path = scree_study_path(study, "runs", study->keys[run], command ? "" : "/last.scree");
-  if (!path) return scree_fail_memory(error, 0, "a path");
+  const char *path =
+      SCREE_STUDY_PATH(study, "runs", study->keys[run], command ? "" : "/last.scree");
   scree_scene *scene = NULL;
   scree_status status = command ? scree_study_answer_command(study, path, record, error)
                                 : scree_scene_load(path, &scene, error);
   if (scene) status = scree_study_answer_scene(study, scene, record, error);
   scree_scene_free(scene);
-  scree_free(path);
   record->ended = nextafter(record->ended, INFINITY); /* the database sees that it is another */
   return status;
 }
@@ -309,25 +280,18 @@ static scree_status renew_answers(const work *w, const char *path, scree_study_r
 
 /* A record that cannot be read is no result, nor is one without what is asked for: the run waits
  * again. */
-static scree_status put_broken_aside(work *w, scree_error *error) {
+static void put_broken_aside(work *w) {
   for (w->run = 0; w->run < scree_study_run_count(w->study); w->run++) {
-    char *path = run_file(w, "results", ".yaml", error);
-    char *aside = path ? run_file(w, "results", ".broken", error) : NULL;
-    if (aside && scree_path_exists(path)) {
-      scree_study_record record;
-      scree_status status = scree_study_record_read(path, &record, NULL);
-      if (status == SCREE_OK) {
-        status = renew_answers(w, path, &record);
-        scree_study_record_free(&record);
-      }
-      if (status == SCREE_BAD_FILE) scree_path_rename(path, aside);
+    const char *path = RUN_FILE(w, "results", ".yaml");
+    scree_study_record record;
+    if (!scree_path_exists(path)) continue;
+    scree_status status = scree_study_record_read(path, &record, NULL);
+    if (status == SCREE_OK) {
+      status = renew_answers(w, path, &record);
+      scree_study_record_free(&record);
     }
-    bool good = aside != NULL;
-    scree_free(path);
-    scree_free(aside);
-    if (!good) return SCREE_OUT_OF_MEMORY;
+    if (status == SCREE_BAD_FILE) scree_path_rename(path, RUN_FILE(w, "results", ".broken"));
   }
-  return SCREE_OK;
 }
 
 static scree_status work_on(work *w, size_t *completed, scree_error *error) {
@@ -355,7 +319,8 @@ scree_status scree_study_reopen(scree_study *study, scree_error *error) {
   work w = {.study = study};
   if (!study->keys)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "a study must be prepared before work on it");
-  return reopen_failed(&w, error);
+  reopen_failed(&w);
+  return SCREE_OK;
 }
 
 scree_status scree_study_work(scree_study *study, const scree_study_options *options,
@@ -372,11 +337,9 @@ scree_status scree_study_work(scree_study *study, const scree_study_options *opt
   else
     scree_lease_default_worker(w.worker);
   describe_machine(w.machine);
-  w.leases = scree_study_path(study, "leases", "", "");
-  if (!w.leases) return scree_fail_memory(error, 0, "a path");
-  scree_status status = put_broken_aside(&w, error);
-  if (status == SCREE_OK) status = work_on(&w, &done, error);
-  scree_free(w.leases);
+  w.leases = SCREE_STUDY_PATH(study, "leases", "", "");
+  put_broken_aside(&w);
+  scree_status status = work_on(&w, &done, error);
   if (completed) *completed = done;
   return status;
 }

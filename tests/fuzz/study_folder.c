@@ -98,13 +98,12 @@ static void check_sentence(scree_status status, const scree_error *error) {
 }
 
 static void look_at_leases(void) {
-  scree_lease_view view;
   scree_lease lease;
   scree_error error = {0};
   char last[SCREE_LEASE_NAME], path[128];
   bool taken;
   snprintf(path, sizeof path, "%s/leases", fuzz_folder);
-  FUZZ_CHECK(scree_lease_look(path, "run", 1e6, &view, &error) == SCREE_OK);
+  scree_lease_view view = scree_lease_look(path, "run", 1e6);
   FUZZ_CHECK(strlen(view.worker) < sizeof view.worker && strlen(view.note) < sizeof view.note);
   scree_lease_deaths(path, "run", last);
   FUZZ_CHECK(scree_lease_take(path, "run", 1e6, "fuzz", &taken, &lease, &error) == SCREE_OK);

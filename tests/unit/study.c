@@ -202,7 +202,6 @@ static void errors_say_line_column_and_limit(void **state) {
 static void a_lease_has_one_holder(void **state) {
   (void)state;
   scree_lease lease, second;
-  scree_lease_view view;
   scree_error error;
   bool taken, kept;
   CHECK_OK(scree_lease_take(in_folder("."), "one", 100, "me", &taken, &lease, &error), error);
@@ -211,7 +210,7 @@ static void a_lease_has_one_holder(void **state) {
   assert_false(taken);
   CHECK_OK(scree_lease_renew(&lease, "running 0.5 lifting", &kept, &error), error);
   assert_true(kept);
-  CHECK_OK(scree_lease_look(in_folder("."), "one", 100, &view, &error), error);
+  scree_lease_view view = scree_lease_look(in_folder("."), "one", 100);
   assert_true(view.held && view.alive);
   assert_string_equal(view.worker, "me");
   assert_string_equal(view.note, "running 0.5 lifting");
@@ -379,13 +378,12 @@ static void hashes_of(const scree_study *study, char *text, size_t size) {
   size_t used = 0;
   scree_error error;
   for (size_t i = 0; i < scree_study_run_count(study); i++) {
-    char *path = scree_study_path(study, "results", study->keys[i], ".yaml");
+    const char *path = SCREE_STUDY_PATH(study, "results", study->keys[i], ".yaml");
     scree_study_record record;
     CHECK_OK(scree_study_record_read(path, &record, &error), error);
     assert_false(record.failed);
     used += (size_t)snprintf(text + used, size - used, "%s\n", record.hash);
     scree_study_record_free(&record);
-    scree_free(path);
   }
 }
 
@@ -720,9 +718,8 @@ static void damaged_files_are_told_and_made_again(void **state) {
   unlink(in_folder("full/study.sqlite"));
   CHECK_OK(scree_study_collect(study, true, &error), error);
   /* a record cut short is no result */
-  char *record = scree_study_path(study, "results", study->keys[1], ".yaml");
+  const char *record = SCREE_STUDY_PATH(study, "results", study->keys[1], ".yaml");
   assert_int_equal(truncate(record, 100), 0);
-  scree_free(record);
   CHECK_OK(scree_study_work(study, &o, NULL, &done, &error), error);
   assert_int_equal(done, 1);
   CHECK_OK(scree_study_collect(study, true, &error), error);

@@ -116,9 +116,8 @@ static scree_study *make_study(const outcome *o) {
     scree_record_point series[21];
     scree_study_record r =
         make_record(o, level_of(study, run), scree_study_run_replicate(study, run), series);
-    char *file = scree_study_path(study, "results", study->keys[run], ".yaml");
+    const char *file = SCREE_STUDY_PATH(study, "results", study->keys[run], ".yaml");
     CHECK_OK(scree_study_record_write(&r, file, &error), error);
-    scree_free(file);
   }
   CHECK_OK(scree_study_collect(study, true, &error), error);
   return study;
