@@ -103,15 +103,22 @@ static const char *input_at(const scree_plan *plan, size_t index) {
   return NULL;
 }
 
-bool scree_scene_file_input(const scree_scene_file *file, size_t index, char *path, size_t size) {
+scree_status scree_scene_file_find_input(const scree_scene_file *file, size_t index, char *path,
+                                         size_t size, scree_error *error) {
   scree_arena arena = {0};
   scree_plan plan;
-  const char *name = NULL;
-  if (scree_scene_file_plan(file, &arena, &plan, NULL) == SCREE_OK) name = input_at(&plan, index);
-  bool fits =
-      name && (size_t)snprintf(path, size, "%s%s", *name == '/' ? "" : file->folder, name) < size;
+  scree_status status = scree_scene_file_plan(file, &arena, &plan, error);
+  const char *name = status == SCREE_OK ? input_at(&plan, index) : NULL;
+  const char *folder = name && *name != '/' ? file->folder : "";
+  if ((size_t)snprintf(path, size, "%s%s", folder, name ? name : "") >= size)
+    status = scree_fail(error, SCREE_BAD_FILE, "%s: the path of file %zu is longer than %zu bytes",
+                        file->name, index + 1, size - 1);
   scree_arena_free(&arena);
-  return fits;
+  return status;
+}
+
+bool scree_scene_file_input(const scree_scene_file *file, size_t index, char *path, size_t size) {
+  return scree_scene_file_find_input(file, index, path, size, NULL) == SCREE_OK && *path;
 }
 
 /* ---- templates ---- */

@@ -203,6 +203,9 @@ scree_status scree_scene_file_apply(scree_scene_file *file, const scree_yaml *se
 /* plan.c of a file: into the arena of whoever asks. */
 scree_status scree_scene_file_plan(const scree_scene_file *file, scree_arena *arena,
                                    scree_plan *plan, scree_error *error);
+/* As scree_scene_file_input, but that it fails where the file or memory does; "": no more. */
+scree_status scree_scene_file_find_input(const scree_scene_file *file, size_t index, char *path,
+                                         size_t size, scree_error *error);
 /* A file of a tree, which it takes, of that name. */
 scree_status scree_scene_file_keep(scree_yaml *root, const char *name, scree_scene_file **file,
                                    scree_error *error);

@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/platform.h"
+#include "scene/scene.h"
 #include "study/design.h"
 #include "study/study.h"
 
@@ -139,7 +140,8 @@ static scree_status write_files(const scree_study *study, const scree_scene_file
   for (size_t i = 0; status == SCREE_OK; i++) {
     char path[4096], *bytes, sum[SCREE_CHECKSUM_TEXT];
     size_t count;
-    if (!scree_scene_file_input(file, i, path, sizeof path)) break;
+    SCREE_TRY(scree_scene_file_find_input(file, i, path, sizeof path, error));
+    if (!*path) break;
     if (is_own_file(study, path)) continue;
     status = scree_file_read(path, 0, &bytes, &count, error);
     if (status != SCREE_OK) break;
