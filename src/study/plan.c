@@ -1,10 +1,10 @@
 /* The study's file, strictly: every key is known, every value in its range, every error has line
  * and column. Values of the scene are tried on a copy at once, so that no run meets one that cannot
  * be. */
-#include "base/schema_rows.h"
 #include "scene/plan.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/schema_rows.h"
 #include "study/design.h"
 #include "study/study.h"
 
@@ -51,7 +51,6 @@ typedef struct window_fields {
   scree_place place;
   double from, until, at;
 } window_fields;
-
 
 #define RECORD sample_fields
 static const scree_field sample_table[] = {
