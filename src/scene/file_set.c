@@ -256,13 +256,14 @@ static bool find_meant(const scree_scene_file *file, const char *field, char *me
 scree_status scree_scene_file_try(scree_scene_file *file, const char *field, const char *value,
                                   scree_error *error) {
   scree_error why, before;
-  bool sound = scree_scene_file_check(file, &before) == SCREE_OK;
+  scree_status sound = scree_scene_file_check(file, &before);
+  if (sound == SCREE_OUT_OF_MEMORY) return scree_fail(error, sound, "%s", before.message);
   scree_status status = scree_scene_file_set(file, field, value, &why);
   if (status == SCREE_BAD_FILE) status = SCREE_BAD_ARGUMENT; /* no other field can mend it */
   if (status != SCREE_OK) return scree_fail(error, status, "%s", why.message);
-  if (!sound && scree_scene_file_check(file, &why) != SCREE_OK &&
-      !strcmp(why.message, before.message))
-    return scree_fail(error, SCREE_BAD_FILE, "%s", why.message); /* it is not of this setting */
+  if (sound != SCREE_OK) status = scree_scene_file_check(file, &why);
+  if (status == SCREE_OUT_OF_MEMORY || (status != SCREE_OK && !strcmp(why.message, before.message)))
+    return scree_fail(error, status, "%s", why.message); /* it is not of this setting */
   char *name = file->name, none[] = "";
   file->name = none; /* its errors say nothing of the file */
   status = scree_scene_file_check(file, &why);
