@@ -13,7 +13,6 @@
 
 enum { LARGEST_FILE = 1 << 20, MOST_CURVE = 40 };
 
-
 #define RECORD scree_plan_experiment
 static const scree_field experiment_table[] = {
     TEXT(scene, "file of a scene"),
