@@ -73,6 +73,6 @@ for case in "$@"; do
   orifice) folder= ;; # nothing measured
   *) echo "run.sh: no case '$case'; there are boulders, drum, penetration and orifice" >&2 && exit 2 ;;
   esac
-  if [ -d "$SCREE_EVIDENCE_DIR/$folder" ]; then $case; else echo "$case: skipped, there is no folder $SCREE_EVIDENCE_DIR/$folder"; fi
+  if [ -z "$folder" ] || [ -d "$SCREE_EVIDENCE_DIR/$folder" ]; then $case; else echo "$case: skipped, there is no folder $SCREE_EVIDENCE_DIR/$folder"; fi
 done
 "$here/figures.py"
