@@ -22,7 +22,7 @@ static bool is_round(const scree_particle *particle) {
 }
 
 static double curvature_of(const scree_particle *particle) {
-  if (!is_round(particle)) return 0;
+  if (!particle || !is_round(particle)) return 0;
   bool sphere = particle->measures.kind == SCREE_PARTICLE_SPHERE;
   return 1 / (sphere ? particle->point_radii[0] : 0.5 * particle->measures.size);
 }
