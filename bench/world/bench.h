@@ -1,6 +1,5 @@
 /* What the bench of the world is made of. Everything goes through the public interface. */
-#ifndef BENCH_WORLD_H
-#define BENCH_WORLD_H
+#pragma once
 
 #include "scree.h"
 
@@ -33,5 +32,3 @@ scree_world *shelve_scene(const scree_world *from, size_t copies, double time);
 void lift_scene(scree_world *world, double height);
 /* The scene with the time step given, or 0: automatic. */
 scree_world *retime_scene(const scree_world *from, double time_step);
-
-#endif

@@ -1,8 +1,7 @@
 /* A binary tree of boxes over a fixed set of boxed items: for nearest items, for what meets a box,
  * a ray or another tree. Constant once built, so any number of threads may walk it. The tree
  * depends on the items alone, not on the number of threads. */
-#ifndef SCREE_BASE_TREE_H
-#define SCREE_BASE_TREE_H
+#pragma once
 
 #include "base/box.h"
 #include "base/error.h"
@@ -148,5 +147,3 @@ static inline bool scree_cones_meet(const scree_cone *a, const scree_cone *b) {
 static inline scree_cone scree_cone_opposite(const scree_cone *cone, const mat3 *rotation) {
   return (scree_cone){vec3_neg(mat3_mul_vec(rotation, cone->axis)), cone->cosine, cone->sine};
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The criterion on a plain table of levels: no engine needed, so that it can be tested by hand. */
-#ifndef SCREE_CHOICE_CRITERION_H
-#define SCREE_CHOICE_CRITERION_H
+#pragma once
 
 #include "base/error.h"
 
@@ -49,5 +48,3 @@ bool scree_choice_is_recommended(const char *rp, double *factor);
 
 /* How many of them lie in [rp_min, rp_max], the ends included (to 1e-9 relative). */
 size_t scree_choice_grid_count(const scree_choice_options *options);
-
-#endif

@@ -1,6 +1,5 @@
 /* Measuring the levels of a curve: what a choice is made from. */
-#ifndef SCREE_CHOICE_FIDELITY_H
-#define SCREE_CHOICE_FIDELITY_H
+#pragma once
 
 #include "scree.h"
 
@@ -30,5 +29,3 @@ size_t scree_fidelity_count(const scree_fidelity *fidelity);
 /* Rows are the levels in the order asked for; row must be below the count. */
 size_t scree_fidelity_level_index(const scree_fidelity *fidelity, size_t row);
 size_t scree_fidelity_triangle_count(const scree_fidelity *fidelity, size_t row);
-
-#endif

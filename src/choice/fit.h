@@ -1,7 +1,6 @@
 /* A scan without its scanner's noise, point by point: quadrics fitted to the vertices round each.
  */
-#ifndef SCREE_CHOICE_FIT_H
-#define SCREE_CHOICE_FIT_H
+#pragma once
 
 #include "base/error.h"
 #include "base/vec.h"
@@ -16,5 +15,3 @@ typedef struct scree_fit {
  * normal by the fitted surface's, where that fits. O(vertices + points). */
 scree_status scree_fit_points(const scree_mesh *mesh, const vec3 *points, vec3 *normals,
                               size_t count, scree_fit *fit, scree_error *error);
-
-#endif

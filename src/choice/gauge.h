@@ -1,6 +1,5 @@
 /* A scan made ready to have levels held against it. */
-#ifndef SCREE_CHOICE_GAUGE_H
-#define SCREE_CHOICE_GAUGE_H
+#pragma once
 
 #include "choice/fit.h"
 #include "choice/spread.h"
@@ -77,5 +76,3 @@ bool scree_fidelity_is_usual(const scree_fidelity *fidelity, size_t row);
 scree_status scree_fidelity_insert(scree_fidelity *fidelity, size_t level_index,
                                    size_t triangle_count, const scree_gauge_reading *reading,
                                    size_t *row, scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The recommended level: the coarsest that keeps every tolerance. */
-#ifndef SCREE_CHOICE_RECOMMEND_H
-#define SCREE_CHOICE_RECOMMEND_H
+#pragma once
 
 #include "choice/gauge.h"
 
@@ -31,5 +30,3 @@ scree_status scree_recommend(const scree_curve *curve, const scree_gauge *gauge,
                              const scree_fidelity *fidelity,
                              const double tolerances[SCREE_SHAPE_ERROR_COUNT],
                              scree_recommended *found, scree_error *error);
-
-#endif

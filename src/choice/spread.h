@@ -1,6 +1,5 @@
 /* Points spread evenly over a surface, each standing for the same share of its area. */
-#ifndef SCREE_CHOICE_SPREAD_H
-#define SCREE_CHOICE_SPREAD_H
+#pragma once
 
 #include "base/error.h"
 #include "base/vec.h"
@@ -20,5 +19,3 @@ typedef struct scree_spread {
 scree_status scree_spread_make(const scree_mesh *mesh, size_t count, scree_spread *spread,
                                scree_error *error);
 void scree_spread_free(scree_spread *spread);
-
-#endif

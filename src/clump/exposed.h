@@ -1,7 +1,6 @@
 /* The exposed surface of a clump: directions on each sphere, and how much of each is covered by no
  * other. */
-#ifndef SCREE_CLUMP_EXPOSED_H
-#define SCREE_CLUMP_EXPOSED_H
+#pragma once
 
 #include "base/vec.h"
 #include "scree.h"
@@ -21,5 +20,3 @@ void scree_directions_spread(scree_directions *directions, size_t count);
  * patch that a rim crosses counts in part, so that areas change smoothly as spheres move. */
 void scree_exposed_shares(const scree_directions *directions, const scree_sphere *spheres,
                           size_t count, size_t index, float shares[SCREE_MOST_DIRECTIONS]);
-
-#endif

@@ -1,7 +1,6 @@
 /* The signed distance from a body's surface, negative inside, on a grid of two levels: coarse
  * cells, and within those that the surface passes a finer grid of a quarter of the spacing. */
-#ifndef SCREE_CLUMP_FIELD_H
-#define SCREE_CLUMP_FIELD_H
+#pragma once
 
 #include "clump/target.h"
 
@@ -39,5 +38,3 @@ static inline double scree_distance_field_cells(const scree_distance_field *f) {
 
 /* Trilinear between nodes; outside the grid, what it is at its rim and the way there. */
 float scree_distance_field_at(const scree_distance_field *field, const double p[3]);
-
-#endif

@@ -1,6 +1,5 @@
 /* Published ways of placing spheres one by one, to compare with and to reproduce. */
-#ifndef SCREE_CLUMP_GREEDY_H
-#define SCREE_CLUMP_GREEDY_H
+#pragma once
 
 #include "clump/path.h"
 
@@ -8,5 +7,3 @@
  * than path->most, larger counts have count 0. */
 scree_status scree_greedy_fill(scree_path *path, const scree_clump_options *options,
                                scree_error *error);
-
-#endif

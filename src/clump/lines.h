@@ -1,7 +1,6 @@
 /* Parallel lines through a body: the intervals of each that lie inside. Integrals of what lies
  * between are exact along the lines and sums across them. */
-#ifndef SCREE_CLUMP_LINES_H
-#define SCREE_CLUMP_LINES_H
+#pragma once
 
 #include "clump/target.h"
 
@@ -36,5 +35,3 @@ void scree_lines_free(scree_lines *lines);
 
 /* Whether z lies inside on the line. */
 bool scree_lines_inside(const scree_lines *lines, size_t line, double z);
-
-#endif

@@ -1,7 +1,6 @@
 /* The union of spheres against the body, along lines: moments, IoU, and what each sphere alone
  * covers. */
-#ifndef SCREE_CLUMP_OVERLAP_H
-#define SCREE_CLUMP_OVERLAP_H
+#pragma once
 
 #include "clump/lines.h"
 
@@ -48,5 +47,3 @@ static inline double scree_overlap_loss(const scree_overlap *o, const scree_alon
   double common = o->common - a->inside;
   return o->iou - common / (1 + o->moments[0] - a->inside - a->outside - common);
 }
-
-#endif

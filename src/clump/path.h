@@ -1,6 +1,5 @@
 /* The best clump found of each count of spheres. */
-#ifndef SCREE_CLUMP_PATH_H
-#define SCREE_CLUMP_PATH_H
+#pragma once
 
 #include "base/progress.h"
 #include "clump/sites.h"
@@ -36,5 +35,3 @@ scree_status scree_path_search(scree_path *path, scree_error *error);
 
 /* Measures, and takes it as the best of its count where it is better: false where it is not. */
 bool scree_path_keep(scree_path *path, scree_trial *trial);
-
-#endif

@@ -1,6 +1,5 @@
 /* How well spheres stand for a body. */
-#ifndef SCREE_CLUMP_QUALITY_H
-#define SCREE_CLUMP_QUALITY_H
+#pragma once
 
 #include "clump/exposed.h"
 #include "clump/field.h"
@@ -24,5 +23,3 @@ void scree_judge_free(scree_judge *judge);
  * Distances are taken at some thousand points of either surface: means to a hundredth, maxima are
  * lower bounds. */
 scree_clump scree_judge_clump(scree_judge *judge, const scree_sphere *spheres, size_t count);
-
-#endif

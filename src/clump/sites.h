@@ -1,6 +1,5 @@
 /* Where a sphere may be added: points inside a body, and how deep they lie. */
-#ifndef SCREE_CLUMP_SITES_H
-#define SCREE_CLUMP_SITES_H
+#pragma once
 
 #include "clump/field.h"
 
@@ -34,5 +33,3 @@ size_t scree_sphere_sites_free_of(scree_sphere_sites *places, const scree_sphere
  * makes of the points, from points each farthest from those before. False where there are fewer
  * points. */
 bool scree_sphere_sites_spread(scree_sphere_sites *places, size_t count, scree_sphere *spheres);
-
-#endif

@@ -1,6 +1,5 @@
 /* One Gauss-Newton step of all spheres of a clump. */
-#ifndef SCREE_CLUMP_STEP_H
-#define SCREE_CLUMP_STEP_H
+#pragma once
 
 #include "clump/exposed.h"
 #include "clump/field.h"
@@ -41,5 +40,3 @@ typedef struct scree_step {
 } scree_step;
 
 void scree_mover_step(scree_mover *mover, scree_sphere *spheres, size_t count, scree_step *step);
-
-#endif

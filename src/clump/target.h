@@ -1,8 +1,7 @@
 /* The body that a clump stands for, in its own frame: centroid at 0, volume 1, principal axes, the
  * longest along z, each turned to where the third moment along it is positive. So a turned scan is
  * the same body but for rounding. */
-#ifndef SCREE_CLUMP_TARGET_H
-#define SCREE_CLUMP_TARGET_H
+#pragma once
 
 #include "mesh/index/bvh.h"
 #include "mesh/mesh.h"
@@ -52,5 +51,3 @@ double scree_target_tangent_radius(const scree_target *body, scree_target_point 
 /* The local thickness, twice that radius, of which a quarter of the surface has less. */
 scree_status scree_target_thickness(const scree_target *body, double *thickness,
                                     scree_error *error);
-
-#endif

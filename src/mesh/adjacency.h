@@ -6,8 +6,7 @@
  * ring[ring[h]] == h on a manifold edge (ring[h] is the twin), and a longer cycle where three or
  * more facets meet. A triangle that names a vertex twice takes no part: its half-edges have
  * ring[h] == SCREE_NO_HALF_EDGE. */
-#ifndef SCREE_MESH_ADJACENCY_H
-#define SCREE_MESH_ADJACENCY_H
+#pragma once
 
 #include "base/error.h"
 
@@ -69,5 +68,3 @@ static inline void scree_join(uint32_t *parent, uint32_t i, uint32_t j) {
  * edges of two facets alone. */
 void scree_join_over_edges(const scree_mesh *mesh, const scree_adjacency *adjacency, bool manifold,
                            uint32_t *parent);
-
-#endif

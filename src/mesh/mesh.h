@@ -1,6 +1,5 @@
 /* What every function that takes a mesh from outside asks first. */
-#ifndef SCREE_MESH_MESH_H
-#define SCREE_MESH_MESH_H
+#pragma once
 
 #include "base/box.h"
 #include "base/error.h"
@@ -52,5 +51,3 @@ static inline scree_box scree_facet_box(const scree_mesh *mesh, size_t triangle)
 static inline scree_box scree_box_of_facet(const void *mesh, size_t triangle) {
   return scree_facet_box(mesh, triangle);
 }
-
-#endif

@@ -9,8 +9,7 @@
  * Source: J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric
  * predicates", Discrete & Computational Geometry 18 (1997), 305-363; error bounds of its figures
  * 20 and 21. */
-#ifndef SCREE_MESH_PREDICATES_H
-#define SCREE_MESH_PREDICATES_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -64,5 +63,3 @@ static inline int scree_orient3(const double *a, const double *b, const double *
   int sign = scree_orient3_sure(a, b, c, d);
   return sign ? sign : scree_orient3_exact(a, b, c, d);
 }
-
-#endif

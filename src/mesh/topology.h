@@ -1,6 +1,5 @@
 /* scree_mesh_topology (scree/measure.h) for callers that need the adjacency as well. */
-#ifndef SCREE_MESH_TOPOLOGY_H
-#define SCREE_MESH_TOPOLOGY_H
+#pragma once
 
 #include "mesh/adjacency.h"
 
@@ -13,5 +12,3 @@ scree_status scree_topology_count(const scree_mesh *mesh, const scree_adjacency 
  * nothing. */
 scree_status scree_topology_finish(const scree_mesh *mesh, const scree_adjacency *adjacency,
                                    bool with_shells, scree_topology *topology, scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* From loose triangles to an indexed mesh in canonical order: what every reader ends with. */
-#ifndef SCREE_MESH_WELD_H
-#define SCREE_MESH_WELD_H
+#pragma once
 
 #include "base/alloc.h"
 
@@ -27,5 +26,3 @@ typedef struct scree_corner_source {
 scree_status scree_weld_corners(const scree_corner_source *source, double tolerance,
                                 scree_mesh *mesh, size_t *degenerate_count, size_t *bad_corner,
                                 scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Welding within a tolerance. */
-#ifndef SCREE_MESH_WELD_NEAR_H
-#define SCREE_MESH_WELD_NEAR_H
+#pragma once
 
 #include "base/alloc.h"
 
@@ -8,5 +7,3 @@
  * bounding box diagonal, and brings the result into canonical order (see scree_mesh_weld). The mesh
  * is untouched on failure. */
 scree_status scree_weld_near(scree_mesh *mesh, double tolerance, scree_error *error);
-
-#endif

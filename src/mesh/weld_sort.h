@@ -1,6 +1,5 @@
 /* The canonical order of a mesh: vertices by position, triangles by index. */
-#ifndef SCREE_MESH_WELD_SORT_H
-#define SCREE_MESH_WELD_SORT_H
+#pragma once
 
 #include "base/alloc.h"
 
@@ -15,5 +14,3 @@ typedef struct scree_loose_mesh {
 
 /* Writes the same mesh in canonical order (see scree_mesh_weld). */
 scree_status scree_weld_sort(const scree_loose_mesh *loose, scree_mesh *mesh, scree_error *error);
-
-#endif

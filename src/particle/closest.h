@@ -1,6 +1,5 @@
 /* Closest points: point to face, segment to segment, point to surface. */
-#ifndef SCREE_PARTICLE_CLOSEST_H
-#define SCREE_PARTICLE_CLOSEST_H
+#pragma once
 
 #include "particle/particle.h"
 
@@ -95,5 +94,3 @@ typedef struct scree_ray_interval {
  * `along`, or with its opposite where `least` is 0, other than `skip`; INFINITY for none. */
 double scree_next_passage(const scree_particle *particle, const scree_ray_interval *way,
                           double least, size_t skip, uint32_t *face);
-
-#endif

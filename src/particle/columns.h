@@ -1,6 +1,5 @@
 /* The columns of a table of spheres, as its first line names them. */
-#ifndef SCREE_PARTICLE_COLUMNS_H
-#define SCREE_PARTICLE_COLUMNS_H
+#pragma once
 
 #include "mesh/io/text.h"
 
@@ -24,5 +23,3 @@ size_t scree_columns_split(const char *begin, const char *end, char separator,
  * them. */
 bool scree_columns_name(const char *begin, const char *end, scree_columns *columns,
                         char reason[160]);
-
-#endif

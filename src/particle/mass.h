@@ -1,6 +1,5 @@
 /* Volume, centre and inertia of solids, and the principal frame. */
-#ifndef SCREE_PARTICLE_MASS_H
-#define SCREE_PARTICLE_MASS_H
+#pragma once
 
 #include "base/vec.h"
 #include "scree.h"
@@ -17,5 +16,3 @@ scree_solid scree_solid_of_mesh(const scree_mesh *mesh);
 scree_solid scree_solid_of_spheres(const double *centres, const double *radii, size_t count);
 /* Principal moments of inertia, ascending, and the rotation from the principal frame. */
 void scree_solid_principal(const scree_solid *solid, vec3 *moments, quat *orientation);
-
-#endif

@@ -1,6 +1,5 @@
 /* What a particle knows: its contact features in its own frame. The world reads these directly. */
-#ifndef SCREE_PARTICLE_PARTICLE_H
-#define SCREE_PARTICLE_PARTICLE_H
+#pragma once
 
 #include "base/tree.h"
 #include "particle/mass.h"
@@ -129,5 +128,3 @@ scree_status scree_particle_make_core(scree_particle *particle, double by, scree
 void scree_particle_find_inner(scree_particle *particle);
 /* Trees and the box over what was extracted. */
 scree_status scree_particle_build_trees(scree_particle *particle, scree_error *error);
-
-#endif

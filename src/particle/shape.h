@@ -1,6 +1,5 @@
 /* Making shapes: what is not public of it. */
-#ifndef SCREE_PARTICLE_SHAPE_H
-#define SCREE_PARTICLE_SHAPE_H
+#pragma once
 
 #include "base/error.h"
 
@@ -9,5 +8,3 @@ scree_status scree_box_mesh(const double sides[3], scree_mesh *mesh, scree_error
 /* Has the store give this particle for the spec; it holds its own reference. */
 scree_status scree_shape_store_put(scree_shape_store *store, const scree_shape_spec *spec,
                                    const scree_shape_made *made, scree_error *error);
-
-#endif

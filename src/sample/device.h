@@ -1,8 +1,7 @@
 /* The nine devices as drawings. Synthetic: in the manner of phones and cameras of their time, after
  * no make in particular. x is the width, y the length (cameras: the height), z points out of the
  * front. */
-#ifndef SCREE_SAMPLE_DEVICE_H
-#define SCREE_SAMPLE_DEVICE_H
+#pragma once
 
 #include "sample/shape.h"
 
@@ -32,5 +31,3 @@ extern const scree_device scree_smartphones[3];
 
 #define SCREE_DEVICE(name, description, lines)                                                     \
   { name, description, lines, sizeof(lines) / sizeof *(lines) }
-
-#endif

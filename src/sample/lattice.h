@@ -1,7 +1,6 @@
 /* A shape's distance field sampled on a lattice, in blocks of 8^3 corners, kept only near the
  * surface. */
-#ifndef SCREE_SAMPLE_LATTICE_H
-#define SCREE_SAMPLE_LATTICE_H
+#pragma once
 
 #include "base/error.h"
 #include "base/progress.h"
@@ -67,5 +66,3 @@ static inline unsigned scree_pad_mask(const float *pad, int cell) {
   for (int c = 0; c < 8; c++) mask |= (unsigned)(v[scree_pad_offset(c)] < 0) << c;
   return mask;
 }
-
-#endif

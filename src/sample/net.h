@@ -1,6 +1,5 @@
 /* A closed manifold mesh of a shape. */
-#ifndef SCREE_SAMPLE_NET_H
-#define SCREE_SAMPLE_NET_H
+#pragma once
 
 #include "base/error.h"
 #include "base/progress.h"
@@ -13,5 +12,3 @@
  * details or needs too large a lattice. Free with scree_mesh_free. */
 scree_status scree_net_mesh(const scree_shape *shape, double step, scree_ticker *ticker,
                             scree_mesh *mesh, scree_error *error);
-
-#endif

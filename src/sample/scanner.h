@@ -1,6 +1,5 @@
 /* The measuring noise of a structured-light scanner, put on a clean mesh. */
-#ifndef SCREE_SAMPLE_SCANNER_H
-#define SCREE_SAMPLE_SCANNER_H
+#pragma once
 
 #include "base/error.h"
 #include "base/vec.h"
@@ -28,5 +27,3 @@ double scree_scanner_coverage(vec3 normal);
 /* Field correlation between two points `distance` apart along an axis of the lattice, on average
  * over all places: what the tests compare the field with. */
 double scree_scanner_correlation(double distance);
-
-#endif

@@ -1,8 +1,7 @@
 /* Shapes as signed distance fields: few kinds of rounded pieces, joined, cut and blended in the
  * order of a drawing. Negative inside. Every function here is a lower bound of the distance
  * (1-Lipschitz), which is what block skipping and pruning stand on. */
-#ifndef SCREE_SAMPLE_SHAPE_H
-#define SCREE_SAMPLE_SHAPE_H
+#pragma once
 
 #include "base/vec.h"
 
@@ -95,5 +94,3 @@ typedef struct scree_points {
 } scree_points;
 void scree_shape_distance(const scree_shape *shape, const scree_shape_list *list,
                           const scree_points *points, size_t count, double *distance);
-
-#endif

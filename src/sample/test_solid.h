@@ -1,6 +1,5 @@
 /* Meshes with closed forms, for tests and demonstrations. */
-#ifndef SCREE_SAMPLE_TEST_SOLID_H
-#define SCREE_SAMPLE_TEST_SOLID_H
+#pragma once
 
 #include "base/error.h"
 
@@ -11,5 +10,3 @@ scree_status scree_sample_box(double edge, size_t cells, scree_mesh *mesh, scree
 /* An icosahedron whose triangles are cut into four `level` times and put on the sphere about the
  * origin: 20 * 4^level triangles. level in [0, 11]. */
 scree_status scree_sample_icosphere(double radius, int level, scree_mesh *mesh, scree_error *error);
-
-#endif

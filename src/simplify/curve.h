@@ -1,6 +1,5 @@
 /* What curve.c builds and replay.c reads. */
-#ifndef SCREE_SIMPLIFY_CURVE_H
-#define SCREE_SIMPLIFY_CURVE_H
+#pragma once
 
 #include "simplify/record.h"
 
@@ -12,5 +11,3 @@ struct scree_curve {
   uint32_t *counts;    /* triangles per level, NULL where every collapse takes two */
   double area, volume; /* of level 0 */
 };
-
-#endif

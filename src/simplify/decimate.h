@@ -1,6 +1,5 @@
 /* The engine: from a surface to the record of its collapses. */
-#ifndef SCREE_SIMPLIFY_DECIMATE_H
-#define SCREE_SIMPLIFY_DECIMATE_H
+#pragma once
 
 #include "base/progress.h"
 #include "simplify/cost/cost.h"
@@ -72,5 +71,3 @@ void scree_decimate_count(scree_decimator *d, const scree_fan *fan);
 
 /* Tells the ticker how far it has come; false: cancelled. */
 bool scree_decimate_tick(scree_decimator *d);
-
-#endif

@@ -1,6 +1,5 @@
 /* What an edge collapse changes: the triangles around it that stay, before and after. */
-#ifndef SCREE_SIMPLIFY_FAN_H
-#define SCREE_SIMPLIFY_FAN_H
+#pragma once
 
 #include "simplify/surface_tree.h"
 
@@ -59,5 +58,3 @@ bool scree_fan_keeps_topology(const scree_halfmesh *s, const scree_fan *fan);
 /* Collapses: a moves to fan->at, b goes, with the triangles at the edge. Touches only triangles of
  * the fan and the outgoing half-edges of a, b, c and d. */
 void scree_fan_collapse(scree_halfmesh *s, const scree_fan *fan);
-
-#endif

@@ -1,6 +1,5 @@
 /* Flat fans of very many triangles, as CAD programs cut the ends of cylinders. */
-#ifndef SCREE_SIMPLIFY_FLAT_FAN_H
-#define SCREE_SIMPLIFY_FLAT_FAN_H
+#pragma once
 
 #include "base/error.h"
 
@@ -9,5 +8,3 @@
  * the mesh's, or NULL where there is no such fan; free with scree_free. The mesh is verified.
  * O(N log N) where there is one, else O(N). */
 scree_status scree_flat_fans_cut(const scree_mesh *mesh, uint32_t **triangles, scree_error *error);
-
-#endif

@@ -7,8 +7,7 @@
  * with an edge of three or more triangles, becomes one locked vertex per fan: such a vertex never
  * moves, and the copies come together again when a level is rebuilt. Hence everything here is
  * manifold, whatever the scan. */
-#ifndef SCREE_SIMPLIFY_HALFMESH_H
-#define SCREE_SIMPLIFY_HALFMESH_H
+#pragma once
 
 #include "base/alloc.h"
 #include "base/sum.h"
@@ -103,5 +102,3 @@ void scree_halfmesh_compact(scree_halfmesh *surface, uint32_t *vertex_scratch,
                             uint32_t *triangle_scratch);
 /* After that: memory that is not needed any more goes back to the system. */
 void scree_halfmesh_give_back(const scree_halfmesh *surface);
-
-#endif

@@ -1,6 +1,5 @@
 /* An order in which what is near in space is near in memory. */
-#ifndef SCREE_SIMPLIFY_MORTON_H
-#define SCREE_SIMPLIFY_MORTON_H
+#pragma once
 
 #include "base/alloc.h"
 #include "base/vec.h"
@@ -40,5 +39,3 @@ uint32_t scree_morton_code(vec3 steps);
  * parallel in part. */
 scree_status scree_order_vertices(const scree_mesh *mesh, vec3 centre, uint32_t *order,
                                   scree_error *error);
-
-#endif

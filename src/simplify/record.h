@@ -1,6 +1,5 @@
 /* The collapses in their order: a progressive mesh (Hoppe 1996). Every prefix is a level. */
-#ifndef SCREE_SIMPLIFY_RECORD_H
-#define SCREE_SIMPLIFY_RECORD_H
+#pragma once
 
 #include "base/error.h"
 #include "base/vec.h"
@@ -31,5 +30,3 @@ static inline uint32_t scree_collapse_record_triangles(const scree_collapse_reco
 static inline uint32_t scree_collapse_record_kept(const scree_collapse_record *r, size_t index) {
   return r->kept[index] & ~SCREE_ONE_TRIANGLE;
 }
-
-#endif

@@ -4,8 +4,7 @@
  * scree_surface_tree_fit makes them tight again.
  * It is no scree_tree (base/tree.h): it is fitted anew in every pass and grows between, which takes
  * nodes whose parents and leaves are known by number. */
-#ifndef SCREE_SIMPLIFY_SURFACE_TREE_H
-#define SCREE_SIMPLIFY_SURFACE_TREE_H
+#pragma once
 
 #include "simplify/halfmesh.h"
 
@@ -77,5 +76,3 @@ static inline bool scree_bounds_meet(const scree_bounds *a, const scree_bounds *
 /* The squared distance of p from the triangle; scree_triangle_closest (mesh/index/closest.h), which
  * finds the point too and minds needles, would make a decimation an eighth slower. */
 double scree_distance2(const vec3 corner[3], vec3 p);
-
-#endif

@@ -1,7 +1,6 @@
 /* All numbers of the method that were found by trying, with unit and reason. None depends on how
  * many triangles the scan has. */
-#ifndef SCREE_SIMPLIFY_TUNING_H
-#define SCREE_SIMPLIFY_TUNING_H
+#pragma once
 
 /* What the guards allow is given three times: when no edge is left that they allow, the next is
  * taken. Cosines are of angles between normals. */
@@ -65,5 +64,3 @@ enum {
    * tenths of a second. */
   SCREE_PASS_LEAST = 16384
 };
-
-#endif

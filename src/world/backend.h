@@ -5,8 +5,7 @@
  * for: every reader of arrays calls scree_world_bring first, everything that changes them
  * scree_world_change. Until then the world's pointers to what is newer there are NULL, so that none
  * can be forgotten. */
-#ifndef SCREE_WORLD_BACKEND_H
-#define SCREE_WORLD_BACKEND_H
+#pragma once
 
 #include "world/sums.h"
 
@@ -39,5 +38,3 @@ int scree_cuda_device_of(const scree_world *world);
 scree_status scree_world_bring(const scree_world *world, unsigned parts, scree_error *error);
 /* Before they are changed: brings them, and the next step takes them from here. */
 scree_status scree_world_change(scree_world *world, unsigned parts, scree_error *error);
-
-#endif

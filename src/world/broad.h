@@ -1,6 +1,5 @@
 /* The list of neighbours. */
-#ifndef SCREE_WORLD_BROAD_H
-#define SCREE_WORLD_BROAD_H
+#pragma once
 
 #include "world/world.h"
 
@@ -15,5 +14,3 @@ bool scree_broad_reserve(scree_world *world);
 scree_status scree_broad_reserve_bodies(scree_world *world, scree_error *error);
 /* For checkpoints: a list that was loaded, with its margin. */
 scree_status scree_broad_restore(scree_world *world, double margin, scree_error *error);
-
-#endif

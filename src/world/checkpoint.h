@@ -1,6 +1,5 @@
 /* Checkpoints, and the last good state of a run that fails. */
-#ifndef SCREE_WORLD_CHECKPOINT_H
-#define SCREE_WORLD_CHECKPOINT_H
+#pragma once
 
 #include "world/world.h"
 
@@ -25,5 +24,3 @@ size_t scree_world_steps_to_keep(const scree_world *world);
  * and says so in world->failure. */
 scree_status scree_world_keep_state(scree_world *world, scree_error *error);
 void scree_world_write_kept(scree_world *world);
-
-#endif

@@ -3,8 +3,7 @@
  * In units of: the pair's overlap limit, its contact radii (reach), its contact time pi (m/K)^1/2,
  * a step's way; cosines where nothing else is said. Where no source stands the number is a choice;
  * docs/background/physics.md tells what depends on it. */
-#ifndef SCREE_WORLD_CONSTANTS_H
-#define SCREE_WORLD_CONSTANTS_H
+#pragma once
 
 /* ---- points against surfaces (narrow.c) ---- */
 
@@ -89,5 +88,3 @@ static const double watch_look_share = 0.25;
 static const double watch_back_cosine = -0.25;
 /* 120 degrees: beyond a rim within that of where it came from. */
 static const double watch_rim_cosine = -0.5;
-
-#endif

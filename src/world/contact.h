@@ -1,6 +1,5 @@
 /* A pair's contact: its features, their overlaps, the law, the step of the pair. */
-#ifndef SCREE_WORLD_CONTACT_H
-#define SCREE_WORLD_CONTACT_H
+#pragma once
 
 #include "world/constants.h"
 #include "world/world.h"
@@ -324,5 +323,3 @@ scree_wrench scree_wrench_of_others(const scree_world *world, const scree_pair *
                                     const scree_scratch *scratch, bool of_b);
 /* After scree_pair_narrow_phase: the rest of the step's parts; the wrench is their mean. */
 void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
-
-#endif

@@ -1,6 +1,5 @@
 /* Steps of several worlds in the same launches: each is too small to fill a device. */
-#ifndef SCREE_WORLD_CUDA_BATCH_H
-#define SCREE_WORLD_CUDA_BATCH_H
+#pragma once
 
 #include "world/cuda_driver.h"
 
@@ -14,5 +13,3 @@ typedef struct scree_cuda_request {
 
 /* Does it, together with what other threads ask for meanwhile; waits for it. */
 scree_status scree_cuda_do_steps(int device, const scree_cuda_request *request, scree_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The broad phase of a world whose state is on a device. Nothing but counts comes back. */
-#ifndef SCREE_WORLD_CUDA_BROAD_H
-#define SCREE_WORLD_CUDA_BROAD_H
+#pragma once
 
 #include "world/cuda_driver.h"
 
@@ -35,5 +34,3 @@ scree_status scree_cuda_broad_find(scree_cuda_broad *broad, scree_world *world,
 scree_status scree_cuda_broad_list(scree_cuda_broad *broad, scree_world *world,
                                    const scree_cuda_place *place, size_t count, scree_error *error);
 void scree_cuda_broad_free(scree_cuda_broad *broad);
-
-#endif

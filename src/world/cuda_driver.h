@@ -1,6 +1,5 @@
 /* NVIDIA's driver, loaded where there is one: no toolkit is needed to build or to run. */
-#ifndef SCREE_WORLD_CUDA_DRIVER_H
-#define SCREE_WORLD_CUDA_DRIVER_H
+#pragma once
 
 #include "scree.h"
 #include "world/device/device.h"
@@ -56,5 +55,3 @@ scree_status scree_cuda_read(const scree_cuda_queue *queue, void *to, scree_devi
 scree_status scree_cuda_launch(const scree_cuda_queue *queue, scree_kernel kernel, size_t count,
                                size_t worlds, scree_device_address world, scree_device_address step,
                                scree_error *error);
-
-#endif

@@ -1,8 +1,7 @@
 /* A world's state on a device: a mirror of its arrays, and a copy of its struct whose pointers lead
  * to the mirror, so that both sides run the same code on the same indices. Which parts are newest
  * where. */
-#ifndef SCREE_WORLD_CUDA_STATE_H
-#define SCREE_WORLD_CUDA_STATE_H
+#pragma once
 
 #include "world/cuda_broad.h"
 #include "world/sums.h"
@@ -76,5 +75,3 @@ scree_status scree_cuda_fetch_removed(scree_world *w, struct scree_device_world 
                                       scree_error *error);
 /* Frees all but the struct itself; the world has its pointers again. */
 void scree_cuda_free_state(scree_world *w, struct scree_device_world *d);
-
-#endif

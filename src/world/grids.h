@@ -2,8 +2,7 @@
  * broad.c call them on the processor, the kernels of device/ on a device: one code, the same bits.
  * Threads meet only at counters and largest values; what is listed in the order in which they came
  * is sorted. */
-#ifndef SCREE_WORLD_GRIDS_H
-#define SCREE_WORLD_GRIDS_H
+#pragma once
 
 #include "world/groups.h"
 #include "world/world.h"
@@ -64,5 +63,3 @@ void scree_grids_bin(scree_world *world, size_t i);
 /* The partners that body i finds: counted, for whoever comes first; then, written. */
 void scree_grids_find(scree_world *world, size_t i);
 void scree_grids_write(scree_world *world, size_t i);
-
-#endif

@@ -1,7 +1,6 @@
 /* Lists of lists: `count` says how many each owner has, adding up where those of each begin;
  * writers take places by counting down again. */
-#ifndef SCREE_WORLD_GROUPS_H
-#define SCREE_WORLD_GROUPS_H
+#pragma once
 
 #include "base/atomic.h"
 
@@ -43,5 +42,3 @@ static inline void scree_groups_place(scree_groups *groups, size_t chunk) {
 static inline uint32_t scree_groups_take(const scree_groups *groups, size_t owner) {
   return groups->begin[owner] + scree_atomic_add(&groups->count[owner], UINT32_MAX) - 1;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What neighbours have done to each other, for those who follow single contacts. */
-#ifndef SCREE_WORLD_HITS_H
-#define SCREE_WORLD_HITS_H
+#pragma once
 
 #include "world/pairs.h"
 
@@ -23,5 +22,3 @@ bool scree_next_losses(const scree_world *world, size_t *k, scree_pair_losses *l
  * the same while they hit each other, but for what is dissipated. False when memory is out. */
 bool scree_pair_normal_energy(const scree_world *world, size_t neighbours, scree_pair_copy *copy,
                               double *energy);
-
-#endif

@@ -1,6 +1,5 @@
 /* How bodies move. */
-#ifndef SCREE_WORLD_INTEGRATE_H
-#define SCREE_WORLD_INTEGRATE_H
+#pragma once
 
 #include "world/world.h"
 
@@ -29,5 +28,3 @@ static inline quat scree_turned(const quat *q, vec3 turn, vec3 inertia, vec3 mom
   turn = scree_local_spin(inertia, &half, momentum);
   return quat_unit(quat_mul(*q, quat_from_rotation_vector(vec3_scale(turn, dt))));
 }
-
-#endif

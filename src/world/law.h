@@ -1,7 +1,6 @@
 /* What the laws of spheres (spheres.c) and of all other pairs (law.c) share: the pair's spring over
  * an impact, the slider, rolling resistance. docs/background/physics.md has the equations. */
-#ifndef SCREE_WORLD_LAW_H
-#define SCREE_WORLD_LAW_H
+#pragma once
 
 #include "world/contact.h"
 
@@ -239,5 +238,3 @@ static inline scree_kept_wrench scree_kept(const scree_wrench *load) {
   return (scree_kept_wrench){{(float)f.x, (float)f.y, (float)f.z},
                              {(float)m.x, (float)m.y, (float)m.z}};
 }
-
-#endif

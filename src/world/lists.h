@@ -1,7 +1,6 @@
 /* From the keys of neighbours to all lists that a step reads, as stages (grids.h) for neighbours k
  * and bodies i. */
-#ifndef SCREE_WORLD_LISTS_H
-#define SCREE_WORLD_LISTS_H
+#pragma once
 
 #include "world/grids.h"
 
@@ -47,5 +46,3 @@ void scree_lists_end(scree_world *world, size_t i);
 /* From here on the list's age counts: of body i; once, of all walls. */
 void scree_lists_date(scree_world *world, size_t i);
 void scree_lists_date_walls(scree_world *world, size_t i);
-
-#endif

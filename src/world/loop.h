@@ -6,8 +6,7 @@
  * and half around A. What is carried along it for a way s is turned by an angle q about the axis
  * and shifted: x' = A + R(q) (x - A) + u d with q = 0, d = s on the first strand; d = span and q
  * growing by s/r about B; q = pi, d falling on the second strand; d = 0 about A. */
-#ifndef SCREE_WORLD_LOOP_H
-#define SCREE_WORLD_LOOP_H
+#pragma once
 
 #include "base/vec.h"
 
@@ -36,5 +35,3 @@ static inline vec3 scree_loop_bring_back(const scree_loop *loop, const scree_loo
   mat3 turn = quat_to_mat3(place->turn);
   return vec3_add(loop->centre, mat3_tmul_vec(&turn, vec3_sub(x, place->middle)));
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Materials and the time step: what contacts follow from them. */
-#ifndef SCREE_WORLD_MATERIALS_H
-#define SCREE_WORLD_MATERIALS_H
+#pragma once
 
 #include "world/world.h"
 
@@ -20,5 +19,3 @@ typedef struct scree_contact_sides {
 /* Stiffnesses of the law: K, and those of Hertz and Mindlin; the rest is left as it is. */
 void scree_set_stiffness(const scree_world *world, const scree_contact_sides *sides,
                          scree_pair_law *law);
-
-#endif

@@ -1,6 +1,5 @@
 /* Neighbours and pairs: how they begin and end, and where their lists lie. */
-#ifndef SCREE_WORLD_PAIRS_H
-#define SCREE_WORLD_PAIRS_H
+#pragma once
 
 #include "world/world.h"
 
@@ -53,5 +52,3 @@ bool scree_pack_sleeping(scree_pools *pools, scree_neighbours *neighbours, size_
 bool scree_pools_grow(scree_pools *pools, scree_pair *pairs, size_t pair_count,
                       scree_neighbours *neighbours, size_t neighbour_count);
 void scree_pools_free(scree_pools *pools);
-
-#endif

@@ -1,6 +1,5 @@
 /* Pairs of two spheres, or of a sphere and a plane, disc or cylinder. */
-#ifndef SCREE_WORLD_SPHERES_H
-#define SCREE_WORLD_SPHERES_H
+#pragma once
 
 #include "world/contact.h"
 
@@ -11,5 +10,3 @@ bool scree_spheres_stay_apart(scree_world *world, size_t k);
 /* The whole of a pair's step, as scree_pair_evaluate; `contact` (may be NULL) is what touches. */
 void scree_spheres_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
                             scree_contact_point *contact);
-
-#endif

@@ -1,8 +1,7 @@
 /* The stages of a step, each for one of many independent elements. The loops of step.c and
  * integrate.c call them on the processor's threads, the kernels of device/ on a device's: one code,
  * the same bits. */
-#ifndef SCREE_WORLD_STAGES_H
-#define SCREE_WORLD_STAGES_H
+#pragma once
 
 #include "world/contact.h"
 
@@ -57,5 +56,3 @@ bool scree_gather_body(scree_world *world, size_t i);
 void scree_advance_body(scree_world *world, size_t i);
 /* For a body that scree_gather_body refused: a sentence in world->failure. */
 scree_status scree_describe_offender(scree_world *world, size_t i);
-
-#endif

@@ -1,7 +1,6 @@
 /* What an observation adds up, in parts that do not depend on where it is done: blocks of bodies,
  * then blocks of neighbours, then the walls. Parts are merged in their order. */
-#ifndef SCREE_WORLD_SUMS_H
-#define SCREE_WORLD_SUMS_H
+#pragma once
 
 #include "base/sum.h"
 #include "world/world.h"
@@ -19,5 +18,3 @@ size_t scree_sum_part_count(const scree_world *world);
 /* Part `part`, which needs the state of bodies and walls, and the lists. */
 scree_sums scree_sum_part(const scree_world *world, size_t part);
 void scree_sums_merge(scree_sums *sums, const scree_sums *part);
-
-#endif

@@ -1,6 +1,5 @@
 /* Walls: sides and distances, motions, forces and work. */
-#ifndef SCREE_WORLD_WALLS_H
-#define SCREE_WORLD_WALLS_H
+#pragma once
 
 #include "world/world.h"
 
@@ -51,5 +50,3 @@ double scree_wall_work(const scree_world *world, size_t w);
 double scree_wall_extent(const scree_world_wall *wall);
 /* motion.c: the wall's drift. */
 void scree_wall_advance(scree_world *world, size_t index);
-
-#endif

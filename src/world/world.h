@@ -1,7 +1,6 @@
 /* The world's own structures. Only src/world sees them; docs/background/physics.md has the
  * equations. */
-#ifndef SCREE_WORLD_WORLD_H
-#define SCREE_WORLD_WORLD_H
+#pragma once
 
 #include "base/codec.h"
 #include "base/prefetch.h"
@@ -538,5 +537,3 @@ static inline bool scree_pair_stays_awake(const scree_pair *p) {
  * a thousand bodies) every interval. */
 scree_status scree_world_keep(scree_world *world, const char *path, uint64_t step_interval,
                               scree_error *error);
-
-#endif

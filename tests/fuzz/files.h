@@ -1,6 +1,5 @@
 /* Bytes as a file that can be opened by name. */
-#ifndef SCREE_FUZZ_FILES_H
-#define SCREE_FUZZ_FILES_H
+#pragma once
 
 #include "fuzz/fuzz.h"
 
@@ -38,5 +37,3 @@ static inline void fuzz_write(const char *path, const void *bytes, size_t count)
   FILE *stream = fopen(path, "wb");
   FUZZ_CHECK(stream && fwrite(bytes, 1, count, stream) == count && fclose(stream) == 0);
 }
-
-#endif

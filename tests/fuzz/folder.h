@@ -1,7 +1,6 @@
 /* A folder of a target's own, removed with all that is in it when the target ends. The caller
  * defines _GNU_SOURCE. */
-#ifndef SCREE_FUZZ_FOLDER_H
-#define SCREE_FUZZ_FOLDER_H
+#pragma once
 
 #include "fuzz/files.h"
 
@@ -30,5 +29,3 @@ static inline const char *fuzz_in_folder(const char *name) {
   snprintf(path, sizeof path, "%s/%s", fuzz_folder, name);
   return path;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Lengths and checksums made to fit, as who forges a file would: behind them lies what is worth
  * testing. */
-#ifndef SCREE_FUZZ_FORGE_H
-#define SCREE_FUZZ_FORGE_H
+#pragma once
 
 #include "base/file.h"
 #include "base/seal.h"
@@ -30,5 +29,3 @@ static inline void forge_header(uint8_t *bytes, size_t size) {
   forge_put(bytes + FORGE_LENGTH_AT, size - FORGE_HEADER);
   forge_sum(bytes + FORGE_SUM_AT, bytes + FORGE_HEADER, size - FORGE_HEADER);
 }
-
-#endif

@@ -11,8 +11,7 @@
  *   build/fuzz/bin/fuzz_read_ply -merge=1 tests/fuzz/corpus/read_ply /tmp/found   keeps the new
  *
  * checkpoint and run also begin with what fuzz_seeds writes. */
-#ifndef SCREE_FUZZ_H
-#define SCREE_FUZZ_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -30,5 +29,3 @@ __attribute__((weak)) size_t fuzz_taken;
   do {                                                                                             \
     if (!(condition)) abort();                                                                     \
   } while (0)
-
-#endif

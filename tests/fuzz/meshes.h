@@ -1,6 +1,5 @@
 /* Arbitrary meshes out of bytes. */
-#ifndef SCREE_FUZZ_MESHES_H
-#define SCREE_FUZZ_MESHES_H
+#pragma once
 
 #include "scree.h"
 
@@ -40,5 +39,3 @@ static inline void fuzz_mesh_decode(const uint8_t *data, size_t size, fuzz_mesh 
   in->mesh.positions = in->positions;
   in->mesh.triangles = in->triangles;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What every reader must keep to, whatever the bytes. */
-#ifndef SCREE_FUZZ_READING_H
-#define SCREE_FUZZ_READING_H
+#pragma once
 
 #include "fuzz/fuzz.h"
 #include "mesh/io/read.h"
@@ -44,5 +43,3 @@ static inline void fuzz_parse(const uint8_t *data, size_t size, double weld_tole
   scree_scan_free(&scan);
   FUZZ_CHECK(scree_memory_used() == used);
 }
-
-#endif

@@ -10,8 +10,7 @@
  *   }
  *   check_allocation_failures(weld, corners);
  */
-#ifndef SCREE_TEST_ALLOC_FAIL_H
-#define SCREE_TEST_ALLOC_FAIL_H
+#pragma once
 
 #include "scree.h"
 
@@ -25,5 +24,3 @@ size_t check_allocation_failures(fallible_call *call, void *context);
 /* The same for a call of which a part only informs onlookers and may be left undone: an allocation
  * refused may also end in success. */
 size_t check_allocation_failures_survivable(fallible_call *call, void *context);
-
-#endif

@@ -1,6 +1,5 @@
 /* What every test includes: cmocka with its prerequisites, and comparisons of doubles. */
-#ifndef SCREE_TEST_CHECK_H
-#define SCREE_TEST_CHECK_H
+#pragma once
 
 #include <math.h>
 #include <setjmp.h>
@@ -48,5 +47,3 @@ static inline bool scan_data_path(const char *file, char *path, size_t size) {
     print_message("left out: %s is not in the folder of real scans\n", file);
   return there != NULL;
 }
-
-#endif

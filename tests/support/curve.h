@@ -1,6 +1,5 @@
 /* The decimation of a mesh, where nothing may fail. */
-#ifndef SCREE_TEST_CURVE_H
-#define SCREE_TEST_CURVE_H
+#pragma once
 
 #include "support/check.h"
 
@@ -12,5 +11,3 @@ static inline scree_curve *curve_of(const scree_mesh *mesh, scree_method method)
   CHECK_OK(scree_curve_build(mesh, &options, NULL, &curve, &error), error);
   return curve;
 }
-
-#endif

@@ -3,8 +3,7 @@
  *   return cmocka_run_group_tests(tests, make_folder, remove_folder);
  *
  * SCREE_TEST_FOLDER names another, made by hand, in which everything stays to be looked at. */
-#ifndef SCREE_TEST_FOLDER_H
-#define SCREE_TEST_FOLDER_H
+#pragma once
 
 int make_folder(void **state);
 /* Fails where a file half-written (.part) was left behind. */
@@ -16,5 +15,3 @@ const char *in_folder(const char *name);
 void put_in_folder(const char *name, const char *text);
 /* The sum of a column, from 0, of the rows of a CSV file in it that begin so. */
 double sum_in_folder(const char *name, const char *begin, int column);
-
-#endif

@@ -1,6 +1,5 @@
 /* Hits of two bodies, shared by the law tests. */
-#ifndef SCREE_TEST_HITS_H
-#define SCREE_TEST_HITS_H
+#pragma once
 
 #include "base/vec.h"
 #include "scree.h"
@@ -30,5 +29,3 @@ typedef struct law_outcome {
  * pressed together long after, a corner of one inside the other that is not felt or the two past
  * each other, and runs that stopped. */
 void law_meet(const law_meeting *m, double speed, uint64_t number, law_outcome *out);
-
-#endif

@@ -1,7 +1,6 @@
 /* Law tests: a closed form against a run of the world. Each check prints its id, what is expected,
  * what came out and the tolerance; docs/background/verification.md lists the ids. */
-#ifndef SCREE_TEST_LAW_H
-#define SCREE_TEST_LAW_H
+#pragma once
 
 #include "scree.h"
 #include "support/check.h"
@@ -92,5 +91,3 @@ static inline double law_ledger(const scree_world *world, scree_observation *o) 
   return o->kinetic + o->rotational + o->potential + o->elastic + o->dissipated_dashpot +
          o->dissipated_friction - o->wall_work - o->applied_work;
 }
-
-#endif

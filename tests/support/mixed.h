@@ -1,11 +1,8 @@
 /* A small world with some of everything: meshes convex and not, clumps, spheres; planes, a
  * cylinder, a mesh wall and a disc, fixed, moving and turning. */
-#ifndef SCREE_TEST_MIXED_H
-#define SCREE_TEST_MIXED_H
+#pragma once
 
 #include "scree.h"
 
 /* 27 bodies in a heap, falling at 0.3 m/s; many touch within a thousand steps. */
 scree_world *mixed_world(scree_law law);
-
-#endif

@@ -1,7 +1,6 @@
 /* Intersection over union of a mesh and spheres, independent of the library's: points on random
  * lines, each within the mesh by counting crossings of all triangles. */
-#ifndef SCREE_TEST_OVERLAP_H
-#define SCREE_TEST_OVERLAP_H
+#pragma once
 
 #include "scree.h"
 
@@ -15,5 +14,3 @@ typedef struct overlap_counts {
 overlap_counts overlap_count(const scree_mesh *mesh, const scree_sphere *spheres, size_t count,
                              size_t line_count);
 double overlap_iou(const overlap_counts *counts);
-
-#endif

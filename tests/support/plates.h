@@ -1,7 +1,6 @@
 /* Walls for tests: profiles drawn out along x, with their facets split at random. All meshes are
  * freed with scree_mesh_free. */
-#ifndef SCREE_TEST_PLATES_H
-#define SCREE_TEST_PLATES_H
+#pragma once
 
 #include "base/rng.h"
 #include "base/vec.h"
@@ -29,5 +28,3 @@ vec3 plates_bisector(const plates_corner *corner);
 
 /* An octahedron-like stone: an icosphere of 80 facets, roughened. */
 scree_mesh plates_stone(double radius, scree_rng *rng);
-
-#endif

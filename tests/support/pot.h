@@ -1,6 +1,5 @@
 /* The template `repose` with a few small particles, which go through it in a moment. */
-#ifndef SCREE_TEST_POT_H
-#define SCREE_TEST_POT_H
+#pragma once
 
 #include "support/check.h"
 
@@ -37,5 +36,3 @@ static inline scree_scene *pot_scene(const scree_scene_file *file) {
   CHECK_OK(scree_scene_create(file, NULL, &scene, &error), error);
   return scene;
 }
-
-#endif

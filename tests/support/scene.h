@@ -1,6 +1,5 @@
 /* Scenes of tests: from their text, and to their end. */
-#ifndef SCREE_TEST_SCENE_H
-#define SCREE_TEST_SCENE_H
+#pragma once
 
 #include "support/check.h"
 
@@ -77,5 +76,3 @@ static inline bool run_until(scree_scene *scene, double time) {
   }
   return !scree_scene_end(scene);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Meshes for tests: closed forms, and surfaces of every quality. All are freed with
  * scree_mesh_free; a failed allocation ends the test. */
-#ifndef SCREE_TEST_SHAPES_H
-#define SCREE_TEST_SHAPES_H
+#pragma once
 
 #include "base/rng.h"
 #include "scree.h"
@@ -43,5 +42,3 @@ scree_mesh shape_weld(const scree_mesh *mesh, scree_rng *rng);
 scree_particle *shape_particle(scree_mesh mesh);
 /* Turns facet t round. */
 void shape_flip(scree_mesh *mesh, size_t triangle);
-
-#endif

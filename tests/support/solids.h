@@ -1,6 +1,5 @@
 /* Solids with corners and hollows for the physics tests. All are freed with scree_mesh_free. */
-#ifndef SCREE_TEST_SOLIDS_H
-#define SCREE_TEST_SOLIDS_H
+#pragma once
 
 #include "scree.h"
 
@@ -14,5 +13,3 @@ scree_mesh solid_hook(double s, double w, double depth);
 scree_mesh solid_notch(double s, double half_angle, double depth);
 /* Every triangle into four, in its plane. Replaces the mesh. */
 void solid_split(scree_mesh *mesh);
-
-#endif

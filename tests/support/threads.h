@@ -1,6 +1,5 @@
 /* Worlds of tests are small: they share out their steps all the same. */
-#ifndef SCREE_TEST_THREADS_H
-#define SCREE_TEST_THREADS_H
+#pragma once
 
 #include "world/stages.h"
 
@@ -10,5 +9,3 @@ static inline void use_threads(int count) {
   scree_share_all_steps = true;
   scree_set_threads(count);
 }
-
-#endif

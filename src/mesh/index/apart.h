@@ -1,6 +1,5 @@
 /* A quick proof that a surface nowhere meets itself. */
-#ifndef SCREE_MESH_INDEX_APART_H
-#define SCREE_MESH_INDEX_APART_H
+#pragma once
 
 #include "mesh/adjacency.h"
 #include "mesh/mesh.h"
@@ -15,5 +14,3 @@
  * the surface is flat. */
 scree_status scree_facets_apart(const scree_mesh *mesh, const scree_adjacency *adjacency,
                                 bool *apart, scree_error *error);
-
-#endif

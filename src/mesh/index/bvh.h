@@ -1,8 +1,7 @@
 /* A tree of boxes over the triangles of a mesh, in double precision: nearest points, overlaps of
  * boxes, crossings of rays. Constant once built, so any number of threads may query it. The tree
  * and all answers are the same bits for every number of threads. */
-#ifndef SCREE_MESH_INDEX_BVH_H
-#define SCREE_MESH_INDEX_BVH_H
+#pragma once
 
 #include "base/tree.h"
 #include "mesh/index/closest.h"
@@ -37,5 +36,3 @@ void scree_bvh_closest_block(const scree_bvh *bvh, scree_point_block *points);
  * positive where the ray leaves the body. A ray through an edge meets at least one of its facets.
  * Flat facets are not met. */
 double scree_ray_meet(const scree_bvh *bvh, vec3 from, vec3 along, double least, double *facing);
-
-#endif

@@ -1,7 +1,6 @@
 /* The point of a triangle that is nearest to another point: one by one, and side by side for
  * many points, with the same bits. Flat triangles and points are fine. */
-#ifndef SCREE_MESH_INDEX_CLOSEST_H
-#define SCREE_MESH_INDEX_CLOSEST_H
+#pragma once
 
 #include "base/box.h"
 
@@ -31,5 +30,3 @@ void scree_point_block_closest(scree_point_block *points, const double corners[9
  * found. */
 double scree_point_block_farthest(const scree_point_block *points);
 bool scree_point_block_near(const scree_point_block *points, const scree_box *box);
-
-#endif

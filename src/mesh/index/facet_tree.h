@@ -1,7 +1,6 @@
 /* A tree of boxes over the facets of a mesh, for finding which facets come near each other or lie
  * on a ray. See facet_tree.c for what it is and why. */
-#ifndef SCREE_MESH_INDEX_FACET_TREE_H
-#define SCREE_MESH_INDEX_FACET_TREE_H
+#pragma once
 
 #include "base/tree.h"
 #include "mesh/mesh.h"
@@ -24,5 +23,3 @@ void scree_facet_tree_free(scree_facet_tree *tree);
 /* True where no facet of one node has a point in common with a facet of the other but vertices that
  * they share. */
 bool scree_facet_nodes_apart(const scree_facet_tree *tree, uint32_t a, uint32_t b);
-
-#endif

@@ -3,8 +3,7 @@
  * Triangles of a clean surface have nothing in common but the vertices and the edge that they
  * share. What they have beyond that is classified here. Vertices are shared when their indices are
  * equal: weld first. */
-#ifndef SCREE_MESH_INDEX_INTERSECT_H
-#define SCREE_MESH_INDEX_INTERSECT_H
+#pragma once
 
 #include "base/progress.h"
 #include "mesh/index/facet_tree.h"
@@ -52,5 +51,3 @@ scree_status scree_facet_meetings_new(const scree_facet_tree *tree, const bool *
 scree_status scree_mesh_meetings(const scree_mesh *mesh, size_t limit,
                                  const scree_progress *progress, scree_meetings *found,
                                  scree_error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* Winding numbers on both sides of a facet, at a point of it, of meshes whose facets may cross
  * elsewhere. A facet is seen along the axis nearest to its normal. */
-#ifndef SCREE_MESH_INDEX_WINDING_H
-#define SCREE_MESH_INDEX_WINDING_H
+#pragma once
 
 #include "mesh/index/facet_tree.h"
 
@@ -55,5 +54,3 @@ typedef struct scree_sides {
  * do. O(log N + facets over p). */
 bool scree_winding_look(const scree_winding *w, uint32_t facet, const scree_view *f, scree_seen p,
                         scree_sides *found);
-
-#endif

@@ -1,6 +1,5 @@
 /* Where a file places a part: an affine map. */
-#ifndef SCREE_MESH_IO_AFFINE_H
-#define SCREE_MESH_IO_AFFINE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -33,5 +32,3 @@ static inline void scree_affine_apply(const scree_affine *p, const double v[3], 
   for (int i = 0; i < 3; i++)
     out[i] = p->m[i][0] * v[0] + p->m[i][1] * v[1] + p->m[i][2] * v[2] + p->m[i][3];
 }
-
-#endif

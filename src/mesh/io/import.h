@@ -1,7 +1,6 @@
 /* What passes between a file of a format read through assimp, the child process that reads it, and
  * the parent (mesh/io/read_import.c). */
-#ifndef SCREE_MESH_IO_IMPORT_H
-#define SCREE_MESH_IO_IMPORT_H
+#pragma once
 
 #include "base/error.h"
 
@@ -48,5 +47,3 @@ typedef struct scree_import_answer {
 struct scree_reading;
 scree_status scree_import_take(struct scree_reading *r, scree_import_format format,
                                const char *bytes, size_t byte_count);
-
-#endif

@@ -1,6 +1,5 @@
 /* The objects of a 3MF archive, as its XML parts say them, before they are placed. */
-#ifndef SCREE_MESH_IO_MODEL_3MF_H
-#define SCREE_MESH_IO_MODEL_3MF_H
+#pragma once
 
 #include "base/array.h"
 #include "mesh/io/placed.h"
@@ -96,5 +95,3 @@ uint32_t scree_3mf_id(const char *text);
 /* Ends the parsing: memory is out. */
 void scree_3mf_stop_memory(scree_3mf_parse *p);
 void scree_3mf_free(scree_3mf *m);
-
-#endif

@@ -1,7 +1,6 @@
 /* The triangles of a file's placed parts, in its unit: what readers of files with instances end in.
  */
-#ifndef SCREE_MESH_IO_PLACED_H
-#define SCREE_MESH_IO_PLACED_H
+#pragma once
 
 #include "mesh/io/affine.h"
 #include "mesh/io/read.h"
@@ -23,5 +22,3 @@ scree_status scree_placed_add_triangle(scree_reading *r, scree_placed *placed, s
 /* Welds them into r->scan->mesh. */
 scree_status scree_placed_weld(scree_reading *r, scree_placed *placed);
 void scree_placed_free(scree_placed *placed);
-
-#endif

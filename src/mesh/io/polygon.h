@@ -1,6 +1,5 @@
 /* Faces with any number of corners, turned into triangles. */
-#ifndef SCREE_MESH_IO_POLYGON_H
-#define SCREE_MESH_IO_POLYGON_H
+#pragma once
 
 #include "base/alloc.h"
 
@@ -25,5 +24,3 @@ void scree_face_list_free(scree_face_list *list);
  * would take minutes. `name` stands for the file in errors. */
 scree_status scree_face_list_triangulate(scree_face_list *list, const double *positions,
                                          const char *name, scree_error *error);
-
-#endif

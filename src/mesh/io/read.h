@@ -1,6 +1,5 @@
 /* What the readers share. One file is read by one of them, found by content (read.c). */
-#ifndef SCREE_MESH_IO_READ_H
-#define SCREE_MESH_IO_READ_H
+#pragma once
 
 #include "base/file.h"
 #include "mesh/io/import.h"
@@ -72,5 +71,3 @@ scree_status scree_reading_weld_faces(scree_reading *r, const double *positions,
 scree_status scree_scan_parse(const void *bytes, size_t byte_count, const char *name,
                               const scree_read_options *options, scree_scan *scan,
                               scree_error *error);
-
-#endif

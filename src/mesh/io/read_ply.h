@@ -1,6 +1,5 @@
 /* The header of a PLY file. */
-#ifndef SCREE_MESH_IO_READ_PLY_H
-#define SCREE_MESH_IO_READ_PLY_H
+#pragma once
 
 #include "mesh/io/read.h"
 
@@ -67,5 +66,3 @@ size_t scree_ply_type_size(scree_ply_type type);
 /* Reads the header and leaves t at the first byte of data. Free it also after a failure. */
 scree_status scree_ply_header_read(scree_text *t, scree_ply_header *header);
 void scree_ply_header_free(scree_ply_header *header);
-
-#endif

@@ -1,8 +1,7 @@
 /* Walking through a text file token by token, and saying where something was wrong. Line ends are
  * LF, CR LF or CR; they are only counted when an error is told. Nothing is read at or beyond `end`.
  */
-#ifndef SCREE_MESH_IO_TEXT_H
-#define SCREE_MESH_IO_TEXT_H
+#pragma once
 
 #include "base/error.h"
 
@@ -49,5 +48,3 @@ scree_status scree_text_fail(const scree_text *t, const char *at, const char *fo
 /* The word at `at`, in quotes, cut and made printable for an error; or "the end of the file". */
 enum { SCREE_QUOTE_SIZE = 40 };
 const char *scree_text_quote(const scree_text *t, const char *at, char quote[SCREE_QUOTE_SIZE]);
-
-#endif

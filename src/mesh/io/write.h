@@ -1,6 +1,5 @@
 /* What the writers share. */
-#ifndef SCREE_MESH_IO_WRITE_H
-#define SCREE_MESH_IO_WRITE_H
+#pragma once
 
 #include "base/vec.h"
 #include "mesh/mesh.h"
@@ -39,5 +38,3 @@ void scree_write_3mf(const scree_writing *w);
 
 /* The format's name as in the comments above ("auto" for SCREE_FORMAT_AUTO). */
 const char *scree_file_format_name(scree_file_format format);
-
-#endif

@@ -1,6 +1,5 @@
 /* Finding a member of a zip archive and reading it. */
-#ifndef SCREE_MESH_IO_ZIP_H
-#define SCREE_MESH_IO_ZIP_H
+#pragma once
 
 #include "base/error.h"
 
@@ -21,5 +20,3 @@ typedef bool scree_zip_taker(void *context, const unsigned char *bytes, size_t c
 /* SCREE_BAD_FILE where the member is damaged (by its CRC-32 too) or take answered false;
  * SCREE_OUT_OF_MEMORY. */
 scree_status scree_zip_stream(const scree_zip_member *member, scree_zip_taker *take, void *context);
-
-#endif

@@ -1,6 +1,5 @@
 /* How wide a surface is along fixed directions. */
-#ifndef SCREE_MESH_MEASURE_EXTENT_H
-#define SCREE_MESH_MEASURE_EXTENT_H
+#pragma once
 
 #include "base/error.h"
 #include "base/vec.h"
@@ -42,5 +41,3 @@ static inline double scree_extent_depth(const scree_extent *extent, int end, vec
 /* How far p lies beyond the extent, at most, times size over the width there where that is less
  * than `size`; 0 within. */
 double scree_extent_beyond(const scree_extent *extent, vec3 p, double size);
-
-#endif

@@ -1,6 +1,5 @@
 /* Convex hulls. */
-#ifndef SCREE_MESH_MEASURE_HULL_H
-#define SCREE_MESH_MEASURE_HULL_H
+#pragma once
 
 #include "base/error.h"
 #include "base/vec.h"
@@ -21,5 +20,3 @@ typedef struct scree_hull {
 scree_status scree_hull_build(const vec3 *points, size_t point_count, scree_hull *hull,
                               scree_error *error);
 void scree_hull_free(scree_hull *hull);
-
-#endif

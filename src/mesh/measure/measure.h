@@ -1,6 +1,5 @@
 /* Integrals over a mesh for internal use: no checks, chosen origin. */
-#ifndef SCREE_MESH_MEASURE_MEASURE_H
-#define SCREE_MESH_MEASURE_MEASURE_H
+#pragma once
 
 #include "mesh/mesh.h"
 
@@ -12,5 +11,3 @@ void scree_mesh_bounds(const scree_mesh *mesh, vec3 *low, vec3 *high);
  * of the vertex pair, positive one way and negative the other, is zero; a miss has odds of 2^-128.
  */
 bool scree_mesh_is_cycle(const scree_mesh *mesh);
-
-#endif

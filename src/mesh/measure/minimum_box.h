@@ -1,6 +1,5 @@
 /* A box of least volume around points. */
-#ifndef SCREE_MESH_MEASURE_MINIMUM_BOX_H
-#define SCREE_MESH_MEASURE_MINIMUM_BOX_H
+#pragma once
 
 #include "mesh/measure/hull.h"
 
@@ -15,5 +14,3 @@ typedef struct scree_minimum_box {
  * box, or the box along axes. */
 scree_status scree_minimum_box_fit(const scree_hull *hull, const mat3 *axes, scree_minimum_box *box,
                                    scree_error *error);
-
-#endif

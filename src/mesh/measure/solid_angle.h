@@ -1,5 +1,4 @@
-#ifndef SCREE_MESH_MEASURE_SOLID_ANGLE_H
-#define SCREE_MESH_MEASURE_SOLID_ANGLE_H
+#pragma once
 
 #include "base/vec.h"
 
@@ -11,5 +10,3 @@ static inline double scree_half_solid_angle(vec3 a, vec3 b, vec3 c) {
   return atan2(vec3_dot(a, vec3_cross(b, c)),
                x * y * z + vec3_dot(a, b) * z + vec3_dot(b, c) * x + vec3_dot(c, a) * y);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* A surface made ready for distance queries, for what asks more of it than the public calls give:
  * which triangle is nearest, and one way of the distance with a head start. */
-#ifndef SCREE_MESH_MEASURE_SURFACE_H
-#define SCREE_MESH_MEASURE_SURFACE_H
+#pragma once
 
 #include "mesh/index/bvh.h"
 
@@ -40,5 +39,3 @@ scree_status scree_surface_deviation(const scree_surface *from, const scree_surf
                                      const scree_deviation_rule *way,
                                      const scree_progress *progress, scree_deviation *deviation,
                                      scree_error *error);
-
-#endif

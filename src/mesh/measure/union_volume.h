@@ -1,6 +1,5 @@
 /* The volume of the union of closed shells that may cross, touch and overlap. */
-#ifndef SCREE_MESH_MEASURE_UNION_VOLUME_H
-#define SCREE_MESH_MEASURE_UNION_VOLUME_H
+#pragma once
 
 #include "mesh/adjacency.h"
 #include "mesh/index/intersect.h"
@@ -14,5 +13,3 @@
 scree_status scree_union_volume(const scree_facet_tree *tree, const scree_adjacency *adjacency,
                                 const scree_meetings *found, double *volume, bool *known,
                                 scree_error *error);
-
-#endif

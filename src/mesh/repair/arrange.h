@@ -1,7 +1,6 @@
 /* Facets cut where they meet, so that none meets another beyond what they share: the arrangement of
  * a surface that crosses, touches and overlaps itself. */
-#ifndef SCREE_MESH_REPAIR_ARRANGE_H
-#define SCREE_MESH_REPAIR_ARRANGE_H
+#pragma once
 
 #include "base/progress.h"
 #include "mesh/mesh.h"
@@ -28,5 +27,3 @@ static inline size_t scree_arrange_limit(const scree_mesh *mesh) {
 extern const char scree_arrange_too_many[]; /* the reason where there are more */
 
 void scree_arrangement_free(scree_arrangement *arrangement);
-
-#endif

@@ -1,7 +1,6 @@
 /* Where two facets meet, as vertices for both: the geometry of an arrangement
  * (mesh/repair/arrange.c). */
-#ifndef SCREE_MESH_REPAIR_ARRANGE_SITES_H
-#define SCREE_MESH_REPAIR_ARRANGE_SITES_H
+#pragma once
 
 #include "mesh/index/facet_tree.h"
 
@@ -44,5 +43,3 @@ typedef struct scree_facet_pairs {
  * out. O(N log N + pairs).
  */
 bool scree_near_pairs(const scree_facet_tree *tree, double tolerance, scree_facet_pairs *pairs);
-
-#endif

@@ -1,6 +1,5 @@
 /* Shared by check and repair; the interface is in scree/check.h. */
-#ifndef SCREE_MESH_REPAIR_CHECK_H
-#define SCREE_MESH_REPAIR_CHECK_H
+#pragma once
 
 #include "base/error.h"
 
@@ -8,5 +7,3 @@
 bool scree_vertex_is_bad(const double *position);
 
 bool scree_defect_is_grave(scree_defect defect);
-
-#endif

@@ -1,6 +1,5 @@
 /* One facet cut along segments, into triangles with given vertices on its rim and within. */
-#ifndef SCREE_MESH_REPAIR_FACET_CUT_H
-#define SCREE_MESH_REPAIR_FACET_CUT_H
+#pragma once
 
 #include "mesh/io/polygon.h"
 
@@ -29,5 +28,3 @@ void scree_facet_cutter_free(scree_facet_cutter *cutter);
  * an earlier one. False when memory is out. About a microsecond per vertex and segment, more where
  * segments pass many vertices. */
 bool scree_facet_cut(scree_facet_cutter *cutter, const scree_facet_job *job, scree_index_list *out);
-
-#endif

@@ -1,8 +1,7 @@
 /* The stages of a repair, in the order of scree_repair_action; each works on one mesh in place,
  * counts what it does, and leaves a mesh of valid indices and finite coordinates. The public
  * interface is in scree/check.h; repair.c tells the whole. */
-#ifndef SCREE_MESH_REPAIR_REPAIR_H
-#define SCREE_MESH_REPAIR_REPAIR_H
+#pragma once
 
 #include "mesh/adjacency.h"
 #include "mesh/index/intersect.h"
@@ -110,5 +109,3 @@ scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, scr
  * ways; *merged is false, and r->unmerged may tell why, where they do not. `early`, before other
  * stages: not where a shell only meets itself, unless the options say so. */
 scree_status scree_repair_merge(scree_repair *r, bool early, bool *merged, scree_error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* The boundary of a mesh, and the vertices of it that lie on one of its edges without being an end:
  * T-junctions, where the other side of the edge has been split and this one has not. */
-#ifndef SCREE_MESH_REPAIR_RIM_H
-#define SCREE_MESH_REPAIR_RIM_H
+#pragma once
 
 #include "mesh/adjacency.h"
 #include "mesh/mesh.h"
@@ -49,5 +48,3 @@ scree_status scree_rim_junctions(const scree_mesh *mesh, const scree_rim *rim,
 /* Splits the facets there, at one edge of each in a pass, into fans from the corner across; the
  * mesh has room for so many facets more. Answers how many came new, at the end. */
 size_t scree_junctions_split(scree_mesh *mesh, const scree_junctions *found);
-
-#endif

@@ -1,6 +1,5 @@
 /* Edges too sharp for contact: what decides it, for check, repair and particles. */
-#ifndef SCREE_MESH_REPAIR_SHARP_H
-#define SCREE_MESH_REPAIR_SHARP_H
+#pragma once
 
 #include "base/vec.h"
 #include "mesh/adjacency.h"
@@ -13,5 +12,3 @@ bool scree_normals_are_sharp(vec3 a, vec3 b);
 bool scree_edge_is_sharp(const scree_mesh *mesh, const scree_adjacency *adjacency, uint32_t h);
 /* The number of such edges; marked (may be NULL) gets true for their facets. */
 size_t scree_sharp_edges(const scree_mesh *mesh, const scree_adjacency *adjacency, bool *marked);
-
-#endif

@@ -1,6 +1,5 @@
 /* The separate shells of a mesh, and how they lie in each other. */
-#ifndef SCREE_MESH_REPAIR_SHELLS_H
-#define SCREE_MESH_REPAIR_SHELLS_H
+#pragma once
 
 #include "mesh/adjacency.h"
 #include "mesh/index/intersect.h"
@@ -58,5 +57,3 @@ scree_status scree_shells_wind(scree_shells *shells, const scree_shell_pairs *pa
                                const scree_facet_tree *tree, scree_error *error);
 
 scree_shell_kind scree_shell_kind_of(const scree_shell *shell);
-
-#endif

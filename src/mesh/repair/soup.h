@@ -1,7 +1,6 @@
 /* Walls from triangles as CAD leaves them: any triangle soup as pieces of which every edge belongs
  * to one facet or to two. soup.c says how. */
-#ifndef SCREE_MESH_REPAIR_SOUP_H
-#define SCREE_MESH_REPAIR_SOUP_H
+#pragma once
 
 #include "mesh/mesh.h"
 
@@ -29,5 +28,3 @@ void scree_pieces_free(scree_pieces *pieces);
 int scree_piece_winding(const scree_pieces *pieces, size_t piece, vec3 p);
 /* Winds its facets the other way. */
 void scree_piece_turn(scree_pieces *pieces, size_t piece);
-
-#endif

@@ -1,6 +1,5 @@
 /* The steps of soup.c that only look at places: welding, junctions, doubles. */
-#ifndef SCREE_MESH_REPAIR_SOUP_TIDY_H
-#define SCREE_MESH_REPAIR_SOUP_TIDY_H
+#pragma once
 
 #include "mesh/repair/soup.h"
 
@@ -13,5 +12,3 @@ scree_status scree_soup_tidy(scree_mesh *mesh, double tolerance, scree_wall_mend
 /* Sets vertices into edges of one facet that run past them. */
 scree_status scree_soup_join(scree_mesh *mesh, double tolerance, scree_wall_mending *mending,
                              scree_error *error);
-
-#endif

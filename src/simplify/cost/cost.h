@@ -1,6 +1,5 @@
 /* What a collapse costs and where its vertex goes: the two methods. */
-#ifndef SCREE_SIMPLIFY_COST_H
-#define SCREE_SIMPLIFY_COST_H
+#pragma once
 
 #include "simplify/halfmesh.h"
 
@@ -30,5 +29,3 @@ typedef struct scree_coster {
 } scree_coster;
 
 extern const scree_coster scree_volume_coster, scree_qecd_coster;
-
-#endif

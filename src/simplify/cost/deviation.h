@@ -6,8 +6,7 @@
  * deviation of a collapse is the greatest distance, both ways, that the new triangles answer for:
  * of the samples around from these, and of the new vertex and the middles of the new edges from the
  * scan. */
-#ifndef SCREE_SIMPLIFY_DEVIATION_H
-#define SCREE_SIMPLIFY_DEVIATION_H
+#pragma once
 
 #include "mesh/measure/extent.h"
 #include "simplify/fan.h"
@@ -84,5 +83,3 @@ void scree_samples_settle(scree_samples *samples, const scree_halfmesh *s, const
 /* Before the fan collapses: its samples are gathered, thinned and settled. False: out of memory. */
 bool scree_samples_move(scree_samples *samples, const scree_halfmesh *s, const scree_fan *fan,
                         scree_gathered *scratch);
-
-#endif

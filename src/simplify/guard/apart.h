@@ -8,8 +8,7 @@
  * before and after; what other collapses of the pass make of triangles in it counts as well.
  *
  * Search. Where that does not decide, pairs of triangles are tested exactly. */
-#ifndef SCREE_SIMPLIFY_APART_H
-#define SCREE_SIMPLIFY_APART_H
+#pragma once
 
 #include "simplify/fan.h"
 #include "simplify/guard/marker.h"
@@ -25,5 +24,3 @@ typedef struct scree_surroundings {
  * collapses before it in order (a lower index) make them, than they do now, and no shell is leapt
  * over. Thread-safe. */
 bool scree_apart(const scree_surroundings *around, const scree_fan *fan);
-
-#endif

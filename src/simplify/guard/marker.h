@@ -3,8 +3,7 @@
  * That no facets come to cross is not enough: a collapse may lift the surface over another shell as
  * a whole, and a cavity would lie outside the body. A shell is all on one side of every other, so
  * one vertex of it, its marker, tells on which. */
-#ifndef SCREE_SIMPLIFY_MARKER_H
-#define SCREE_SIMPLIFY_MARKER_H
+#pragma once
 
 #include "simplify/fan.h"
 
@@ -25,5 +24,3 @@ void scree_markers_follow(scree_markers *markers, const scree_fan *fan);
  * the bounds are the fan's, before and after. Markers of the fan itself do not count. */
 bool scree_markers_stay(const scree_markers *markers, const scree_halfmesh *s, const scree_fan *fan,
                         const scree_bounds *bounds, const scree_planned *planned);
-
-#endif

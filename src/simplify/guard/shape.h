@@ -1,6 +1,5 @@
 /* What new triangles must not be, each by itself and with its neighbours. */
-#ifndef SCREE_SIMPLIFY_SHAPE_H
-#define SCREE_SIMPLIFY_SHAPE_H
+#pragma once
 
 #include "simplify/fan.h"
 
@@ -18,5 +17,3 @@ bool scree_shape_folds_with(const scree_halfmesh *s, const scree_fan *fan,
 /* Whether a vertex there would lie outside the scan's box by more than a share of the size of the
  * level's triangles. */
 bool scree_shape_is_spike(const scree_halfmesh *s, vec3 at);
-
-#endif

@@ -1,7 +1,6 @@
 /* What the kernels of a step and their host share beside the world. Kernels take the world
  * and this, both on the device. */
-#ifndef SCREE_WORLD_DEVICE_DEVICE_H
-#define SCREE_WORLD_DEVICE_DEVICE_H
+#pragma once
 
 #include "world/contact.h"
 
@@ -117,5 +116,3 @@ typedef struct scree_device_step {
   X(sums)           /* of the parts of an observation */                                           \
   X(wall_forces)    /* wall */                                                                     \
   X(wall_threshold) /* wall */
-
-#endif

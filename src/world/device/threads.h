@@ -1,7 +1,6 @@
 /* Kernels as loops over their elements: whatever the number of threads is, each takes its share.
  * A launch is of several worlds. */
-#ifndef SCREE_WORLD_DEVICE_THREADS_H
-#define SCREE_WORLD_DEVICE_THREADS_H
+#pragma once
 
 #include <stddef.h>
 
@@ -20,5 +19,3 @@
     (void)steps;                                                                                   \
     FOR_EACH (i, count) function(world, i);                                                        \
   }
-
-#endif

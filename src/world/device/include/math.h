@@ -1,6 +1,5 @@
 /* Of the C library, what the kernels' sources read: a device has none. */
-#ifndef SCREE_DEVICE_MATH_H
-#define SCREE_DEVICE_MATH_H
+#pragma once
 #define INFINITY    __builtin_inff()
 #define NAN         __builtin_nanf("")
 #define isfinite(x) __builtin_isfinite(x)
@@ -9,4 +8,3 @@ double fabs(double x);
 double sqrt(double x);
 double floor(double x);
 double ceil(double x);
-#endif

@@ -1,6 +1,4 @@
-#ifndef SCREE_DEVICE_STDIO_H
-#define SCREE_DEVICE_STDIO_H
+#pragma once
 #include <stddef.h>
 typedef struct scree_no_file FILE;
 int snprintf(char *text, size_t size, const char *format, ...);
-#endif

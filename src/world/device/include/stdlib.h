@@ -1,6 +1,4 @@
-#ifndef SCREE_DEVICE_STDLIB_H
-#define SCREE_DEVICE_STDLIB_H
+#pragma once
 #include <stddef.h>
 void abort(void);
 void qsort(void *items, size_t count, size_t size, int (*compare)(const void *, const void *));
-#endif
