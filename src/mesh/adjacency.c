@@ -130,10 +130,8 @@ scree_status scree_adjacency_build(const scree_mesh *mesh, scree_adjacency *adja
 done:
   scree_free(b.pairs);
   scree_free(b.block_edges);
-  if (status == SCREE_OK)
-    *adjacency = made;
-  else
-    scree_adjacency_free(&made);
+  if (status != SCREE_OK) scree_adjacency_free(&made);
+  *adjacency = made;
   return status;
 }
 

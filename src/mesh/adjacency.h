@@ -19,7 +19,8 @@ typedef struct scree_adjacency {
 } scree_adjacency;
 
 /* Builds it in O(N + longest fan * log) by a counting sort; needs 3 * triangle_count < 2^32 - 1 and
- * verified indices. 24 bytes per triangle stay, 30 more are used while building. */
+ * verified indices. 24 bytes per triangle stay, 30 more are used while building. Empty where it
+ * fails. */
 scree_status scree_adjacency_build(const scree_mesh *mesh, scree_adjacency *adjacency,
                                    scree_error *error);
 void scree_adjacency_free(scree_adjacency *adjacency);
