@@ -478,7 +478,7 @@ static scree_status advise_all(analysis *a) {
   const scree_calibration *c = a->c;
   size_t d = c->parameter_count, n = a->r->sample_count,
          count = n < MOST_ADVISED ? n : MOST_ADVISED;
-  double now[SCREE_MOST_PARAMETERS];
+  double now[SCREE_MOST_PARAMETERS] = {0};
   double *thinned = scree_alloc(count * d, sizeof *thinned);
   a->r->advice = scree_arena_take(&a->arena, c->quantity_count, sizeof *a->r->advice);
   scree_status status = thinned && a->r->advice ? SCREE_OK : fail_memory(a);
