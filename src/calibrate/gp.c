@@ -476,10 +476,6 @@ void scree_gp_free(scree_gp *gp) {
   }
   scree_free(gp);
 }
-
-size_t scree_gp_place_count(const scree_gp *gp) {
-  return gp->n;
-}
 size_t scree_gp_run_count(const scree_gp *gp) {
   return gp->run_count;
 }

@@ -39,8 +39,7 @@ double scree_gp_mean(const scree_gp *gp, const double *x);
 /* Covariances of the means at `count` places, count x count. */
 scree_status scree_gp_covariance(const scree_gp *gp, const double *x, size_t count,
                                  double *covariance, scree_error *error);
-/* Different places that it was fitted to, and the runs. */
-size_t scree_gp_place_count(const scree_gp *gp);
+/* The runs that it was fitted to. */
 size_t scree_gp_run_count(const scree_gp *gp);
 
 /* ---- for tests ---- */

@@ -37,11 +37,6 @@ double scree_response_variance(const scree_response *r, const scree_gp_value *va
   return value->variance + scatter_of(r, value) / repeat_count + r->uncertainty * r->uncertainty;
 }
 
-double scree_response_share(const scree_response *r, const double *x) {
-  scree_gp_value value = scree_gp_at(r->gp, x);
-  return value.variance / scree_response_variance(r, &value, r->repeat_count);
-}
-
 double scree_model_log_likelihood(const scree_model *model, const double *x) {
   double a[SCREE_MOST_RESPONSES][SCREE_MOST_RESPONSES], z[SCREE_MOST_RESPONSES],
       sd[SCREE_MOST_RESPONSES], sum = 0;

@@ -62,8 +62,6 @@ typedef struct scree_next_question {
 scree_status scree_model_next(const scree_model *model, const scree_next_question *question,
                               size_t count, scree_place_pick *picks, double *left,
                               scree_error *error);
-/* The same share for one experiment's answers, or one answer: at x. */
-double scree_response_share(const scree_response *response, const double *x);
 
 /* ---- another measurement ---- */
 

@@ -22,13 +22,6 @@ scree_particle_options scree_default_particle_options(void) {
   return (scree_particle_options){.rounding = 0};
 }
 
-bool scree_particle_is_like(const scree_particle *a, const scree_particle *b) {
-  const scree_particle_measures *m = &a->measures, *n = &b->measures;
-  return m->kind == n->kind && m->volume == n->volume && m->bounding_radius == n->bounding_radius &&
-         m->triangle_count == n->triangle_count && m->point_count == n->point_count &&
-         m->inertia[0] == n->inertia[0] && m->inertia[2] == n->inertia[2];
-}
-
 void scree_particle_retain(scree_particle *particle) {
   atomic_fetch_add(&particle->reference_count, 1);
 }

@@ -80,8 +80,6 @@ static inline double scree_contact_radius(const scree_particle *mesh, const scre
 }
 
 void scree_particle_retain(scree_particle *particle);
-/* Whether two were made alike: kind, volume, size, features and inertia are the same. */
-bool scree_particle_is_like(const scree_particle *a, const scree_particle *b);
 
 /* The surface alone, in the mesh's own coordinates, without mass: for walls. May be open; one that
  * is closed and wound inwards holds what is in it; `two_sided`: as if it were open. Its measured
