@@ -24,7 +24,7 @@ pieces=0 code=3 seconds=2 # in which no machine does it all
 while [ $code = 3 ]; do
   code=0
   SCREE_BENCH_SECONDS=$seconds SCREE_BENCH_RUNS=3 "$1/device.sh" study cuda small.yaml 2>told || code=$?
-  pieces=$((pieces + 1)) seconds=12
+  pieces=$((pieces + 1)) seconds=48
   [ $code = 0 ] || [ $code = 3 ] || { cat told; exit $code; }
 done
 echo "$pieces pieces"
