@@ -5,6 +5,7 @@ too), a type of functions, a function. Whatever else stands in them is a SyntaxE
 compiler compare all that is read here."""
 import ctypes
 import re
+import threading
 
 NUMBERS = {"bool": ctypes.c_bool, "char": ctypes.c_char, "int": ctypes.c_int, "long long": ctypes.c_longlong,
            "float": ctypes.c_float, "double": ctypes.c_double, "size_t": ctypes.c_size_t, "uint8_t": ctypes.c_uint8,
@@ -34,7 +35,8 @@ class Headers:
         if not text:
             raise FileNotFoundError(f"no headers in {folder}")
         self.structs, self.opaque, self.enums, self.callbacks, self.functions = {}, set(), {}, {}, {}
-        self.constants, self._types = {}, {}
+        self.constants, self._types = {}, dict(NUMBERS)
+        self.making = threading.RLock()  # what is made is made once, whichever thread asks first
         for statement in _statements(text):
             self._take(" ".join(statement.split()))
         self.opaque -= set(self.structs)
@@ -93,22 +95,24 @@ class Headers:
 
     def type(self, name):
         """The ctypes type of this name."""
-        if name in NUMBERS:
-            return NUMBERS[name]
-        if name not in self._types:
-            if name in self.enums:
-                self._types[name] = type(name, (Enum,), {"words": tuple(self.enums[name])})
-            elif name in self.structs:
-                self._types[name] = made = type(name, (ctypes.Structure,), {})  # a field may point to its own kind
-                made._fields_ = [(field.name, self.of(field)) for said in self.structs[name].split(";") if said.strip()
-                                 for field in self.declared(said)]
-            elif name in self.callbacks:
-                self._types[name] = self._callback(*self.callbacks[name])
-            elif name in self.opaque or name in ("void", "FILE"):
-                self._types[name] = None
-            else:
-                raise SyntaxError(f"no type {name}")
-        return self._types[name]
+        with self.making:
+            if name not in self._types:
+                self._make(name)
+            return self._types[name]
+
+    def _make(self, name):
+        if name in self.enums:
+            self._types[name] = type(name, (Enum,), {"words": tuple(self.enums[name])})
+        elif name in self.structs:
+            self._types[name] = made = type(name, (ctypes.Structure,), {})  # a field may point to its own kind
+            made._fields_ = [(field.name, self.of(field)) for said in self.structs[name].split(";") if said.strip()
+                             for field in self.declared(said)]
+        elif name in self.callbacks:
+            self._types[name] = self._callback(*self.callbacks[name])
+        elif name in self.opaque or name in ("void", "FILE"):
+            self._types[name] = None
+        else:
+            raise SyntaxError(f"no type {name}")
 
     def _callback(self, result, parameters):
         result, parameters = self._signature(result, parameters)

@@ -199,9 +199,10 @@ class Library:
     def __getattr__(self, name):
         if "scree_" + name not in self.headers.functions:
             raise AttributeError(f"no function scree_{name} in the headers of scree")
-        function = Function(self, "scree_" + name)
-        setattr(self, name, function)
-        return function
+        with self.headers.making:
+            if name not in self.__dict__:
+                setattr(self, name, Function(self, "scree_" + name))
+            return self.__dict__[name]
 
     def type(self, name):
         return self.headers.type("scree_" + name)

@@ -311,6 +311,25 @@ class Threads(unittest.TestCase):
             thread.join()
         self.assertEqual((problems, len(seen)), ([], 1))
 
+    def test_many_threads_use_the_library_first(self):
+        """Functions and types are made when they are first asked for: once, in whichever thread."""
+        fresh, seen, ready = type(lib)(), [], threading.Barrier(4)
+
+        def ask():
+            ready.wait()
+            seen.append([fresh.headers.type(name) for name in sorted(fresh.headers.structs)] +
+                        [getattr(fresh, name[len("scree_"):]) for name in sorted(fresh.headers.functions)])
+
+        interval = sys.getswitchinterval()
+        sys.setswitchinterval(1e-6)
+        threads = [threading.Thread(target=ask) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        sys.setswitchinterval(interval)
+        self.assertEqual([types == seen[0] for types in seen], 4 * [True])
+
     @staticmethod
     def keep(problems, function):
         try:
