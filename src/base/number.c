@@ -172,3 +172,14 @@ const char *scree_percent_text(double share, char text[SCREE_NUMBER_SIZE]) {
   snprintf(text, SCREE_NUMBER_SIZE, "%.*f%%", decimals, percent);
   return with_point(text);
 }
+
+const char *scree_count_text(size_t count, char text[SCREE_NUMBER_SIZE]) {
+  char digits[SCREE_NUMBER_SIZE];
+  int length = snprintf(digits, sizeof digits, "%zu", count), used = 0;
+  for (int i = 0; i < length; i++) {
+    if (i > 0 && (length - i) % 3 == 0) text[used++] = ',';
+    text[used++] = digits[i];
+  }
+  text[used] = 0;
+  return text;
+}

@@ -27,3 +27,5 @@ size_t scree_number_format_digits(double value, int digits, char text[SCREE_NUMB
  * percentage, with three decimals below 0.1 %, two below 10 % and else none. */
 const char *scree_rp_text(double rp, char text[SCREE_NUMBER_SIZE]);
 const char *scree_percent_text(double share, char text[SCREE_NUMBER_SIZE]);
+/* 12345 as 12,345 */
+const char *scree_count_text(size_t count, char text[SCREE_NUMBER_SIZE]);

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -73,4 +74,20 @@ void scree_sort_keys(uint64_t *keys, size_t count) {
     for (; j > 0 && keys[j - 1] > key; j--) keys[j] = keys[j - 1];
     keys[j] = key;
   }
+}
+
+static int compare_numbers(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+void scree_sort_numbers(double *values, size_t count) {
+  if (count > 0) qsort(values, count, sizeof *values, compare_numbers);
+}
+
+double scree_quantile(const double *ascending, size_t count, double share) {
+  if (count == 0) return NAN;
+  double at = share * (double)(count - 1);
+  size_t i = (size_t)at, next = i + 1 < count ? i + 1 : i;
+  return ascending[i] + (at - (double)i) * (ascending[next] - ascending[i]);
 }

@@ -14,3 +14,7 @@ scree_keyed *scree_radix_sort(scree_keyed *items, scree_keyed *swap, size_t coun
 
 /* Ascending: by insertion where there are few, as round a vertex. */
 void scree_sort_keys(uint64_t *keys, size_t count);
+/* Ascending. */
+void scree_sort_numbers(double *values, size_t count);
+/* Of ascending numbers, between neighbours as on a straight line; NaN of none. */
+double scree_quantile(const double *ascending, size_t count, double share);

@@ -1,6 +1,7 @@
 /* What a calibration says: intervals of parameters, pairs that trade against each other, answers
  * beside what was measured, and which measurement would help most. */
 #include "base/math.h"
+#include "base/radix.h"
 #include "base/rng.h"
 #include "calibrate/calibration.h"
 #include "study/special.h"
@@ -33,18 +34,6 @@ static scree_status fail_memory(const analysis *a) {
   return scree_fail_memory(a->error, 0, "a calibration's result");
 }
 
-static int compare(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
-/* Of sorted values, between neighbours as on a straight line. */
-static double quantile(const double *sorted, size_t count, double p) {
-  double place = p * (double)(count - 1);
-  size_t i = (size_t)place;
-  return i + 1 < count ? sorted[i] + (place - (double)i) * (sorted[i + 1] - sorted[i]) : sorted[i];
-}
-
 typedef struct interval {
   double mean, sd, median, low, high;
 } interval;
@@ -56,10 +45,10 @@ static interval summarise(double *values, size_t count, double confidence) {
   for (size_t i = 0; i < count; i++)
     s.sd += (values[i] - s.mean) * (values[i] - s.mean) / (double)(count > 1 ? count - 1 : 1);
   s.sd = sqrt(s.sd);
-  qsort(values, count, sizeof *values, compare);
-  s.median = quantile(values, count, 0.5);
-  s.low = quantile(values, count, 0.5 * (1 - confidence));
-  s.high = quantile(values, count, 0.5 * (1 + confidence));
+  scree_sort_numbers(values, count);
+  s.median = scree_quantile(values, count, 0.5);
+  s.low = scree_quantile(values, count, 0.5 * (1 - confidence));
+  s.high = scree_quantile(values, count, 0.5 * (1 + confidence));
   return s;
 }
 
@@ -128,9 +117,9 @@ static void judge(analysis *a, size_t k, scree_parameter_result *out) {
   bool narrow = out->narrowed <= identified_share;
   out->identified = narrow && end == 0 && a->unanswered <= 1 - confidence;
   if (narrow && end > 0)
-    out->at_least = scree_parameter_number(p, quantile(a->column, n, 1 - confidence));
+    out->at_least = scree_parameter_number(p, scree_quantile(a->column, n, 1 - confidence));
   if (narrow && end < 0)
-    out->at_most = scree_parameter_number(p, quantile(a->column, n, confidence));
+    out->at_most = scree_parameter_number(p, scree_quantile(a->column, n, confidence));
 }
 
 static scree_status describe_parameters(analysis *a) {

@@ -11,10 +11,9 @@
 
 #include "base/alloc.h"
 #include "base/parallel.h"
+#include "base/radix.h"
 #include "mesh/measure/measure.h"
 #include "mesh/mesh.h"
-
-#include <stdlib.h>
 
 enum {
   UNKNOWNS = 6,
@@ -166,14 +165,9 @@ static void fit_block(void *context, size_t begin, size_t end, size_t block, int
   }
 }
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static double median(double *values, size_t count) {
   if (count == 0) return 0;
-  qsort(values, count, sizeof *values, ascending);
+  scree_sort_numbers(values, count);
   return isfinite(values[count / 2]) ? values[count / 2] : 0;
 }
 

@@ -8,11 +8,11 @@
 #include "base/alloc.h"
 #include "base/math.h"
 #include "base/parallel.h"
+#include "base/radix.h"
 #include "base/sum.h"
 #include "mesh/index/bvh.h"
 #include "simplify/flat_fan.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -48,14 +48,9 @@ double scree_normalised_error(const double errors[SCREE_SHAPE_ERROR_COUNT],
 
 /* ---- The scan ---- */
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static double percentile(double *values, size_t count, double share) {
   if (count == 0) return NAN;
-  qsort(values, count, sizeof *values, ascending);
+  scree_sort_numbers(values, count);
   return values[(size_t)(share * (double)count)];
 }
 

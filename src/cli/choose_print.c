@@ -10,14 +10,14 @@ static void print_row(FILE *out, const choose_run *run, size_t index) {
   char scan[32], n[4][32], share[3][SCREE_NUMBER_SIZE];
   cli_print_cell(out, run->objects[index].name, 12, 12);
   fprintf(
-      out, "%10s |%7s%7s%8s |%7s%7s%c |%7s |%6s\n", cli_count_text(c->triangle_count, scan),
-      cli_count_text(c->recommended.triangle_count, n[0]),
+      out, "%10s |%7s%7s%8s |%7s%7s%c |%7s |%6s\n", scree_count_text(c->triangle_count, scan),
+      scree_count_text(c->recommended.triangle_count, n[0]),
       scree_percent_text(scree_fidelity_error(f, c->recommended_row, SCREE_ERROR_MEAN), share[0]),
       scree_percent_text(scree_fidelity_error(f, c->recommended_row, SCREE_ERROR_HAUSDORFF),
                          share[1]),
-      cli_count_text(c->paper.triangle_count, n[1]), scree_percent_text(c->paper.eps_s, share[2]),
-      c->paper_is_accident ? '*' : ' ', cli_count_text(c->robust.triangle_count, n[2]),
-      cli_count_text(c->cost.triangle_count, n[3]));
+      scree_count_text(c->paper.triangle_count, n[1]), scree_percent_text(c->paper.eps_s, share[2]),
+      c->paper_is_accident ? '*' : ' ', scree_count_text(c->robust.triangle_count, n[2]),
+      scree_count_text(c->cost.triangle_count, n[3]));
 }
 
 /* What eps_s is measured against, where that is not the scan's area by itself. */

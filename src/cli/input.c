@@ -195,15 +195,3 @@ void cli_print_cell(FILE *stream, const char *text, size_t least, size_t most) {
   }
   for (; count < least; count++) putc(' ', stream);
 }
-
-const char *cli_count_text(size_t count, char buffer[32]) {
-  char digits[24];
-  int length = snprintf(digits, sizeof digits, "%zu", count);
-  char *out = buffer;
-  for (int i = 0; i < length; i++) {
-    if (i && (length - i) % 3 == 0) *out++ = ',';
-    *out++ = digits[i];
-  }
-  *out = 0;
-  return buffer;
-}

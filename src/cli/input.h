@@ -72,6 +72,3 @@ void cli_distinct_name(const char *word, char *names, size_t stride, size_t befo
 /* UTF-8 text as a cell of a table: of at least and at most so many characters. What is longer has a
  * ~ in its middle, for names are told apart by their beginnings or their ends. */
 void cli_print_cell(FILE *stream, const char *text, size_t least, size_t most);
-
-/* 12345678 as 12,345,678 */
-const char *cli_count_text(size_t count, char buffer[32]);

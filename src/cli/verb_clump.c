@@ -1,4 +1,5 @@
 /* scree clump: spheres for a scan, and how many. */
+#include "base/number.h"
 #include "cli/clump_files.h"
 #include "cli/terminal.h"
 #include "report/program.h"
@@ -170,8 +171,8 @@ static void print_object(FILE *out, const clump_object *object, size_t most) {
   const char *unit = cli_unit_name(object->surface.unit_m);
   fprintf(out, "%s: %s triangles, fitted to %s, method %s, size L = %.4g %s%s%s\n",
           cli_printable(object->word, shown),
-          cli_count_text(object->surface.scan_triangle_count, scan),
-          cli_count_text(object->surface.mesh.triangle_count, used),
+          scree_count_text(object->surface.scan_triangle_count, scan),
+          scree_count_text(object->surface.mesh.triangle_count, used),
           scree_clump_method_name(c->method), c->size / object->surface.unit_m, unit,
           object->surface.note[0] ? "; " : "", object->surface.note);
   fprintf(out,
@@ -201,7 +202,7 @@ static void print_wrong_shape(FILE *out, const clump_object *object) {
             "spheres are the wrong shape for it.",
             LEAST_IOU);
   fprintf(out, " Take its mesh, of %s triangles: scree choose %s -u %s -o DIR\n",
-          cli_count_text(object->mesh_count, count), cli_printable(object->word, shown), unit);
+          scree_count_text(object->mesh_count, count), cli_printable(object->word, shown), unit);
 }
 
 static void print_advice(FILE *out, const clump_object *object) {

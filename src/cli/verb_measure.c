@@ -1,4 +1,5 @@
 /* scree measure: sizes, mass properties and topology of scans. */
+#include "base/radix.h"
 #include "cli/input.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
@@ -116,21 +117,11 @@ static void print_shape(const scree_descriptors *d, double unit) {
 
 /* ---- Of a set ---- */
 
-static int by_value(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* Least, quartiles and largest of sorted values, interpolated. */
 static void print_spread(const char *label, double *values, size_t count) {
-  qsort(values, count, sizeof *values, by_value);
+  scree_sort_numbers(values, count);
   printf("  %-22s", label);
-  for (int q = 0; q <= 4; q++) {
-    double at = (double)(count - 1) * q / 4;
-    size_t i = (size_t)at;
-    double next = i + 1 < count ? values[i + 1] : values[i];
-    printf(" %9.4g", values[i] + (at - (double)i) * (next - values[i]));
-  }
+  for (int q = 0; q <= 4; q++) printf(" %9.4g", scree_quantile(values, count, q / 4.0));
   putchar('\n');
 }
 

@@ -1,3 +1,5 @@
+#include "base/number.h"
+#include "base/radix.h"
 #include "cli/input.h"
 #include "cli/output.h"
 #include "cli/render_refine.h"
@@ -98,7 +100,7 @@ static scree_status fail_memory(scree_error *error) {
 static void put_cell(picture *p, size_t i, const char *name) {
   char count[32];
   snprintf(p->captions[i], sizeof p->captions[i], "%s: %s triangles", name,
-           cli_count_text(p->scans[i].mesh.triangle_count, count));
+           scree_count_text(p->scans[i].mesh.triangle_count, count));
   p->items[i] = (scree_render_item){.mesh = &p->scans[i].mesh, .color = {0.34f, 0.46f, 0.60f}};
   p->cells[i] = (scree_render_cell){&p->items[i], 1, p->captions[i]};
 }
@@ -149,11 +151,6 @@ static scree_status make_levels(picture *p, const double *rp, double scale,
   return status;
 }
 
-static int by_size(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* The end of the colour map: a few far points must not take the colours from all others, so the
  * distance that 98 of 100 vertices stay below, rounded up to 1, 2 or 5 times a power of ten. */
 static double colour_range(const picture *p, const scree_mesh *reference, double *values) {
@@ -162,7 +159,7 @@ static double colour_range(const picture *p, const scree_mesh *reference, double
     for (size_t j = 0; p->items[i].mesh != reference && j < p->scans[i].mesh.vertex_count; j += 7)
       values[count++] = p->distances[i][j];
   if (!count) return 1e-3;
-  qsort(values, count, sizeof *values, by_size);
+  scree_sort_numbers(values, count);
   double at = values[(size_t)(0.98 * (double)count)];
   if (!(at > 0)) return 1e-3;
   double power = pow(10, floor(log10(at))), digits = at / power;

@@ -2,11 +2,10 @@
 
 #include "base/alloc.h"
 #include "base/eigen.h"
+#include "base/radix.h"
 #include "base/sum.h"
 #include "mesh/measure/measure.h"
 #include "particle/mass.h"
-
-#include <stdlib.h>
 
 enum { THICKNESS_SAMPLES = 1000, SHRINKINGS = 40 };
 
@@ -162,11 +161,6 @@ double scree_target_tangent_radius(const scree_target *body, scree_target_point 
   return radius;
 }
 
-static int by_value(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 scree_status scree_target_thickness(const scree_target *body, double *thickness,
                                     scree_error *error) {
   double *walls = scree_alloc(THICKNESS_SAMPLES, sizeof *walls);
@@ -174,7 +168,7 @@ scree_status scree_target_thickness(const scree_target *body, double *thickness,
   for (size_t i = 0; i < THICKNESS_SAMPLES; i++)
     walls[i] =
         2 * scree_target_tangent_radius(body, scree_target_sample(body, i, THICKNESS_SAMPLES));
-  qsort(walls, THICKNESS_SAMPLES, sizeof *walls, by_value);
+  scree_sort_numbers(walls, THICKNESS_SAMPLES);
   *thickness = walls[THICKNESS_SAMPLES / 4];
   scree_free(walls);
   return SCREE_OK;

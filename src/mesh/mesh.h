@@ -29,9 +29,12 @@ static inline bool scree_names_twice(const uint32_t *c) {
  * coordinates: an exact zero would be lost when units are converted. */
 bool scree_facet_is_flat(const scree_mesh *mesh, size_t triangle);
 
+static inline vec3 scree_mesh_vertex(const scree_mesh *mesh, size_t vertex) {
+  return vec3_load(mesh->positions + 3 * vertex);
+}
 /* Corner k (0, 1, 2) of a triangle. */
 static inline vec3 scree_mesh_corner(const scree_mesh *mesh, size_t triangle, int k) {
-  return vec3_load(mesh->positions + 3 * (size_t)mesh->triangles[3 * triangle + (size_t)k]);
+  return scree_mesh_vertex(mesh, mesh->triangles[3 * triangle + (size_t)k]);
 }
 
 /* Twice the area along the outward normal. */

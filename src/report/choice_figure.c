@@ -54,11 +54,6 @@ static void add_robust_line(scree_drawing *d, const scree_choice *choice, bool c
   }
 }
 
-/* The grid's Rp, or the level's own where the grid's was not reached. */
-static double pick_rp(const scree_choice *choice, const scree_pick *pick) {
-  return fmax(pick->rp, (double)pick->triangle_count / (double)choice->triangle_count);
-}
-
 /* What each rule chooses: every figure marks them all. */
 static const struct {
   scree_choice_rule rule;
@@ -89,7 +84,7 @@ static void add_picks(scree_drawing *d, const scree_choice_report *report, size_
     const scree_choice *choice = report->entries[e].choice;
     const scree_pick *pick = scree_choice_pick(choice, picks[which].rule);
     bool known = picks[which].rule != SCREE_RULE_RECOMMENDED || choice->fidelity;
-    at.x[e] = pick_rp(choice, pick);
+    at.x[e] = scree_report_pick_rp(choice, pick);
     at.y[e] = known ? pick_value(report, choice, pick, criterion) : NAN;
   }
 }
@@ -100,7 +95,7 @@ static double largest_rp(const scree_choice_report *report) {
   for (size_t e = 0; e < report->entry_count; e++) {
     const scree_choice *choice = report->entries[e].choice;
     for (size_t k = 0; k < PICKS; k++)
-      rp = fmax(rp, pick_rp(choice, scree_choice_pick(choice, picks[k].rule)));
+      rp = fmax(rp, scree_report_pick_rp(choice, scree_choice_pick(choice, picks[k].rule)));
   }
   return rp / 0.75;
 }

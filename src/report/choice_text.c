@@ -67,25 +67,8 @@ static const char *change_text(double fraction, char buffer[NUMBER_BYTES]) {
 }
 #define CHANGE(fraction) change_text(fraction, (char[NUMBER_BYTES]){0})
 
-/* 12345 as 12,345 */
-static const char *count_text(size_t count, char buffer[NUMBER_BYTES]) {
-  char digits[NUMBER_BYTES];
-  int length = snprintf(digits, sizeof digits, "%zu", count), used = 0;
-  for (int i = 0; i < length; i++) {
-    if (i > 0 && (length - i) % 3 == 0) buffer[used++] = ',';
-    buffer[used++] = digits[i];
-  }
-  buffer[used] = 0;
-  return buffer;
-}
-
 static double ratio(double a, double b) {
   return a > b ? a / b : b / a;
-}
-
-/* The grid's Rp, or the level's own where the grid's was not reached. */
-static double rp_of(const scree_choice *choice, const scree_pick *pick) {
-  return fmax(pick->rp, (double)pick->triangle_count / (double)choice->triangle_count);
 }
 
 static bool is_recommended(const scree_choice_report *report, const scree_choice *choice) {
@@ -196,7 +179,7 @@ static void say_recommended(sentences *s, const scree_choice_report *report,
   say(s,
       "Use %s triangles (Rp = %s): surface %s mm off in the mean, %s mm at worst (at %s, %s, %s "
       "mm); %sinertia %s %%, area %s %%.",
-      count_text(pick->triangle_count, count), scree_rp_text(pick->rp, rp),
+      scree_count_text(pick->triangle_count, count), scree_rp_text(pick->rp, rp),
       LENGTH(c, scree_fidelity_error(f, row, SCREE_ERROR_MEAN)),
       LENGTH(c, scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF)), PLACE(at[0], step),
       PLACE(at[1], step), PLACE(at[2], step), walls,
@@ -209,7 +192,7 @@ static void say_recommended(sentences *s, const scree_choice_report *report,
         "In a flowing heap it takes about %s times as long to simulate as the paper's %s "
         "triangles.",
         NUMBER(cost_of(pick->triangle_count) / cost_of(c->paper.triangle_count), 2),
-        count_text(c->paper.triangle_count, other));
+        scree_count_text(c->paper.triangle_count, other));
 }
 
 static void say_by_area(sentences *s, const scree_choice_report *report, const scree_choice *c) {
@@ -218,11 +201,12 @@ static void say_by_area(sentences *s, const scree_choice_report *report, const s
   char count[NUMBER_BYTES], rp[NUMBER_BYTES], percent[NUMBER_BYTES], low[NUMBER_BYTES],
       high[NUMBER_BYTES];
   say(s, "Use %s triangles (Rp = %s): area within %s of the scan's.",
-      count_text(pick->triangle_count, count), scree_rp_text(rp_of(c, pick), rp),
+      scree_count_text(pick->triangle_count, count),
+      scree_rp_text(scree_report_pick_rp(c, pick), rp),
       scree_percent_text(paper ? pick->level_eps_s : pick->eps_s, percent));
   if (pick->most > pick->fewest)
     say(s, "From %s up to %s triangles there are levels with an Ip within a tenth of it.",
-        count_text(pick->fewest, low), count_text(pick->most, high));
+        scree_count_text(pick->fewest, low), scree_count_text(pick->most, high));
 }
 
 /* The level of an object at the set's Rp, which lies on the grid by the paper's rule and on the
@@ -250,8 +234,8 @@ static void say_common_rp(sentences *s, const scree_choice_report *report, const
   }
   char rp_buffer[NUMBER_BYTES], low[NUMBER_BYTES], high[NUMBER_BYTES], percent[NUMBER_BYTES];
   say(s, "%s Rp = %s for the set: %s%s%s triangles%s, area within %s%s.", begin,
-      scree_rp_text(rp, rp_buffer), count_text(least, low), least < most ? " to " : "",
-      least < most ? count_text(most, high) : "", least < most ? "" : " each",
+      scree_rp_text(rp, rp_buffer), scree_count_text(least, low), least < most ? " to " : "",
+      least < most ? scree_count_text(most, high) : "", least < most ? "" : " each",
       scree_percent_text(worst, percent), end);
 }
 
@@ -272,8 +256,8 @@ static void say_set(sentences *s, const scree_choice_report *report) {
     if (count > most) most = count;
   }
   say(s, "Use each shape's own count, %s%s%s triangles: all keep the same tolerances.",
-      count_text(least, low), least < most ? " to " : "",
-      least < most ? count_text(most, high) : "");
+      scree_count_text(least, low), least < most ? " to " : "",
+      least < most ? scree_count_text(most, high) : "");
   for (size_t i = 0; i < report->entry_count; i++) {
     char name[64];
     snprintf(name, sizeof name, "%.60s: ", report->entries[i].name);
@@ -323,7 +307,7 @@ static void warn_of_losses(sentences *s, const scree_choice_report *report, cons
         NUMBER(1e3 * usual, 2), NUMBER(1e2 * usual, 1));
   if ((double)c->recommended.triangle_count > NOTABLE_SHARE * (double)c->triangle_count)
     say(s, "The scan is coarse for these tolerances: of its %s triangles most are needed.",
-        count_text(c->triangle_count, count));
+        scree_count_text(c->triangle_count, count));
 }
 
 static void warn_of_accidents(sentences *s, const scree_choice *c) {
@@ -393,7 +377,7 @@ static void warn_of_floor(sentences *s, const scree_choice_report *report, size_
   if (!e->choice->levels[0].reached && e->choice->floor_count > PAPER_FLOOR)
     say(s, "Rp = %s was not reached: %s stops at %s triangles.",
         scree_rp_text(report->options->rp_min, rp), e->name,
-        count_text(e->choice->floor_count, count));
+        scree_count_text(e->choice->floor_count, count));
 }
 
 /* Each line of a note. */

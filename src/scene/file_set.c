@@ -38,6 +38,10 @@ static const scree_field *named_group(const char *field) {
   return NULL;
 }
 
+static bool is_called(const scree_yaml *item, const char *name, size_t length) {
+  return item->key && strlen(item->key) == length && !strncmp(item->key, name, length);
+}
+
 /* A name that is not there, on the way to a field of it, is a slip: a thing would be made of it
  * that nothing uses. */
 static scree_status need_named(const scree_scene_file *file, const char *field,
@@ -49,9 +53,8 @@ static scree_status need_named(const scree_scene_file *file, const char *field,
   const char *names[MOST_NAMES] = {NULL}, *blank = strchr(f->record->what, ' ');
   size_t count = 0;
   for (size_t i = 0; group && i < group->item_count && group->items[i].key; i++) {
-    const char *key = group->items[i].key;
-    if (strlen(key) == (size_t)(end - name) && !strncmp(key, name, strlen(key))) return SCREE_OK;
-    if (count < MOST_NAMES) names[count++] = key;
+    if (is_called(&group->items[i], name, (size_t)(end - name))) return SCREE_OK;
+    if (count < MOST_NAMES) names[count++] = group->items[i].key;
   }
   char word[64];
   snprintf(word, sizeof word, "%.*s", (int)(end - name), name);
@@ -237,14 +240,13 @@ scree_status scree_scene_file_shrink(const scree_scene_file *file, double larges
 /* Where a field that is none of a scene may have been meant: in the thing that its first word
  * names, or in every thing of a kind that has it. */
 static bool find_meant(const scree_scene_file *file, const char *field, char *meant, size_t size) {
-  int length = (int)strcspn(field, ".");
+  size_t length = strcspn(field, ".");
   for (size_t i = 0; i < scree_plan_record.field_count; i++) {
     const scree_field *f = &scree_plan_record.fields[i];
     const scree_yaml *group = scree_yaml_find(&file->root, f->key);
     if (f->kind != SCREE_FIELD_NAMED || !group) continue;
     for (size_t k = 0; field[length] && k < group->item_count; k++)
-      if (strlen(group->items[k].key) == (size_t)length &&
-          !strncmp(group->items[k].key, field, (size_t)length))
+      if (is_called(&group->items[k], field, length))
         return snprintf(meant, size, "%s.%.150s", f->key, field) > 0;
     for (size_t k = 0; !field[length] && k < f->record->field_count; k++)
       if (!strcmp(f->record->fields[k].key, field))

@@ -4,8 +4,7 @@
 #include "scene/scene.h"
 
 #include "base/alloc.h"
-
-#include <stdlib.h>
+#include "base/radix.h"
 
 static const double quantiles[] = {0.1, 0.5, 0.9};
 enum { QUANTILES = sizeof quantiles / sizeof *quantiles };
@@ -42,26 +41,14 @@ static bool is_of(const scree_scene *scene, const scree_scene_sensor *sensor, si
   return reading == 0 || scree_scene_class_of(scene, plan_of(sensor)->by, shape) == reading - 1;
 }
 
-static int by_size(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* The stays of one reading, rising; their count. */
 static size_t list_stays(const scree_scene *scene, const scree_scene_sensor *sensor, size_t reading,
                          double *stays) {
   size_t count = 0;
   for (size_t b = 0; b < scene->shape_of.count; b++)
     if (is_of(scene, sensor, b, reading) && stay_of(scene, sensor, b, &stays[count])) count++;
-  if (count) qsort(stays, count, sizeof *stays, by_size);
+  scree_sort_numbers(stays, count);
   return count;
-}
-
-static double quantile(const double *rising, size_t count, double share) {
-  if (count == 0) return NAN;
-  double at = share * (double)(count - 1);
-  size_t i = (size_t)at, next = i + 1 < count ? i + 1 : i;
-  return rising[i] + (at - (double)i) * (rising[next] - rising[i]);
 }
 
 scree_status scree_scene_read_residence(const scree_scene *scene, const scree_scene_sensor *sensor,
@@ -78,7 +65,7 @@ scree_status scree_scene_read_residence(const scree_scene *scene, const scree_sc
     at[width + k] = count > 0 ? mean : NAN;
     at[2 * width + k] = count > 1 ? sqrt(squares / (n - 1)) : NAN;
     for (size_t q = 0; q < QUANTILES; q++)
-      at[(3 + q) * width + k] = quantile(stays, count, quantiles[q]);
+      at[(3 + q) * width + k] = scree_quantile(stays, count, quantiles[q]);
   }
   scree_free(stays);
   return SCREE_OK;

@@ -26,6 +26,7 @@
 #include "simplify/decimate.h"
 
 #include "base/parallel.h"
+#include "base/radix.h"
 #include "simplify/tuning.h"
 
 #include <stdlib.h>
@@ -180,13 +181,8 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-static int by_size(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 double scree_decimate_set_usual(scree_decimator *d, double *costs, size_t count, double share) {
-  qsort(costs, count, sizeof *costs, by_size);
+  scree_sort_numbers(costs, count);
   if (scree_has_samples(&d->samples) && d->samples.mean > 0) {
     d->usual_cost = costs[count / USUAL_SHARE];
     d->usual_far = scree_tune.usual * d->samples.mean;

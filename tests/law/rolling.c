@@ -65,17 +65,23 @@ static void balls_on_inclines(void **state) {
                5.0 / 7 * gravity * slope * 0.11, 0.005);
 }
 
+/* At rest on a level plane, then thrown along x; how it begins. */
+static scree_world *thrown_ball(double rolling, double speed, double spin, scree_body *body) {
+  scree_world *world = incline(0, rolling);
+  law_step(world, 1000);
+  scree_world_get_body(world, 0, body);
+  body->velocity[0] = speed;
+  body->angular_velocity[1] = spin;
+  law_place(world, 0, body);
+  return world;
+}
+
 static void a_rolling_ball_stops(void **state) {
   (void)state;
   const double rolling = 0.05, speed = 0.2;
-  scree_world *world = incline(0, rolling);
-  law_step(world, 1000);
   scree_body body;
-  scree_world_get_body(world, 0, &body);
+  scree_world *world = thrown_ball(rolling, speed, speed / 0.01, &body);
   double from = body.position[0];
-  body.velocity[0] = speed;
-  body.angular_velocity[1] = speed / 0.01;
-  law_place(world, 0, &body);
   scree_observation o;
   double first = law_ledger(world, &o);
   while (scree_world_time(world) < 1.2) law_step(world, 10);
@@ -92,13 +98,9 @@ static void a_rolling_ball_stops(void **state) {
 static void a_thrown_ball_slides_rolls_and_stops(void **state) {
   (void)state;
   const double rolling = 0.2, friction = law_default().friction, speed = 0.5;
-  scree_world *world = incline(0, rolling);
-  law_step(world, 1000);
   scree_body body;
-  scree_world_get_body(world, 0, &body);
+  scree_world *world = thrown_ball(rolling, speed, 0, &body);
   double from = body.position[0];
-  body.velocity[0] = speed;
-  law_place(world, 0, &body);
   while (scree_world_time(world) < 0.6) law_step(world, 10);
   scree_world_get_body(world, 0, &body);
   const double sliding = speed / ((friction + 2.5 * (friction - rolling)) * gravity),

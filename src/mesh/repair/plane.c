@@ -18,10 +18,6 @@ static const double TOLERANCE = 0.01;   /* of the diagonal: how near the plane a
 static const double LEAST_SHARE = 0.25; /* of the boundary that a table's rim is at least */
 static const double ABOVE = 1e-3;       /* of the diagonal */
 
-static vec3 point(const scree_mesh *mesh, size_t v) {
-  return vec3_load(mesh->positions + 3 * v);
-}
-
 typedef struct rim_piece {
   vec3 middle;
   double length, up_to; /* the sum of lengths so far */
@@ -38,8 +34,8 @@ static scree_status collect_rim(const scree_mesh *mesh, rim *out, scree_error *e
   double sum = 0;
   for (size_t h = 0; status == SCREE_OK && h < 3 * mesh->triangle_count; h++) {
     if (adjacency.ring[h] != h) continue;
-    vec3 a = point(mesh, scree_half_edge_from(mesh, (uint32_t)h)),
-         b = point(mesh, scree_half_edge_to(mesh, (uint32_t)h));
+    vec3 a = scree_mesh_vertex(mesh, scree_half_edge_from(mesh, (uint32_t)h)),
+         b = scree_mesh_vertex(mesh, scree_half_edge_to(mesh, (uint32_t)h));
     double length = vec3_distance(a, b);
     rim_piece piece = {vec3_scale(vec3_add(a, b), 0.5), length, sum += length};
     if (!SCREE_PUSH(out, piece)) status = scree_repair_no_memory(error);
@@ -128,7 +124,7 @@ static scree_status find_plane(const scree_mesh *mesh, double diagonal, scree_cu
   if (status == SCREE_OK) {
     double deviation = fit_plane(&r, tolerance, best), low = 0, high = 0;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
-      double d = distance_to(best, point(mesh, v));
+      double d = distance_to(best, scree_mesh_vertex(mesh, v));
       low = fmin(low, d), high = fmax(high, d);
     }
     if (-low > high)
@@ -150,7 +146,7 @@ typedef struct corners {
 /* Where the edge crosses the plane, the same for both its facets. */
 static vec3 crossing(const scree_mesh *mesh, uint32_t a, uint32_t b, const double *height) {
   uint32_t low = a < b ? a : b, high = a < b ? b : a;
-  vec3 from = point(mesh, low), to = point(mesh, high);
+  vec3 from = scree_mesh_vertex(mesh, low), to = scree_mesh_vertex(mesh, high);
   return vec3_mad(from, vec3_sub(to, from), height[low] / (height[low] - height[high]));
 }
 
@@ -160,7 +156,7 @@ static bool keep_above(const scree_mesh *mesh, size_t t, const double *height, c
   int count = 0;
   for (int k = 0; k < 3; k++) {
     uint32_t a = c[k], b = c[(k + 1) % 3];
-    if (height[a] >= 0) corner[count++] = point(mesh, a);
+    if (height[a] >= 0) corner[count++] = scree_mesh_vertex(mesh, a);
     if ((height[a] > 0 && height[b] < 0) || (height[a] < 0 && height[b] > 0))
       corner[count++] = crossing(mesh, a, b, height);
   }
@@ -193,7 +189,7 @@ scree_status scree_repair_cut_off(const scree_mesh *mesh, const scree_cut_plane 
   status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(height, mesh->vertex_count, error, done);
   for (size_t v = 0; v < mesh->vertex_count; v++) {
-    double d = distance_to(plane, point(mesh, v));
+    double d = distance_to(plane, scree_mesh_vertex(mesh, v));
     height[v] = fabs(d) <= 1e-9 * diagonal ? 0 : d;
   }
   *dropped = 0;

@@ -15,10 +15,6 @@ void scree_rim_free(scree_rim *rim) {
   *rim = (scree_rim){0};
 }
 
-static vec3 place(const scree_mesh *mesh, uint32_t v) {
-  return vec3_load(mesh->positions + 3 * (size_t)v);
-}
-
 static int compare_rim(const void *a, const void *b) {
   const scree_rim_vertex *x = a, *y = b;
   if (x->at != y->at) return x->at < y->at ? -1 : 1;
@@ -40,7 +36,7 @@ static void measure_rim(const scree_mesh *m, scree_rim *b) {
     uint32_t h = b->adjacency.edges[e];
     if (b->adjacency.ring[h] != h) continue;
     uint32_t ends[2] = {scree_half_edge_from(m, h), scree_half_edge_to(m, h)};
-    double length = vec3_distance(place(m, ends[0]), place(m, ends[1]));
+    double length = vec3_distance(scree_mesh_vertex(m, ends[0]), scree_mesh_vertex(m, ends[1]));
     for (int i = 0; i < 2; i++)
       if (b->reach[ends[i]] == 0 || length < b->reach[ends[i]]) b->reach[ends[i]] = length;
   }
@@ -51,8 +47,8 @@ static void sort_rim(const scree_mesh *m, scree_rim *b) {
   for (uint32_t v = 0; v < m->vertex_count; v++) {
     if (b->reach[v] == 0) continue;
     b->vertices[b->vertex_count++].vertex = v;
-    low = vec3_min(low, place(m, v));
-    high = vec3_max(high, place(m, v));
+    low = vec3_min(low, scree_mesh_vertex(m, v));
+    high = vec3_max(high, scree_mesh_vertex(m, v));
   }
   vec3 size = vec3_sub(high, low);
   b->axis = vec3_greatest(size);
@@ -102,7 +98,7 @@ static bool find_on_edge(const scree_mesh *m, const scree_rim *b, const scree_ju
                          uint32_t h, size_t *work, scree_junctions *found) {
   uint32_t from = scree_half_edge_from(m, h), to = scree_half_edge_to(m, h);
   uint32_t apex = m->triangles[scree_half_edge_previous(h)];
-  vec3 a = place(m, from), edge = vec3_sub(place(m, to), a);
+  vec3 a = scree_mesh_vertex(m, from), edge = vec3_sub(scree_mesh_vertex(m, to), a);
   double length = vec3_norm(edge);
   double near = fmin(rule->distance, rule->share * length);
   double at_a = m->positions[3 * (size_t)from + (size_t)b->axis],
@@ -112,7 +108,7 @@ static bool find_on_edge(const scree_mesh *m, const scree_rim *b, const scree_ju
     uint32_t v = b->vertices[i].vertex;
     if (b->vertices[i].at > end || ++*work > rule->most) break;
     if (v == from || v == to || v == apex) continue;
-    vec3 d = vec3_sub(place(m, v), a);
+    vec3 d = vec3_sub(scree_mesh_vertex(m, v), a);
     double share = vec3_dot(d, edge) / (length * length);
     if (share * length <= near || (1 - share) * length <= near) continue;
     if (vec3_norm(vec3_mad(d, edge, -share)) > near) continue;
