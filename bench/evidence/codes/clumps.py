@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Rods of three touching spheres from a lifted tube: scree's clumps beside LIGGGHTS's multispheres, from the same places.
+
+  clumps.py run TABLE.csv SEEDS VARIANT...   VARIANT: scree, liggghts, or liggghts-dashpot (its tangential dashpot on),
+                                             liggghts-soft (a fourth of the stiffness)
+  clumps.py compare TABLE.csv                as CSV: means, standard errors, differences
+
+Rows: root mean square distance of the rods from their common axis, mean height and angle by volume and centroid of the last places of
+both. LIGGGHTS fills the tube by itself; its first places are where scree begins. Environment: LIGGGHTS (the program)."""
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from common import WORK, Table, library  # noqa: E402
+from heaps import COLUMNS, compare, measured  # noqa: E402
+
+R, DENSITY, COUNT, STIFF, TUBE, HIGH = 0.0025, 2500, 100, 500.0, 0.025, 0.24
+SPHERE = DENSITY * 4 / 3 * math.pi * R ** 3
+PRIMES = 32452843, 49979687, 67867967, 86028121, 104395301, 122949823, 141650939, 160481183, 179424673, 198491317
+
+
+def tube(path):
+    def corner(z, k):
+        return f"vertex {TUBE * math.cos(math.pi * k / 45):.9g} {TUBE * math.sin(math.pi * k / 45):.9g} {z}"
+    lines = ["solid tube"]
+    for k in range(90):
+        a, b, c, d = corner(0.0005, k), corner(0.0005, k + 1), corner(HIGH, k + 1), corner(HIGH, k)
+        for three in ((a, b, c), (a, c, d)):
+            lines += ["facet normal 0 0 1", "outer loop", *three, "endloop", "endfacet"]
+    path.write_text("\n".join([*lines, "endsolid tube"]) + "\n")
+
+
+def poses(path):
+    """Of each rod its middle and the turn that takes x to its axis. Its spheres follow each other by number."""
+    rows = sorted([float(v) for v in line.split()] for line in open(path) if len(line.split()) == 4 and not line.startswith("ITEM"))
+    if len(rows) != 3 * COUNT:
+        sys.exit(f"{path}: {len(rows)} spheres, not {3 * COUNT}")
+    found = []
+    for k in range(0, len(rows), 3):
+        a, b, c = (row[1:] for row in rows[k:k + 3])
+        axis = [(q - p) / (4 * R) for p, q in zip(a, c)]
+        if abs(math.hypot(*axis) - 1) > 1e-3:
+            sys.exit(f"{path}: spheres {k + 1} to {k + 3} are no rod")
+        # q = 1 + x axis, up to its length
+        turn = [1 + axis[0], 0.0, -axis[2], axis[1]] if axis[0] > -0.999999 else [0.0, 0.0, 1.0, 0.0]
+        found.append([*b, *(v / math.hypot(*turn) for v in turn)])
+    return found
+
+
+def with_liggghts(folder, seed, variant):
+    stiff = STIFF / 4 if "soft" in variant else STIFF
+    pair = 0.9945 * math.sqrt(3 * SPHERE / 4 * stiff)  # 2 eta of a restitution of .3, Schwager and Poeschel 2007
+    axial, across = 3 * 0.4 * SPHERE * R * R, 3 * 0.4 * SPHERE * R * R + 8 * SPHERE * R * R
+    words = {"STIFF": stiff, "PAIR": pair, "WALL": pair * math.sqrt(2), "MASS": 3 * SPHERE, "AXIAL": axial, "ACROSS": across, "COUNT": COUNT,
+             "SEED": PRIMES[seed - 1], "DASHPOT": "tangential_damping " + ("on" if "dashpot" in variant else "off")}
+    text = (HERE / "clumps.in").read_text()
+    for name, value in words.items():
+        text = text.replace(name, str(value))
+    (folder / "clumps.in").write_text(text)
+    (folder / "rod.txt").write_text("".join(f"{x} 0 0 {R}\n" for x in (-2 * R, 0, 2 * R)))
+    tube(folder / "tube.stl")
+    subprocess.run([shutil.which(os.environ.get("LIGGGHTS", "liggghts")), "-in", "clumps.in", "-log", "none"], cwd=folder, check=True,
+                   stdout=subprocess.DEVNULL)
+
+
+def scene(folder, rows):
+    shutil.copy(HERE / "clumps.yaml", folder)
+    tube(folder / "tube.stl")
+    (folder / "rod.csv").write_text("x,y,z,radius\n" + "".join(f"{x},0,0,{R}\n" for x in (-2 * R, 0, 2 * R)))
+    lines = ["shape,x,y,z,qw,qx,qy,qz", *("rod," + ",".join(map(repr, row)) for row in rows)]
+    (folder / "bodies.csv").write_text("\n".join(lines) + "\n")
+    return library().Scene(str(folder / "clumps.yaml"))
+
+
+def one(seed, variant):
+    """The places from which scree begins are those of LIGGGHTS's run of the seed, which goes first."""
+    folder = WORK / "clumps" / f"{seed}-{variant}"
+    folder.mkdir(parents=True, exist_ok=True)
+    if variant != "scree":
+        with_liggghts(folder, seed, variant)
+        return measured(scene(folder, poses(folder / "last.txt")))
+    first = WORK / "clumps" / f"{seed}-liggghts" / "first.txt"
+    if not first.exists():
+        sys.exit(f"scree begins where LIGGGHTS does: run the variant liggghts before, {first} is missing")
+    ours = scene(folder, poses(first))
+    ours.run(1.1)
+    print(f"scree: ledger {ours.sensors['ledger']:.1e}")
+    return measured(ours)
+
+
+def run(path, seeds, variants):
+    if not shutil.which(os.environ.get("LIGGGHTS", "liggghts")):
+        print("skipped: LIGGGHTS is not installed")
+        return
+    table = Table(path, COLUMNS, 3)
+    for seed in range(1, seeds + 1):
+        for variant in variants:
+            if table.key(("rod", seed, variant)) not in table.done:
+                begun, theirs = time.process_time(), os.times().children_user
+                found = one(seed, variant)
+                table.add("rod", seed, variant, *found, round(time.process_time() - begun + os.times().children_user - theirs, 1))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 4 and sys.argv[1] == "run":
+        run(sys.argv[2], int(sys.argv[3]), sys.argv[4:])
+    elif len(sys.argv) == 3 and sys.argv[1] == "compare":
+        compare(sys.argv[2])
+    else:
+        sys.exit(__doc__)
