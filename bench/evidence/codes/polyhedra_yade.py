@@ -31,7 +31,7 @@ O.engines = [
         [Ip2_PolyhedraMat_PolyhedraMat_PolyhedraPhys()],
         [Law2_PolyhedraGeom_PolyhedraPhys_Volumetric()],
     ),
-    NewtonIntegrator(gravity=(0, 0, -9.81), damping=case["damping"]),
+    NewtonIntegrator(gravity=(0, 0, -9.81), damping=case["damping"], dampGravity=False),
 ]
 O.dt = case["step"]
 O.run(round(case["lift"] / O.dt), True)
