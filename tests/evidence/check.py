@@ -14,12 +14,17 @@ from types import SimpleNamespace
 ROOT, SCRATCH = pathlib.Path(sys.argv[1]), tempfile.TemporaryDirectory()
 HOME = pathlib.Path(SCRATCH.name)
 os.environ["SCREE_EVIDENCE_DIR"], os.environ["SCREE_EVIDENCE_WORK"] = str(HOME), str(HOME / "work")
-for folder in ("", "boulders", "drum", "orifice"):
+for folder in ("", "boulders", "bulk", "codes", "drum", "orifice", "paper"):
     sys.path.insert(0, str(ROOT / "bench" / "evidence" / folder))
 import boulders  # noqa: E402
+import bulk  # noqa: E402
+import claims  # noqa: E402
+import clumps  # noqa: E402
 import common  # noqa: E402
 import drum  # noqa: E402
+import heaps  # noqa: E402
 import orifice  # noqa: E402
+import polyhedra  # noqa: E402
 
 wrong = []
 
@@ -152,7 +157,54 @@ def holes():
           f"spheres begin {least} m apart, inside the bin")
 
 
-for part in (statistics, table, profiles, turns, quarry, speed, holes):
+def processes():
+    series = [(0.1 * k, 10 - k) for k in range(1, 11)]  # a tenth every tenth of a second
+    check(all(abs(bulk.halves(series, 10, share) - (1 - share)) < 1e-9 for share in (0.97, 0.5, 0.13)), "when a share is left")
+    check(math.isnan(bulk.halves(series[:5], 10, 0.2)), "a share that was not reached")
+    rows = [("small", 1, 0, 1), ("small", -1, 0, -1), ("large", -1, 0, -1), ("large", -1, 0, 1), ("small", 1, 0, -1)]
+    check(bulk.counted(bulk.CASES["drum"], rows) == [1, 0, 1, 1], "counts in the quarters")
+    silo = bulk.CASES["silo-large"]
+    check(abs(bulk.counted(silo, [("grain", 0, 0, z) for z in (0, 0.1, -0.1)])[0] / bulk.counted(silo, [("grain", 0, 0, 0)])[0] - 2) < 1e-12,
+          "the mass above the hole")
+
+
+def bodies():
+    rng, lines, made = random.Random(4), [], []
+    for k in range(clumps.COUNT):
+        axis = [rng.gauss(0, 1) for _ in range(3)] if k else [-1.0, 0.0, 0.0]
+        axis = [v / math.hypot(*axis) for v in axis]
+        middle = [rng.gauss(0, 1) for _ in range(3)]
+        made.append((middle, axis))
+        lines += [" ".join(map(repr, [3 * k + j + 1, *(m + 2 * clumps.R * (j - 1) * v for m, v in zip(middle, axis))])) for j in range(3)]
+    rng.shuffle(lines)
+    path = HOME / "rods.txt"
+    path.write_text("ITEM: ATOMS id x y z\n" + "\n".join(lines) + "\n")
+    for (middle, axis), pose in zip(made, clumps.poses(path)):
+        w, x, y, z = pose[3:]
+        along = [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)]  # what the turn makes of x
+        check(math.dist(pose[:3], middle) < 1e-12 and math.dist(along, axis) < 1e-6, f"a rod along {axis} is read as {along}")
+    for shape, corners in polyhedra.SHAPES.items():
+        reach = max(math.hypot(*c) for c in corners)
+        places = polyhedra.places(1)
+        check(len(places) == polyhedra.COUNT and min(p[2] for p in places) > reach, f"{shape}: one begins in the floor")
+        volume = sum(a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+                     for a, b, c in ([corners[k] for k in f] for f in polyhedra.FACETS[shape])) / 6
+        whole = 4 / 3 * polyhedra.A ** 3 if shape == "octahedron" else 8 * math.prod(polyhedra.HALF)
+        check(abs(volume / whole - 1) < 1e-12, f"{shape}: facets enclose {volume} m3, not {whole}")
+    place = SimpleNamespace(tolist=lambda: [[1.0, 0.0, 2.0], [3.0, 0.0, 4.0]])
+    scene = SimpleNamespace(bodies=lambda: SimpleNamespace(position=place), sensors={"pile.volume_deg": 30})
+    check(all(abs(a - b) < 1e-9 for a, b in zip(heaps.measured(scene), (1000, 3000, 30))), "radius and height of two bodies")
+
+
+def intervals():
+    rng, held = random.Random(5), 0
+    for _ in range(400):
+        difference, error, free = claims.apart([rng.gauss(1, 2) for _ in range(10)], [rng.gauss(0, 1) for _ in range(6)])
+        held += abs(difference - 1) < common.student(free) * error
+    check(335 < held < 385, f"{held} of 400 intervals of 90 % hold the difference")
+
+
+for part in (statistics, table, profiles, turns, quarry, speed, holes, processes, bodies, intervals):
     part()
 print("\n".join(wrong) or "the scripts of bench/evidence give what is known")
 sys.exit(bool(wrong))

@@ -24,7 +24,7 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, deviation, library, mean, read  # noqa: E402
+from common import WORK, Table, deviation, library, mean, read, student  # noqa: E402
 
 D, G, EVERY = 0.006, 9.81, 0.009
 FIRST, LAST, WIDE = 0.2, 0.5, 2
@@ -147,7 +147,7 @@ def scatter(groups):
     """s of a rate's relative scatter s / sqrt(count), and Student's quantile 0.95 of its degrees of freedom."""
     free = sum(len(rows) - 1 for rows in groups.values())
     s2 = sum(row[1] * (row[0] / mean([r[0] for r in rows]) - 1) ** 2 for rows in groups.values() for row in rows) / free
-    return math.sqrt(s2), 1.645 * (1 + 0.93 / free)  # within 1 % from 3 degrees on
+    return math.sqrt(s2), student(free)
 
 
 def compare(path):

@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""The claims of Katagiri and Koyanaka (Materials Transactions 61, 1158, 2020) on the reduced study: 297 of the nine devices, ten
+replicates of seven levels (bench/results/study/runs.csv), and the recommended level (recommended-runs.csv).
+
+  claims.py      as CSV: each claim's number, its interval of 90 %, what was asked of it, and the verdict
+
+An equality is confirmed if the interval lies within the margin, refuted if it lies outside; a direction is confirmed if the interval lies
+on its side of 0, refuted on the other; else it is not shown. Replicates: what shows an equality within the margin with 90 % power
+if there is no difference, a direction if the difference is as measured. The last rows are the cost of the study at full size
+at the rates of these runs, steps as in bench/results/paper."""
+import math
+import pathlib
+import statistics
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from common import ROOT, deviation, mean, read, student  # noqa: E402
+
+STUDY = ROOT / "bench" / "results" / "study"
+LEVELS = ("1e-5", "3e-5", "1e-4", "3e-4", "1e-3", "2e-3")
+FULL_STEPS, FULL_BODIES, REPLICATES = 1444400, 1197, 10
+POWER = 1.645 + 1.282
+
+
+def values(rows, rp, column):
+    return [float(r[column]) for r in rows if r["rp"] == rp and r[column]]
+
+
+def apart(a, b):
+    """Difference of both means, its standard error, Welch's degrees of freedom."""
+    u, v = (deviation(x) ** 2 / len(x) for x in (a, b))
+    return mean(a) - mean(b), math.sqrt(u + v), (u + v) ** 2 / (u * u / (len(a) - 1) + v * v / (len(b) - 1))
+
+
+def spread(rows, relative):
+    """The logarithm of the scatter of the two finest levels less that of the two coarsest, as apart()."""
+    terms = []
+    for rp in ("1e-3", "2e-3", "1e-5", "3e-5"):
+        x = values(rows, rp, "sector_deg")
+        share = deviation(x) / mean(x) if relative else 0.0
+        terms.append((math.log(share or deviation(x)), 0.5 / (len(x) - 1) + share * share / len(x)))
+    return 0.5 * (terms[0][0] + terms[1][0] - terms[2][0] - terms[3][0]), 0.5 * math.sqrt(sum(t[1] for t in terms)), 36
+
+
+def equal(claim, found, margin, count, unit):
+    difference, error, free = found
+    low, high = difference - student(free) * error, difference + student(free) * error
+    verdict = "confirmed" if -margin < low and high < margin else "refuted" if low > margin or high < -margin else "not shown"
+    needed = math.ceil(count * (POWER * error / margin) ** 2)
+    print(f"{claim},{difference:.3g},{low:.3g},{high:.3g},within {margin:g} {unit},{verdict},{needed}")
+
+
+def side(claim, found, sign, count):
+    difference, error, free = found
+    low, high = difference - student(free) * error, difference + student(free) * error
+    verdict = "confirmed" if sign * low > 0 and sign * high > 0 else "refuted" if sign * low < 0 and sign * high < 0 else "not shown"
+    needed = math.ceil(count * (POWER * error / difference) ** 2)
+    print(f"{claim},{difference:.3g},{low:.3g},{high:.3g},{'above' if sign > 0 else 'below'} 0,{verdict},{needed}")
+
+
+def slope(rows):
+    """Of the logarithm of processor time over that of Rp from 1e-4 on."""
+    points = [(math.log(float(rp)), math.log(s)) for rp in LEVELS[2:] for s in values(rows, rp, "processor_seconds")]
+    fit = statistics.linear_regression(*zip(*points))
+    x = mean([p[0] for p in points])
+    rest = sum((y - fit.slope * a - fit.intercept) ** 2 for a, y in points) / (len(points) - 2)
+    return fit.slope, math.sqrt(rest / sum((a - x) ** 2 for a, _ in points)), len(points) - 2
+
+
+def main():
+    rows = [r for r in read(STUDY / "runs.csv") if r["state"] == "done"]
+    recommended = read(STUDY / "recommended-runs.csv")
+
+    def heaps(rp):
+        return values(recommended if "recommended" in rp else rows, rp, "sector_deg")
+
+    print("claim,value,low,high,asked,verdict,replicates")
+    for rp in ("1e-4", "3e-4", "1e-3"):
+        equal(f"angle at {rp} less that at 2e-3 (deg)", apart(heaps(rp), heaps("2e-3")), 3, 10, "deg")
+    equal("angle at the recommended level less that at 2e-3 (deg)", apart(heaps("recommended"), heaps("2e-3")), 3, len(heaps("recommended")), "deg")
+    side("angle at 1e-5 less that at 1e-4 (deg)", apart(heaps("1e-5"), heaps("1e-4")), -1, 9)
+    side("ln of SD at 1e-3 and 2e-3 over 1e-5 and 3e-5", spread(rows, False), -1, 10)
+    side("ln of CV at 1e-3 and 2e-3 over 1e-5 and 3e-5", spread(rows, True), -1, 10)
+    none = sum(r["heap"] == "0" for r in rows if r["rp"] == "spheres")
+    print(f"spheres without a heap of {REPLICATES},{none},,,all,{'confirmed' if none == REPLICATES else 'refuted'},")
+
+    def turning(rp):
+        return values(rows, rp, "mean_rotation_lifting")
+    side("rotation of spheres less that at 1e-4 (rad/s)", apart(turning("spheres"), turning("1e-4")), 1, 10)
+    side("rotation at 1e-5 less that at 1e-4 (rad/s)", apart(turning("1e-5"), turning("1e-4")), 1, 9)
+    fine, finest = (values(rows, rp, "processor_seconds") for rp in ("1e-3", "2e-3"))
+    share = 100 * mean(fine) / mean(finest)
+    error = share * math.sqrt(sum((deviation(x) / mean(x)) ** 2 / len(x) for x in (fine, finest)))
+    equal("time at 1e-3 in % of that at 2e-3 less 58", (share - 58, error, 18), 5, 10, "points")
+    equal("power of Rp that time grows with less 4", (slope(rows)[0] - 4, *slope(rows)[1:]), 0.5, 10, "")
+    total = 0.0
+    for rp in ("spheres", *LEVELS):
+        rate = mean([float(r["processor_seconds"]) / float(r["particle_steps"]) for r in rows if r["rp"] == rp])
+        hours = rate * FULL_STEPS * FULL_BODIES / 3600
+        total += REPLICATES * hours
+        print(f"full size: hours of a core for one run at {rp},{hours:.2g},,,,,")
+    print(f"full size: hours of a core for {REPLICATES} replicates of all,{total:.3g},,,,,")
+
+
+if __name__ == "__main__":
+    main()
