@@ -4,6 +4,8 @@
 
 #include "base/error.h"
 
+#include <string.h>
+
 /* count * size bytes, not cleared; NULL on overflow, above the limit, or when memory is out.
  * A count or size of 0 gives a valid block. */
 void *scree_alloc(size_t count, size_t size) __attribute__((malloc, alloc_size(1, 2)));
@@ -30,6 +32,34 @@ size_t scree_allocation_count(void);
 
 /* What scree_set_memory_limit set. */
 size_t scree_memory_limit(void);
+
+/* A variable whose end is its block's: the function is called with its address then. */
+#define SCREE_CLEANUP(function) __attribute__((cleanup(function)))
+static inline void scree_free_at(void *variable) {
+  void *block;
+  memcpy(&block, variable, sizeof block);
+  scree_free(block);
+}
+
+/* Allocates a typed array; where memory is out the function ends with `error` filled. */
+#define SCREE_TRY_ALLOC(pointer, count, error)                                                     \
+  SCREE_TRY_BLOCK(pointer, scree_alloc((count), sizeof *(pointer)), count, error)
+#define SCREE_TRY_ALLOC_ZERO(pointer, count, error)                                                \
+  SCREE_TRY_BLOCK(pointer, scree_alloc_zero((count), sizeof *(pointer)), count, error)
+#define SCREE_TRY_BLOCK(pointer, block, count, error)                                              \
+  do {                                                                                             \
+    (pointer) = (block);                                                                           \
+    if ((pointer)) break;                                                                          \
+    scree_tell_memory((error), (size_t)(count) * sizeof *(pointer), NULL, #pointer);               \
+    return SCREE_OUT_OF_MEMORY;                                                                    \
+  } while (0)
+/* An array for the block where it is declared, which frees it. */
+#define SCREE_SCRATCH(type, name, count, error)                                                    \
+  SCREE_CLEANUP(scree_free_at) type *name = NULL;                                                  \
+  SCREE_TRY_ALLOC(name, count, error)
+#define SCREE_SCRATCH_ZERO(type, name, count, error)                                               \
+  SCREE_CLEANUP(scree_free_at) type *name = NULL;                                                  \
+  SCREE_TRY_ALLOC_ZERO(name, count, error)
 
 /* Allocates a typed array and jumps to `label` on failure after filling `error`: the pattern of
  * every function with several arrays. */

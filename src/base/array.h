@@ -1,7 +1,9 @@
 /* A growing array in three fields, for plain types:
  *
  *   typedef struct { edge *items; size_t count, capacity; } edge_list;
- *   if (!SCREE_PUSH(&list, value)) return scree_fail_memory(...); */
+ *   if (!SCREE_PUSH(&list, value)) return scree_fail_memory(...);
+ *
+ * One declared with SCREE_CLEANUP(scree_free_at) is freed with its block. */
 #pragma once
 
 #include "base/alloc.h"

@@ -338,7 +338,7 @@ static scree_cone join_cones(const scree_cone *a, const scree_cone *b) {
 
 scree_status scree_tree_add_cones(scree_tree *tree, const scree_cone *items, scree_error *error) {
   if (tree->item_count == 0) return SCREE_OK;
-  SCREE_ALLOC_OR(tree->cones, tree->node_count, error, out_of_memory);
+  SCREE_TRY_ALLOC(tree->cones, tree->node_count, error);
   for (size_t i = tree->node_count; i-- > 0;) { /* children come after their parent */
     const scree_tree_node *node = &tree->nodes[i];
     if (node->count == 0) {
@@ -350,8 +350,6 @@ scree_status scree_tree_add_cones(scree_tree *tree, const scree_cone *items, scr
       tree->cones[i] = join_cones(&tree->cones[i], &items[tree->order[node->first + k]]);
   }
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 void scree_tree_free(scree_tree *tree) {

@@ -99,7 +99,7 @@ static void link_block(void *context, size_t begin, size_t end, size_t block, in
 static scree_status collect_edges(builder *b, size_t block_count, scree_error *error) {
   size_t edge_count = 0;
   for (size_t i = 0; i < block_count; i++) edge_count += b->block_edges[i];
-  SCREE_ALLOC_OR(b->out->edges, edge_count, error, out_of_memory);
+  SCREE_TRY_ALLOC(b->out->edges, edge_count, error);
   scree_populate(b->out->edges, edge_count * sizeof *b->out->edges);
   uint32_t *edge = b->out->edges;
   for (size_t i = 0; i < block_count; i++) {
@@ -108,31 +108,25 @@ static scree_status collect_edges(builder *b, size_t block_count, scree_error *e
   }
   b->out->edge_count = edge_count;
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_adjacency_build(const scree_mesh *mesh, scree_adjacency *adjacency,
                                    scree_error *error) {
-  scree_adjacency made = {0};
-  builder b = {.mesh = mesh, .out = &made};
+  SCREE_CLEANUP(scree_adjacency_free) scree_adjacency made = {0};
   size_t block_count = scree_block_count(mesh->vertex_count, VERTEX_BLOCK);
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(made.ring, 3 * mesh->triangle_count, error, done);
+  *adjacency = made;
+  SCREE_TRY_ALLOC(made.ring, 3 * mesh->triangle_count, error);
   /* one block, for a large one costs fewer page faults */
-  SCREE_ALLOC_OR(b.pairs, 3 * mesh->triangle_count + mesh->vertex_count + 1, error, done);
-  b.start = (uint32_t *)(b.pairs + 3 * mesh->triangle_count);
-  b.second = b.start + mesh->vertex_count + 1;
-  SCREE_ALLOC_OR(b.block_edges, block_count, error, done);
+  SCREE_SCRATCH(uint64_t, pairs, 3 * mesh->triangle_count + mesh->vertex_count + 1, error);
+  SCREE_SCRATCH(size_t, block_edges, block_count, error);
+  uint32_t *start = (uint32_t *)(pairs + 3 * mesh->triangle_count);
+  builder b = {mesh, start, start + mesh->vertex_count + 1, pairs, block_edges, &made};
   fill_buckets(&b);
   scree_parallel_for(mesh->vertex_count, VERTEX_BLOCK, link_block, &b);
-  status = collect_edges(&b, block_count, error);
-done:
-  scree_free(b.pairs);
-  scree_free(b.block_edges);
-  if (status != SCREE_OK) scree_adjacency_free(&made);
+  SCREE_TRY(collect_edges(&b, block_count, error));
   *adjacency = made;
-  return status;
+  made = (scree_adjacency){0};
+  return SCREE_OK;
 }
 
 void scree_adjacency_free(scree_adjacency *adjacency) {

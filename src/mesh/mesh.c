@@ -18,18 +18,15 @@ void scree_mesh_scale(scree_mesh *mesh, double factor) {
 }
 
 scree_status scree_mesh_copy(const scree_mesh *mesh, scree_mesh *copy, scree_error *error) {
-  scree_mesh made = {.vertex_count = mesh->vertex_count, .triangle_count = mesh->triangle_count};
-  SCREE_ALLOC_OR(made.positions, 3 * mesh->vertex_count, error, out_of_memory);
-  SCREE_ALLOC_OR(made.triangles, 3 * mesh->triangle_count, error, out_of_memory);
+  SCREE_SCRATCH(double, positions, 3 * mesh->vertex_count, error);
+  SCREE_SCRATCH(uint32_t, triangles, 3 * mesh->triangle_count, error);
   if (mesh->vertex_count) /* an empty mesh may have no arrays */
-    memcpy(made.positions, mesh->positions, 3 * mesh->vertex_count * sizeof *made.positions);
+    memcpy(positions, mesh->positions, 3 * mesh->vertex_count * sizeof *positions);
   if (mesh->triangle_count)
-    memcpy(made.triangles, mesh->triangles, 3 * mesh->triangle_count * sizeof *made.triangles);
-  *copy = made;
+    memcpy(triangles, mesh->triangles, 3 * mesh->triangle_count * sizeof *triangles);
+  *copy = (scree_mesh){positions, triangles, mesh->vertex_count, mesh->triangle_count};
+  positions = NULL, triangles = NULL;
   return SCREE_OK;
-out_of_memory:
-  scree_mesh_free(&made);
-  return SCREE_OUT_OF_MEMORY;
 }
 
 enum { VERIFY_BLOCK = 1 << 15 };
@@ -73,7 +70,7 @@ scree_status scree_mesh_verify(const scree_mesh *mesh, scree_error *error) {
   size_t corner_count = 3 * mesh->triangle_count, value_count = 3 * mesh->vertex_count;
   size_t most = corner_count > value_count ? corner_count : value_count;
   verification v = {.mesh = mesh};
-  SCREE_ALLOC_OR(v.fault, scree_block_count(most, VERIFY_BLOCK), error, out_of_memory);
+  SCREE_TRY_ALLOC(v.fault, scree_block_count(most, VERIFY_BLOCK), error);
   size_t bad_index = first_fault(&v, corner_count, find_bad_index);
   size_t bad_value = first_fault(&v, value_count, find_bad_coordinate);
   scree_free(v.fault);
@@ -84,8 +81,6 @@ scree_status scree_mesh_verify(const scree_mesh *mesh, scree_error *error) {
     return scree_fail(error, SCREE_BAD_MESH, "vertex %zu has the coordinate %c = %g, not finite",
                       bad_value / 3, "xyz"[bad_value % 3], mesh -> positions[bad_value]);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* Roundings (units in the last place of the largest coordinate) below which a height is none: each

@@ -25,6 +25,13 @@ static inline bool scree_names_twice(const uint32_t *c) {
   return (c[0] == c[1]) | (c[1] == c[2]) | (c[2] == c[0]);
 }
 
+/* Turns a triangle the other way round. */
+static inline void scree_corners_turn(uint32_t *corners) {
+  uint32_t second = corners[1];
+  corners[1] = corners[2];
+  corners[2] = second;
+}
+
 /* Whether the height of a triangle over its longest edge is not above the rounding of its
  * coordinates: an exact zero would be lost when units are converted. */
 bool scree_facet_is_flat(const scree_mesh *mesh, size_t triangle);

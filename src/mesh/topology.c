@@ -63,28 +63,26 @@ static int compare_vertices(const void *a, const void *b) {
 
 static scree_status count_duplicates(counter *c, scree_error *error) {
   const scree_mesh *mesh = c->mesh;
-  uint32_t *third = NULL;
-  size_t capacity = 0;
+  SCREE_CLEANUP(scree_free_at) struct {
+    uint32_t *items;
+    size_t count, capacity;
+  } third = {0};
   for (size_t e = 0; e < c->adjacency->edge_count; e++) {
-    uint32_t first = c->adjacency->edges[e];
+    uint32_t first = c->adjacency->edges[e], h = first;
+    third.count = 0;
     if (c->adjacency->ring[first] == first) continue;
-    size_t facets = scree_edge_facet_count(c->adjacency, first), count = 0;
-    if (!scree_array_reserve((void **)&third, &capacity, facets, sizeof *third)) goto out_of_memory;
-    uint32_t h = first;
     do {
       uint32_t apex = mesh->triangles[scree_half_edge_previous(h)];
-      if (apex > scree_half_edge_from(mesh, h) && apex > scree_half_edge_to(mesh, h))
-        third[count++] = apex; /* NOLINT(clang-analyzer-core.NullDereference): a ring has facets */
+      bool counts = apex > scree_half_edge_from(mesh, h) && apex > scree_half_edge_to(mesh, h);
+      if (counts && !SCREE_PUSH(&third, apex))
+        return scree_fail_memory(error, third.capacity * sizeof apex, "facets at an edge");
       h = c->adjacency->ring[h];
     } while (h != first);
-    if (count > 2) qsort(third, count, sizeof *third, compare_vertices);
-    for (size_t i = 1; i < count; i++) c->found->duplicate_facet_count += third[i] == third[i - 1];
+    if (third.count > 2) qsort(third.items, third.count, sizeof *third.items, compare_vertices);
+    for (size_t i = 1; i < third.count; i++)
+      c->found->duplicate_facet_count += third.items[i] == third.items[i - 1];
   }
-  scree_free(third);
   return SCREE_OK;
-out_of_memory:
-  scree_free(third);
-  return scree_fail_memory(error, capacity * sizeof *third, "facets at an edge");
 }
 
 /* REACHED: the corner. The others, of a half-edge: the ring of its edge was gone through about the
@@ -145,22 +143,16 @@ static void flood_fan(const counter *c, uint32_t start, uint8_t *marks, uint32_t
 static scree_status count_vertices(counter *c, scree_error *error) {
   const scree_mesh *mesh = c->mesh;
   size_t corner_count = 3 * mesh->triangle_count;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  uint32_t *stack = NULL, *valence = NULL;
-  uint8_t *fans = NULL, *marks = NULL;
-  SCREE_ALLOC_OR(valence, mesh->vertex_count, error, done);
-  memset(valence, 0, mesh->vertex_count * sizeof *valence);
+  SCREE_SCRATCH_ZERO(uint32_t, valence, mesh->vertex_count, error);
   uint32_t largest = 0;
   for (size_t corner = 0; corner < corner_count; corner++)
     if (c->adjacency->ring[corner] != SCREE_NO_HALF_EDGE) {
       uint32_t now = ++valence[mesh->triangles[corner]];
       if (now > largest) largest = now;
     }
-  SCREE_ALLOC_OR(stack, largest, error, done);
-  SCREE_ALLOC_OR(marks, corner_count, error, done);
-  SCREE_ALLOC_OR(fans, mesh->vertex_count, error, done);
-  memset(marks, 0, corner_count * sizeof *marks);
-  memset(fans, 0, mesh->vertex_count * sizeof *fans);
+  SCREE_SCRATCH(uint32_t, stack, largest, error);
+  SCREE_SCRATCH_ZERO(uint8_t, marks, corner_count, error);
+  SCREE_SCRATCH_ZERO(uint8_t, fans, mesh->vertex_count, error);
   for (uint32_t corner = 0; corner < corner_count; corner++) {
     if (c->adjacency->ring[corner] == SCREE_NO_HALF_EDGE || marks[corner] & REACHED) continue;
     if (!walk_fan(c, corner, marks)) flood_fan(c, corner, marks, stack);
@@ -171,19 +163,12 @@ static scree_status count_vertices(counter *c, scree_error *error) {
   for (size_t v = 0; v < mesh->vertex_count; v++) unused += valence[v] == 0;
   c->found->unused_vertex_count = unused;
   c->found->vertex_count = mesh->vertex_count - unused;
-  status = SCREE_OK;
-done:
-  scree_free(valence);
-  scree_free(stack);
-  scree_free(marks);
-  scree_free(fans);
-  return status;
+  return SCREE_OK;
 }
 
 /* Signed volumes about one of each shell's own corners; an open shell has none (NaN). */
 static void count_inward(counter *c, uint32_t *parent, scree_sum *volume) {
   const scree_mesh *mesh = c->mesh;
-  for (size_t t = 0; t < mesh->triangle_count; t++) volume[t] = (scree_sum){0};
   for (size_t t = 0; t < mesh->triangle_count; t++) {
     if (!scree_takes_part(c->adjacency, t)) continue;
     uint32_t root = scree_find_root(parent, (uint32_t)t);
@@ -205,26 +190,18 @@ static void count_inward(counter *c, uint32_t *parent, scree_sum *volume) {
 
 static scree_status count_shells(counter *c, scree_error *error) {
   size_t triangle_count = c->mesh->triangle_count;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  uint32_t *parent = NULL;
-  scree_sum *volume = NULL;
-  SCREE_ALLOC_OR(parent, triangle_count, error, done);
-  SCREE_ALLOC_OR(volume, triangle_count, error, done);
+  SCREE_SCRATCH(uint32_t, parent, triangle_count, error);
+  SCREE_SCRATCH_ZERO(scree_sum, volume, triangle_count, error);
   scree_join_over_edges(c->mesh, c->adjacency, false, parent);
   count_inward(c, parent, volume);
-  status = SCREE_OK;
-done:
-  scree_free(parent);
-  scree_free(volume);
-  return status;
+  return SCREE_OK;
 }
 
 /* Every vertex met first is a piece of its own; every edge that joins two pieces takes one away. */
 static scree_status count_boundaries(counter *c, scree_error *error) {
   const uint32_t none = UINT32_MAX;
-  uint32_t *parent = NULL;
   if (c->found->closed) return SCREE_OK;
-  SCREE_ALLOC_OR(parent, c->mesh->vertex_count, error, out_of_memory);
+  SCREE_SCRATCH(uint32_t, parent, c->mesh->vertex_count, error);
   for (size_t v = 0; v < c->mesh->vertex_count; v++) parent[v] = none;
   for (size_t e = 0; e < c->adjacency->edge_count; e++) {
     uint32_t h = c->adjacency->edges[e];
@@ -239,10 +216,7 @@ static scree_status count_boundaries(counter *c, scree_error *error) {
     scree_join(parent, ends[0], ends[1]);
     c->found->boundary_count--;
   }
-  scree_free(parent);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static void conclude(scree_topology *found) {
@@ -269,25 +243,21 @@ scree_status scree_topology_count(const scree_mesh *mesh, const scree_adjacency 
 scree_status scree_topology_finish(const scree_mesh *mesh, const scree_adjacency *adjacency,
                                    bool with_shells, scree_topology *topology, scree_error *error) {
   counter c = {.mesh = mesh, .adjacency = adjacency, .found = topology};
-  scree_status status = SCREE_OK;
-  if (with_shells) status = count_shells(&c, error);
-  if (status == SCREE_OK) status = count_boundaries(&c, error);
-  if (status == SCREE_OK) conclude(topology);
-  return status;
+  if (with_shells) SCREE_TRY(count_shells(&c, error));
+  SCREE_TRY(count_boundaries(&c, error));
+  conclude(topology);
+  return SCREE_OK;
 }
 
 scree_status scree_mesh_topology(const scree_mesh *mesh, scree_topology *topology,
                                  scree_error *error) {
-  scree_adjacency adjacency;
-  scree_status status = scree_mesh_verify(mesh, error);
-  if (status != SCREE_OK) return status;
-  status = scree_adjacency_build(mesh, &adjacency, error);
-  if (status != SCREE_OK) return status;
+  SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
+  SCREE_TRY(scree_mesh_verify(mesh, error));
+  SCREE_TRY(scree_adjacency_build(mesh, &adjacency, error));
   scree_topology found = {0};
-  for (size_t part = 0; part < SCREE_TOPOLOGY_PARTS && status == SCREE_OK; part++)
-    status = scree_topology_count(mesh, &adjacency, part, &found, error);
-  if (status == SCREE_OK) status = scree_topology_finish(mesh, &adjacency, true, &found, error);
-  if (status == SCREE_OK) *topology = found;
-  scree_adjacency_free(&adjacency);
-  return status;
+  for (size_t part = 0; part < SCREE_TOPOLOGY_PARTS; part++)
+    SCREE_TRY(scree_topology_count(mesh, &adjacency, part, &found, error));
+  SCREE_TRY(scree_topology_finish(mesh, &adjacency, true, &found, error));
+  *topology = found;
+  return SCREE_OK;
 }

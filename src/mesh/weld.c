@@ -175,18 +175,19 @@ static scree_status distinct_create(distinct *d, size_t corner_count, size_t tri
   /* a closed surface has half as many vertices as triangles */
   size_t expected = triangle_count / 2 + triangle_count / 16 + 64;
   if (expected > corner_count + BATCH) expected = corner_count + BATCH;
-  *d = (distinct){.capacity = expected};
+  d->capacity = expected;
   d->seed = run_seed(d);
-  SCREE_ALLOC_OR(d->positions, 3 * expected, error, out_of_memory);
+  SCREE_TRY_ALLOC(d->positions, 3 * expected, error);
   scree_populate(d->positions, 3 * expected * sizeof *d->positions);
   size_t slot_count = 1024;
   while (slot_count / 2 < expected) slot_count *= 2;
   if (slots_allocate(d, slot_count)) return SCREE_OK;
-  scree_fail_memory(error, slot_count * sizeof *d->slots, "the vertices of a mesh");
-out_of_memory:
+  return scree_fail_memory(error, slot_count * sizeof *d->slots, "the vertices of a mesh");
+}
+
+static void free_distinct(distinct *d) {
   scree_free(d->positions);
-  *d = (distinct){0};
-  return SCREE_OUT_OF_MEMORY;
+  scree_free(d->slots);
 }
 
 /* ---- 4. triangles ---- */
@@ -253,46 +254,31 @@ scree_status scree_weld_corners(const scree_corner_source *source, double tolera
   if (source->triangle_count > SCREE_TRIANGLE_LIMIT)
     return scree_fail(error, SCREE_LIMIT, "%zu triangles, more than the limit of %zu",
                       source->triangle_count, SCREE_TRIANGLE_LIMIT);
-  distinct d = {0};
-  uint32_t *numbers = NULL, *kept = NULL;
-  uint8_t *used = NULL;
-  scree_mesh made = {0};
-  scree_status status = distinct_create(&d, source->corner_count, source->triangle_count, error);
-  if (status != SCREE_OK) return status;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(numbers, source->corner_count, error, done);
+  SCREE_CLEANUP(free_distinct) distinct d = {0};
+  SCREE_CLEANUP(scree_free_at) uint32_t *kept = NULL;
+  SCREE_CLEANUP(scree_free_at) uint8_t *used = NULL;
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh made = {0};
+  SCREE_TRY(distinct_create(&d, source->corner_count, source->triangle_count, error));
+  SCREE_SCRATCH(uint32_t, numbers, source->corner_count, error);
   scree_populate(numbers, source->corner_count * sizeof *numbers);
-  status = number_corners(source, &d, numbers, bad_corner, error);
-  if (status != SCREE_OK) goto done;
+  SCREE_TRY(number_corners(source, &d, numbers, bad_corner, error));
   scree_free(d.slots);
   d.slots = NULL;
-  status = SCREE_OUT_OF_MEMORY;
-  if (source->triangles) SCREE_ALLOC_OR(kept, 3 * source->triangle_count, error, done);
+  if (source->triangles) SCREE_TRY_ALLOC(kept, 3 * source->triangle_count, error);
   renumbering r = {source->triangles, numbers, source->triangle_count};
   uint32_t *target = kept ? kept : numbers;
   scree_loose_mesh loose = {d.positions, NULL, d.count, target, source->triangle_count};
   if (source->triangles || !all_keep_corners(&r)) {
-    loose.used = used = scree_alloc_zero(d.count, 1);
-    if (!used) {
-      scree_fail_memory(error, d.count, "the vertices of a mesh");
-      goto done;
-    }
+    SCREE_TRY_ALLOC_ZERO(used, d.count, error);
+    loose.used = used;
     loose.triangle_count = keep_triangles(&r, target, used);
   }
-  status = scree_weld_sort(&loose, &made, error);
-  if (status == SCREE_OK && tolerance > 0) status = scree_weld_near(&made, tolerance, error);
-  if (status != SCREE_OK) goto done;
+  SCREE_TRY(scree_weld_sort(&loose, &made, error));
+  if (tolerance > 0) SCREE_TRY(scree_weld_near(&made, tolerance, error));
   if (degenerate_count) *degenerate_count = source->triangle_count - made.triangle_count;
   *mesh = made;
   made = (scree_mesh){0};
-done:
-  scree_mesh_free(&made);
-  scree_free(used);
-  scree_free(kept);
-  scree_free(numbers);
-  scree_free(d.slots);
-  scree_free(d.positions);
-  return status;
+  return SCREE_OK;
 }
 
 static void fetch_doubles(const void *context, size_t first, size_t count, double *out) {
@@ -310,8 +296,7 @@ scree_status scree_mesh_canonicalize(scree_mesh *mesh, scree_error *error) {
   scree_corner_source source = {fetch_doubles, mesh->positions, mesh->vertex_count, mesh->triangles,
                                 mesh->triangle_count};
   scree_mesh canonical;
-  scree_status status = scree_weld_corners(&source, 0, &canonical, NULL, NULL, error);
-  if (status) return status;
+  SCREE_TRY(scree_weld_corners(&source, 0, &canonical, NULL, NULL, error));
   scree_mesh_free(mesh);
   *mesh = canonical;
   return SCREE_OK;

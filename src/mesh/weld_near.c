@@ -80,15 +80,9 @@ static scree_status group_vertices(cells *c, double tolerance, scree_error *erro
 
 /* Renames the vertices to their group's first one, and brings what is left into order. */
 static scree_status rebuild(scree_mesh *mesh, uint32_t *parent, scree_error *error) {
-  scree_mesh made = {0};
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  uint8_t *used = scree_alloc_zero(mesh->vertex_count, 1);
-  uint32_t *triangles = NULL;
-  if (!used) {
-    scree_fail_memory(error, mesh->vertex_count, "the vertices of a mesh");
-    goto done;
-  }
-  SCREE_ALLOC_OR(triangles, 3 * mesh->triangle_count, error, done);
+  scree_mesh made;
+  SCREE_SCRATCH_ZERO(uint8_t, used, mesh->vertex_count, error);
+  SCREE_SCRATCH(uint32_t, triangles, 3 * mesh->triangle_count, error);
   size_t count = 0;
   for (size_t t = 0; t < mesh->triangle_count; t++) {
     uint32_t v[3];
@@ -98,11 +92,7 @@ static scree_status rebuild(scree_mesh *mesh, uint32_t *parent, scree_error *err
     memcpy(triangles + 3 * count++, v, sizeof v);
   }
   scree_loose_mesh loose = {mesh->positions, used, mesh->vertex_count, triangles, count};
-  status = scree_weld_sort(&loose, &made, error);
-done:
-  scree_free(used);
-  scree_free(triangles);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_weld_sort(&loose, &made, error));
   scree_mesh_free(mesh);
   *mesh = made;
   return SCREE_OK;
@@ -118,15 +108,10 @@ scree_status scree_weld_near(scree_mesh *mesh, double tolerance, scree_error *er
   if (!isfinite(c.scale)) return SCREE_OK; /* no two doubles are that close */
   c.head_count = 64;
   while (c.head_count < mesh->vertex_count) c.head_count *= 2;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(c.heads, c.head_count, error, done);
-  SCREE_ALLOC_OR(c.next, mesh->vertex_count, error, done);
-  SCREE_ALLOC_OR(c.parent, mesh->vertex_count, error, done);
-  status = group_vertices(&c, tolerance, error);
-  if (status == SCREE_OK) status = rebuild(mesh, c.parent, error);
-done:
-  scree_free(c.heads);
-  scree_free(c.next);
-  scree_free(c.parent);
-  return status;
+  SCREE_SCRATCH(uint32_t, heads, c.head_count, error);
+  SCREE_SCRATCH(uint32_t, next, mesh->vertex_count, error);
+  SCREE_SCRATCH(uint32_t, parent, mesh->vertex_count, error);
+  c.heads = heads, c.next = next, c.parent = parent;
+  SCREE_TRY(group_vertices(&c, tolerance, error));
+  return rebuild(mesh, parent, error);
 }

@@ -261,8 +261,7 @@ static scree_status read_pebbles(scree_text *t, spheres *s, const char *line) {
         return scree_text_fail(t, line, "pebble %zu of %.0f must be radius, x, y, z", i + 1, count);
       row[(k + 3) % 4] *= t->unit_m;
     }
-    scree_status status = add_sphere(t, line, s, row);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(add_sphere(t, line, s, row));
   }
   return SCREE_OK;
 }
@@ -304,10 +303,9 @@ scree_status scree_particle_clump_read(const char *path, const scree_read_option
   char *bytes;
   size_t count;
   spheres s = {.keep_unit = o.ignore_comment_unit};
-  scree_status status = scree_file_read(path, o.max_bytes, &bytes, &count, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_file_read(path, o.max_bytes, &bytes, &count, error));
   scree_text text = {bytes, bytes, bytes + count, path, o.unit_m, error};
-  status = is_pfc(text) ? read_pfc(&text, &s) : read_spheres(&text, &s);
+  scree_status status = is_pfc(text) ? read_pfc(&text, &s) : read_spheres(&text, &s);
   if (status == SCREE_OK)
     status = scree_particle_clump_of(s.centres, s.radii, s.count,
                                      s.known == (VOLUME | CENTROID | INERTIA) ? &s.body : NULL,

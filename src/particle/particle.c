@@ -283,8 +283,8 @@ static scree_solid solid_of_clump(const double *centres, const double *radii, si
 
 static scree_status fill_clump(scree_particle *p, const double *centres, const double *radii,
                                size_t count, scree_error *error) {
-  SCREE_ALLOC_OR(p->points, count, error, out_of_memory);
-  SCREE_ALLOC_OR(p->point_radii, count, error, out_of_memory);
+  SCREE_TRY_ALLOC(p->points, count, error);
+  SCREE_TRY_ALLOC(p->point_radii, count, error);
   p->point_count = count;
   double thinnest = INFINITY;
   for (size_t i = 0; i < count; i++) {
@@ -298,8 +298,6 @@ static scree_status fill_clump(scree_particle *p, const double *centres, const d
   scree_status status = scree_particle_build_trees(p, error);
   if (!status) scree_particle_find_inner(p);
   return status;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_particle_clump(const double *centres, const double *radii, size_t count,
@@ -351,8 +349,8 @@ static scree_status restore(scree_particle *p, const scree_mesh *mesh, const dou
     if (!status) status = scree_particle_extract_features(p, false, error);
     if (status) return status;
   } else {
-    SCREE_ALLOC_OR(p->points, count, error, out_of_memory);
-    SCREE_ALLOC_OR(p->point_radii, count, error, out_of_memory);
+    SCREE_TRY_ALLOC(p->points, count, error);
+    SCREE_TRY_ALLOC(p->point_radii, count, error);
     p->point_count = count;
     for (size_t i = 0; i < count; i++) p->points[i] = vec3_load(&centres[3 * i]);
     for (size_t i = 0; i < count; i++) p->point_radii[i] = radii[i];
@@ -361,8 +359,6 @@ static scree_status restore(scree_particle *p, const scree_mesh *mesh, const dou
   scree_status status = scree_particle_build_trees(p, error);
   if (!status) scree_particle_find_inner(p);
   return status;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_particle_restore(const scree_particle_measures *measures, const scree_mesh *mesh,

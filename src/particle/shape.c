@@ -124,15 +124,14 @@ static scree_status read_file(const scree_shape_spec *spec, double unit_m,
   double usual = o.unit_m;
   if (unit_m > 0) o.unit_m = unit_m;
   o.ignore_comment_unit = true;
-  scree_status status = scree_scan_read(spec->file, &o, &read, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scan_read(spec->file, &o, &read, error));
   double unit = spec->unit_m > 0          ? spec->unit_m
                 : read.comment_unit_m > 0 ? read.comment_unit_m
                                           : usual;
   s->scale = read.states_unit ? 1 : unit / usual;
   s->checksum = read.checksum;
-  status = scree_mesh_prepare(&read.mesh, spec->no_repair ? NULL : &repair, progress, &read.mesh,
-                              &report, error);
+  scree_status status = scree_mesh_prepare(&read.mesh, spec->no_repair ? NULL : &repair, progress,
+                                           &read.mesh, &report, error);
   if (status != SCREE_OK) {
     scree_scan_free(&read);
     return status;
@@ -193,8 +192,7 @@ static bool stays_whole(const scree_shape_spec *spec, size_t triangles) {
 static scree_status choose(scan *s, const scree_progress *progress, scree_error *error) {
   scree_choice choice;
   if (!isnan(s->recommended)) return SCREE_OK;
-  scree_status status = scree_choose(s->curve, &s->mesh, NULL, progress, &choice, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_choose(s->curve, &s->mesh, NULL, progress, &choice, error));
   s->recommended = choice.recommended.rp;
   scree_choice_free(&choice);
   return SCREE_OK;
@@ -247,8 +245,7 @@ static scree_status from_level(const scree_shape_spec *spec, scree_mesh *level,
                       "%zu triangles are too many for a particle (at most %d): give an Rp, or "
                       "decimate first (scree choose, scree simplify)",
                       level->triangle_count, SCREE_MOST_TRIANGLES);
-  scree_status status = scree_mesh_canonicalize(level, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_mesh_canonicalize(level, error));
   return spheres ? scree_clump_fit(level, spheres, progress, particle, error)
                  : scree_particle_from_mesh(level, NULL, particle, error);
 }
@@ -281,8 +278,7 @@ static scree_status from_table(const scree_shape_spec *spec, scree_shape_made *m
   scree_particle_measures m;
   if (spec->unit_m > 0) o.unit_m = spec->unit_m;
   o.ignore_comment_unit = spec->unit_m > 0;
-  scree_status status = scree_particle_clump_read(spec->table, &o, &made->particle, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_particle_clump_read(spec->table, &o, &made->particle, error));
   scree_particle_measure(made->particle, &m);
   made->scan_volume = m.volume;
   if (!is_spheres(spec->level)) return SCREE_OK;

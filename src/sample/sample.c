@@ -139,8 +139,7 @@ scree_status scree_sample_make(const char *name, const scree_sample_options *opt
                                scree_error *error) {
   scree_sample_options defaults = scree_default_sample_options();
   if (!options) options = &defaults;
-  scree_status status = check(options, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(check(options, error));
   int level = level_in_name(name);
   if (level >= 0) return scree_sample_icosphere(sphere_radius, level, mesh, error);
   scree_ticker ticker = {.progress = progress};

@@ -31,8 +31,7 @@ static size_t box_vertex(size_t n, size_t i, size_t j, size_t k) {
 
 scree_status scree_sample_box(double edge, size_t cells, scree_mesh *mesh, scree_error *error) {
   size_t n = cells;
-  scree_status status = allocate(2 * (n + 1) * (n + 1) + 4 * n * (n - 1), 12 * n * n, mesh, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(allocate(2 * (n + 1) * (n + 1) + 4 * n * (n - 1), 12 * n * n, mesh, error));
   uint32_t *triangle = mesh->triangles;
   for (int face = 0; face < 6; face++) {
     int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;

@@ -308,39 +308,33 @@ static void cell_block(void *context, size_t begin, size_t end, size_t block, in
   }
 }
 
+static void free_prover(prover *p) {
+  scree_free(p->cells);
+  scree_free(p->items);
+  scree_free(p->begins);
+  scree_free(p->fans);
+  scree_free(p->start);
+}
+
 scree_status scree_facets_apart(const scree_mesh *mesh, const scree_adjacency *adjacency,
                                 bool *apart, scree_error *error) {
+  SCREE_CLEANUP(free_prover)
   prover p = {.mesh = mesh, .ring = adjacency ? adjacency->ring : NULL};
   size_t cell_count, sum = 0, facets = mesh->triangle_count;
   *apart = false;
   if (facets == 0 || !shape(&p, &cell_count)) return SCREE_OK;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(p.cells, facets, error, done);
-  SCREE_ALLOC_OR(p.start, cell_count + 1, error, done);
-  memset(p.start, 0, (cell_count + 1) * sizeof *p.start);
+  SCREE_TRY_ALLOC(p.cells, facets, error);
+  SCREE_TRY_ALLOC_ZERO(p.start, cell_count + 1, error);
   scree_parallel_for(facets, FACET_BLOCK, count_block, &p);
   for (size_t c = 0; c <= cell_count; c++) p.start[c] = (uint32_t)(sum += p.start[c]);
-  status = SCREE_OK;
-  if (p.failed || sum > ENTRIES_PER_FACET * facets || sum > UINT32_MAX) goto done;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(p.items, sum, error, done);
-  SCREE_ALLOC_OR(p.begins, sum, error, done);
-  p.fans = scree_alloc_zero(mesh->vertex_count, 1);
-  if (!p.fans) {
-    scree_fail_memory(error, mesh->vertex_count, "the fans of a mesh");
-    goto done;
-  }
-  status = SCREE_OK;
+  if (p.failed || sum > ENTRIES_PER_FACET * facets || sum > UINT32_MAX) return SCREE_OK;
+  SCREE_TRY_ALLOC(p.items, sum, error);
+  SCREE_TRY_ALLOC(p.begins, sum, error);
+  SCREE_TRY_ALLOC_ZERO(p.fans, mesh->vertex_count, error);
   scree_parallel_for(facets, FACET_BLOCK, fill_block, &p);
   scree_free(p.cells);
   p.cells = NULL;
   scree_parallel_for(cell_count, CELL_BLOCK, cell_block, &p);
   *apart = !p.failed;
-done:
-  scree_free(p.cells);
-  scree_free(p.items);
-  scree_free(p.begins);
-  scree_free(p.fans);
-  scree_free(p.start);
-  return status;
+  return SCREE_OK;
 }

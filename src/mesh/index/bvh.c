@@ -26,16 +26,13 @@ static void copy_corners(void *context, size_t begin, size_t end, size_t block, 
 scree_status scree_bvh_build(const scree_mesh *mesh, scree_bvh *bvh, scree_error *error) {
   const scree_boxed triangles = {mesh->triangle_count, scree_box_of_facet, mesh, LEAF,
                                  SCREE_SPLIT_AREA};
-  scree_bvh made = {0};
-  scree_status status = scree_tree_build(&triangles, &made.tree, error);
-  if (status != SCREE_OK) return status;
-  SCREE_ALLOC_OR(made.corners, 9 * mesh->triangle_count, error, out_of_memory);
+  SCREE_CLEANUP(scree_bvh_free) scree_bvh made = {0};
+  SCREE_TRY(scree_tree_build(&triangles, &made.tree, error));
+  SCREE_TRY_ALLOC(made.corners, 9 * mesh->triangle_count, error);
   scree_parallel_for(mesh->triangle_count, CORNER_BLOCK, copy_corners, &(copying){mesh, &made});
   *bvh = made;
+  made = (scree_bvh){0};
   return SCREE_OK;
-out_of_memory:
-  scree_bvh_free(&made);
-  return SCREE_OUT_OF_MEMORY;
 }
 
 void scree_bvh_free(scree_bvh *bvh) {

@@ -218,21 +218,17 @@ static void make_block(void *context, size_t begin, size_t end, size_t block, in
 }
 
 static scree_status add_frames(scree_facet_tree *t, scree_error *error) {
-  framing f = {.tree = t};
   size_t nodes = t->tree.node_count;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(f.runs, nodes, error, done);
-  SCREE_ALLOC_OR(t->frame_of, nodes, error, done);
+  SCREE_SCRATCH(run, runs, nodes, error);
+  framing f = {.tree = t, .runs = runs};
+  SCREE_TRY_ALLOC(t->frame_of, nodes, error);
   list_runs(&f);
   scree_parallel_for(nodes, NODE_BLOCK, try_block, &f);
   for (size_t i = 0; i < nodes; i++)
     if (t->frame_of[i] != NO_FRAME) t->frame_of[i] = (uint32_t)t->frame_count++;
-  SCREE_ALLOC_OR(t->frames, t->frame_count, error, done);
+  SCREE_TRY_ALLOC(t->frames, t->frame_count, error);
   scree_parallel_for(nodes, NODE_BLOCK, make_block, &f);
-  status = SCREE_OK;
-done:
-  scree_free(f.runs);
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_facet_tree_build(const scree_mesh *mesh, scree_facet_tree *out,

@@ -197,7 +197,7 @@ static scree_status gather(search *s, size_t work_count, scree_meetings *found,
     return SCREE_OK;
   }
   scree_meetings all = {.capacity = total};
-  SCREE_ALLOC_OR(all.items, total, error, out_of_memory);
+  SCREE_TRY_ALLOC(all.items, total, error);
   for (size_t i = 0; i < work_count; i++) {
     if (s->found[i].count)
       memcpy(all.items + all.count, s->found[i].items, s->found[i].count * sizeof *all.items);
@@ -206,8 +206,6 @@ static scree_status gather(search *s, size_t work_count, scree_meetings *found,
   qsort(all.items, all.count, sizeof *all.items, compare_meetings);
   *found = all;
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static void mark_calm(search *s) {
@@ -229,37 +227,27 @@ scree_status scree_facet_meetings_new(const scree_facet_tree *tree, const bool *
                                       size_t limit, const scree_progress *progress,
                                       scree_meetings *found, scree_error *error) {
   search s = {.tree = tree, .settled = settled, .limit = limit};
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  size_t work_count = 0, most = work_items(tree);
-  if (settled) {
-    SCREE_ALLOC_OR(s.calm, tree->tree.node_count, error, done);
-    mark_calm(&s);
-  }
-  SCREE_ALLOC_OR(s.work, most, error, done);
-  SCREE_ALLOC_OR(s.found, most, error, done);
-  memset(s.found, 0, most * sizeof *s.found);
-  work_count = spread_work(&s, s.work, most);
-  status = run(&s, work_count, progress, error);
+  size_t most = work_items(tree);
+  SCREE_SCRATCH(bool, calm, tree->tree.node_count, error);
+  SCREE_SCRATCH(item, work, most, error);
+  SCREE_TRY_ALLOC_ZERO(s.found, most, error);
+  s.calm = settled ? calm : NULL;
+  s.work = work;
+  if (settled) mark_calm(&s);
+  size_t work_count = spread_work(&s, work, most);
+  scree_status status = run(&s, work_count, progress, error);
   if (status == SCREE_OK) status = gather(&s, work_count, found, error);
-done:
   for (size_t i = 0; i < work_count; i++) scree_free(s.found[i].items);
   scree_free(s.found);
-  scree_free(s.work);
-  scree_free(s.calm);
   return status;
 }
 
 scree_status scree_mesh_meetings(const scree_mesh *mesh, size_t limit,
                                  const scree_progress *progress, scree_meetings *found,
                                  scree_error *error) {
-  scree_facet_tree tree;
-  if (mesh->triangle_count == 0) {
-    *found = (scree_meetings){0};
-    return SCREE_OK;
-  }
-  scree_status status = scree_facet_tree_build(mesh, &tree, error);
-  if (status != SCREE_OK) return status;
-  status = scree_facet_meetings(&tree, limit, progress, found, error);
-  scree_facet_tree_free(&tree);
-  return status;
+  SCREE_CLEANUP(scree_facet_tree_free) scree_facet_tree tree = {0};
+  *found = (scree_meetings){0};
+  if (mesh->triangle_count == 0) return SCREE_OK;
+  SCREE_TRY(scree_facet_tree_build(mesh, &tree, error));
+  return scree_facet_meetings(&tree, limit, progress, found, error);
 }

@@ -79,9 +79,8 @@ scree_status scree_reading_weld_faces(scree_reading *r, const double *positions,
   if (face_count == 0)
     return scree_reading_fail(r, SCREE_BAD_FILE, "%s with no facets (%zu vertices)",
                               r->scan->format, position_count);
-  scree_status status = scree_face_list_triangulate(faces, positions, r->name, r->error);
-  if (status != SCREE_OK) return status;
-  status =
+  SCREE_TRY(scree_face_list_triangulate(faces, positions, r->name, r->error));
+  scree_status status =
       weld_source(r, positions, position_count, faces->triangles.items, faces->triangles.count / 3);
   r->scan->facet_count += faces->lost_count;
   r->scan->degenerate_count += faces->lost_count;
@@ -411,12 +410,11 @@ static scree_status check_options(const scree_read_options *o, scree_error *erro
 
 /* Reads what r names; its unit and scan are set here. */
 static scree_status parse(scree_reading *r, scree_scan *scan) {
-  scree_status status = check_options(r->options, r->error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(check_options(r->options, r->error));
   scree_scan made = {.byte_count = r->byte_count};
   r->scan = &made;
   r->unit_m = r->options->unit_m;
-  status = read_any(r);
+  scree_status status = read_any(r);
   made.unit_m = r->unit_m;
   if (status == SCREE_OK && made.mesh.triangle_count == 0)
     status = scree_reading_fail(r, SCREE_BAD_MESH,
@@ -525,9 +523,8 @@ scree_status scree_scan_read(const char *path, const scree_read_options *options
   if (status == SCREE_OK && strcmp(path, "-") != 0)
     status = read_stream(path, &used, scan, &done, error);
   if (status != SCREE_OK || done) return status;
-  status =
-      scree_file_read_judged(path, used.max_bytes, judge, &bytes, &byte_count, &whole_count, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_file_read_judged(path, used.max_bytes, judge, &bytes, &byte_count, &whole_count,
+                                   error));
   bool is_file = strcmp(path, "-") != 0;
   scree_reading r = {.name = is_file ? path : "standard input",
                      .bytes = (const unsigned char *)bytes,

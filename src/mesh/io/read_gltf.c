@@ -125,8 +125,7 @@ static scree_status read_beside(model *m, cgltf_buffer *b, size_t index) {
                         r->path, b->uri);
   if (length < 0 || (size_t)length >= sizeof path)
     return fail(m, SCREE_LIMIT, "a path is too long");
-  scree_status status = scree_file_read(path, r->options->max_bytes, &bytes, &count, r->error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_file_read(path, r->options->max_bytes, &bytes, &count, r->error));
   scree_checksum sums[2] = {r->beside, scree_checksum_of(bytes, count)};
   r->beside = scree_checksum_of(sums, sizeof sums);
   void *copy = count >= b->size ? give(&m->pool, b->size) : NULL;

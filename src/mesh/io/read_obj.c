@@ -41,8 +41,7 @@ static scree_status read_vertex(scree_text *t, obj *o) {
     if (!statement_goes_on(t))
       return scree_text_fail(t, at, "a vertex with %d coordinate%s; it needs 3", i,
                              i == 1 ? "" : "s");
-    scree_status status = scree_text_coordinate(t, i, o->positions.items + o->positions.count);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(scree_text_coordinate(t, i, o->positions.items + o->positions.count));
     o->positions.count++;
   }
   return SCREE_OK;
@@ -74,8 +73,7 @@ static scree_status read_face(scree_text *t, obj *o) {
   o->face.count = 0;
   while (statement_goes_on(t)) {
     uint32_t corner = 0;
-    scree_status status = read_corner(t, o, &corner);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(read_corner(t, o, &corner));
     if (!SCREE_PUSH(&o->face, corner))
       return scree_fail_memory(t->error, o->face.capacity * sizeof corner, "a face of an OBJ");
   }

@@ -178,21 +178,18 @@ static scree_status read_body(scree_text *t, off *o) {
                          (long long)o->face_count);
 }
 
+static void free_off(off *o) {
+  scree_free(o->positions);
+  scree_free(o->face.items);
+  scree_face_list_free(&o->faces);
+}
+
 scree_status scree_read_off(scree_reading *r) {
   snprintf(r->scan->format, sizeof r->scan->format, "OFF");
   scree_text text = scree_reading_text(r);
-  off o = {0};
-  scree_status status = read_header(&text, &o);
-  if (status == SCREE_OK) {
-    status = SCREE_OUT_OF_MEMORY;
-    SCREE_ALLOC_OR(o.positions, 3 * (size_t)o.vertex_count, r->error, done);
-    status = read_body(&text, &o);
-  }
-  if (status == SCREE_OK)
-    status = scree_reading_weld_faces(r, o.positions, (size_t)o.vertex_count, &o.faces);
-done:
-  scree_free(o.positions);
-  scree_free(o.face.items);
-  scree_face_list_free(&o.faces);
-  return status;
+  SCREE_CLEANUP(free_off) off o = {0};
+  SCREE_TRY(read_header(&text, &o));
+  SCREE_TRY_ALLOC(o.positions, 3 * (size_t)o.vertex_count, r->error);
+  SCREE_TRY(read_body(&text, &o));
+  return scree_reading_weld_faces(r, o.positions, (size_t)o.vertex_count, &o.faces);
 }

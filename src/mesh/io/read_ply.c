@@ -132,8 +132,7 @@ static const scree_ply_property *properties_of(const ply *p) {
 static scree_status read_coordinate(ply *p, const scree_ply_property *property) {
   double value = 0;
   const char *at = value_start(p);
-  scree_status status = next_value(p, property->type, &value);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(next_value(p, property->type, &value));
   if (!(fabs(value * p->text.unit_m) <= SCREE_COORDINATE_LIMIT)) {
     p->text.p = at;
     return fail_at(p, "a coordinate is %g; it must be finite and at most 1e30 m in size", value);

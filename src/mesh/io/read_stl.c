@@ -179,16 +179,14 @@ scree_status scree_read_stl_stream(scree_reading *r, scree_stream *stream, bool 
   scree_reading_take_unit(r, header, sizeof header);
   size_t count = load_u32(header + 80), bad_corner = SIZE_MAX;
   piece p = {.stream = stream, .facet_count = count, .unit_m = r->unit_m}, *context = &p;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(p.bytes, (size_t)PIECE_FACETS * FACET_BYTES, r->error, failed);
+  SCREE_TRY_ALLOC(p.bytes, (size_t)PIECE_FACETS * FACET_BYTES, r->error);
   scree_corner_source source = {fetch_piece, &context, 3 * count, NULL, count};
-  status = scree_weld_corners(&source, r->options->weld_tolerance, &scan->mesh,
-                              &scan->degenerate_count, &bad_corner, r->error);
+  scree_status status = scree_weld_corners(&source, r->options->weld_tolerance, &scan->mesh,
+                                           &scan->degenerate_count, &bad_corner, r->error);
   scree_free(p.bytes);
   if (p.failed || bad_corner != SIZE_MAX) return SCREE_OK;
   *done = status == SCREE_OK && scan->mesh.triangle_count > 0;
   describe_binary(scan, count);
-failed:
   return status;
 }
 

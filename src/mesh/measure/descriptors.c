@@ -205,8 +205,7 @@ static scree_status inscribed_ball(const scree_mesh *mesh, ball *best, scree_err
   scree_bvh tree = {0};
   cubes heap = {0};
   vec3 low, high;
-  scree_status status = scree_bvh_build(mesh, &tree, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_bvh_build(mesh, &tree, error));
   scree_mesh_bounds(mesh, &low, &high);
   vec3 size = vec3_sub(high, low);
   double half = 0.5 * fmax(size.x, fmax(size.y, size.z));
@@ -318,8 +317,7 @@ scree_status scree_mesh_describe(const scree_mesh *mesh, const scree_measures *m
   scree_descriptors d = {0};
   corner *corners = NULL;
   ball inside;
-  scree_status status = scree_mesh_verify(mesh, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_mesh_verify(mesh, error));
   if (!measures->closed || measures->inward || !measures->has_volume)
     return scree_fail(error, SCREE_BAD_MESH,
                       "the surface is %s: a body's shape is that of a closed surface; `scree "
@@ -329,11 +327,10 @@ scree_status scree_mesh_describe(const scree_mesh *mesh, const scree_measures *m
   d.bounding_radius = sqrt(around.radius2);
   vec3_store(d.bounding_centre, around.centre);
   set_form(measures, &d);
-  status = inscribed_ball(mesh, &inside, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(inscribed_ball(mesh, &inside, error));
   d.inscribed_radius = sqrt(inside.radius2);
   vec3_store(d.inscribed_centre, inside.centre);
-  status = sum_corners(mesh, &corners, error);
+  scree_status status = sum_corners(mesh, &corners, error);
   if (status == SCREE_OK) {
     set_curvatures(corners, mesh->vertex_count, &d);
     *descriptors = d;

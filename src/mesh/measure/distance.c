@@ -63,31 +63,25 @@ static void set_size(scree_surface *s) {
 }
 
 static scree_status order_vertices(scree_surface *s, scree_error *error) {
-  bool *seen = NULL;
-  SCREE_ALLOC_OR(s->vertices, s->mesh.vertex_count, error, out_of_memory);
-  SCREE_ALLOC_OR(seen, s->mesh.vertex_count, error, out_of_memory);
-  memset(seen, 0, s->mesh.vertex_count * sizeof *seen);
+  SCREE_TRY_ALLOC(s->vertices, s->mesh.vertex_count, error);
+  SCREE_SCRATCH_ZERO(bool, seen, s->mesh.vertex_count, error);
   for (size_t i = 0; i < s->mesh.triangle_count; i++)
     for (size_t k = 0; k < 3; k++) {
       uint32_t v = s->mesh.triangles[3 * (size_t)s->bvh.tree.order[i] + k];
       if (!seen[v]) s->vertices[s->used_count++] = v;
       seen[v] = true;
     }
-  scree_free(seen);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_surface_create(const scree_mesh *mesh, scree_surface **surface,
                                   scree_error *error) {
-  scree_status status = scree_mesh_verify(mesh, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_mesh_verify(mesh, error));
   if (mesh->triangle_count == 0)
     return scree_fail(error, SCREE_BAD_MESH, "the mesh has no triangles");
   scree_surface *made = scree_alloc_zero(1, sizeof *made);
   if (!made) return scree_fail_memory(error, sizeof *made, "a surface");
-  status = scree_mesh_copy(mesh, &made->mesh, error);
+  scree_status status = scree_mesh_copy(mesh, &made->mesh, error);
   if (status == SCREE_OK) status = scree_bvh_build(mesh, &made->bvh, error);
   if (status == SCREE_OK) status = order_vertices(made, error);
   if (status != SCREE_OK) {
@@ -155,10 +149,9 @@ void scree_surface_distances(const scree_surface *surface, const double *points,
 
 scree_status scree_mesh_distance_field(const scree_mesh *mesh, const scree_mesh *reference,
                                        double *distances, scree_error *error) {
-  scree_surface *surface = NULL;
-  scree_status status = scree_mesh_verify(mesh, error);
-  if (status == SCREE_OK) status = scree_surface_create(reference, &surface, error);
-  if (status != SCREE_OK) return status;
+  scree_surface *surface;
+  SCREE_TRY(scree_mesh_verify(mesh, error));
+  SCREE_TRY(scree_surface_create(reference, &surface, error));
   scree_surface_distances(surface, mesh->positions, mesh->vertex_count, distances);
   scree_surface_free(surface);
   return SCREE_OK;
@@ -504,33 +497,31 @@ static scree_status sweep_until_converged(sweep *s, bool converge, stage *st, ta
     return run_sweep(s, count, sweep_facets, st, facets, error);
   s->density /= 4;
   st->share = share / 2;
-  scree_status status = run_sweep(s, count, sweep_facets, st, facets, error);
-  for (bool done = false; status == SCREE_OK && !done;) {
+  SCREE_TRY(run_sweep(s, count, sweep_facets, st, facets, error));
+  for (bool done = false; !done;) {
     tally finer;
     s->density *= 4;
     st->share /= 2;
-    status = run_sweep(s, count, sweep_facets, st, &finer, error);
-    if (status != SCREE_OK) break;
+    SCREE_TRY(run_sweep(s, count, sweep_facets, st, &finer, error));
     done = agree(s, facets, &finer) || 4 * s->density * s->from->area > CONVERGE_MOST;
     finer.sample_count += facets->sample_count;
     if (facets->maximum > finer.maximum) finer.maximum = facets->maximum, finer.at = facets->at;
     *facets = finer;
   }
   st->share = share;
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status run_sweeps(sweep *s, const scree_deviation_rule *way, stage *st,
                                tally *vertices, tally *facets, tally *cuts, scree_error *error) {
-  scree_status status = run_sweep(s, s->from->used_count, sweep_vertices, st, vertices, error);
+  SCREE_TRY(run_sweep(s, s->from->used_count, sweep_vertices, st, vertices, error));
   s->found = fmax(way->known, vertices->maximum);
-  if (status == SCREE_OK) status = sweep_until_converged(s, way->converge, st, facets, error);
+  SCREE_TRY(sweep_until_converged(s, way->converge, st, facets, error));
   s->found = fmax(s->found, facets->maximum);
-  if (status == SCREE_OK && s->facet_bound) {
-    status = run_sweep(s, s->from->mesh.triangle_count, sweep_bounds, st, cuts, error);
-    facets->bound = cuts->bound;
-  }
-  return status;
+  if (!s->facet_bound) return SCREE_OK;
+  SCREE_TRY(run_sweep(s, s->from->mesh.triangle_count, sweep_bounds, st, cuts, error));
+  facets->bound = cuts->bound;
+  return SCREE_OK;
 }
 
 static scree_deviation conclude(const tally *vertices, const tally *facets, const tally *cuts) {
@@ -550,32 +541,34 @@ static scree_deviation conclude(const tally *vertices, const tally *facets, cons
   return d;
 }
 
+static void free_sweep(sweep *s) {
+  scree_free(s->vertex_distance);
+  scree_free(s->vertex_near);
+  scree_free(s->tallies);
+  scree_free(s->facet_bound);
+  scree_free(s->heaps);
+}
+
 static scree_status deviate(const scree_surface *from, const scree_surface *to,
                             const scree_deviation_rule *way, stage *st, scree_deviation *deviation,
                             scree_error *error) {
+  SCREE_CLEANUP(free_sweep)
   sweep s = {.from = from, .to = to, .gap = way->gap, .slope = way->slope};
   size_t vertex_count = from->mesh.vertex_count;
   tally vertices, facets = {0}, cuts = {.maximum = -1};
-  scree_status status = SCREE_OUT_OF_MEMORY;
   s.density = from->area > 0 ? (double)way->sample_count / from->area : 0;
-  SCREE_ALLOC_OR(s.vertex_distance, vertex_count, error, done);
-  SCREE_ALLOC_OR(s.vertex_near, vertex_count, error, done);
-  SCREE_ALLOC_OR(s.tallies, CHUNK / BLOCK, error, done);
+  SCREE_TRY_ALLOC(s.vertex_distance, vertex_count, error);
+  SCREE_TRY_ALLOC(s.vertex_near, vertex_count, error);
+  SCREE_TRY_ALLOC(s.tallies, CHUNK / BLOCK, error);
   s.budget = (double)way->cut_budget / (double)from->mesh.triangle_count;
   s.budget = fmax(s.budget, (double)way->cut_least);
   if (s.gap > 0) {
-    SCREE_ALLOC_OR(s.facet_bound, from->mesh.triangle_count, error, done);
-    SCREE_ALLOC_OR(s.heaps, (size_t)scree_worker_count() * HEAP_MOST, error, done);
+    SCREE_TRY_ALLOC(s.facet_bound, from->mesh.triangle_count, error);
+    SCREE_TRY_ALLOC(s.heaps, (size_t)scree_worker_count() * HEAP_MOST, error);
   }
-  status = run_sweeps(&s, way, st, &vertices, &facets, &cuts, error);
-  if (status == SCREE_OK) *deviation = conclude(&vertices, &facets, &cuts);
-done:
-  scree_free(s.vertex_distance);
-  scree_free(s.vertex_near);
-  scree_free(s.tallies);
-  scree_free(s.facet_bound);
-  scree_free(s.heaps);
-  return status;
+  SCREE_TRY(run_sweeps(&s, way, st, &vertices, &facets, &cuts, error));
+  *deviation = conclude(&vertices, &facets, &cuts);
+  return SCREE_OK;
 }
 
 scree_status scree_surface_deviation(const scree_surface *from, const scree_surface *to,
@@ -615,14 +608,12 @@ scree_status scree_surface_distance(const scree_surface *a, const scree_surface 
                                     scree_error *error) {
   scree_deviation_rule way;
   scree_distance d = {0};
-  scree_status status = set_way(options, a, b, &way, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(set_way(options, a, b, &way, error));
   bool one_way = options && options->one_way;
   int sweeps = (one_way ? 1 : 2) * (way.gap > 0 ? 3 : 2);
   stage st = {.ticker = {.progress = progress}, .share = 1.0 / sweeps};
-  status = deviate(a, b, &way, &st, &d.forward, error);
-  if (status == SCREE_OK && !one_way) status = deviate(b, a, &way, &st, &d.backward, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(deviate(a, b, &way, &st, &d.forward, error));
+  if (!one_way) SCREE_TRY(deviate(b, a, &way, &st, &d.backward, error));
   d.hausdorff = fmax(d.forward.maximum, d.backward.maximum);
   d.hausdorff_bound = fmax(d.forward.maximum_bound, d.backward.maximum_bound);
   *distance = d;

@@ -41,8 +41,8 @@ static scree_status copy_corners(qhT *qh, const vec3 *points, scree_hull *hull,
   size_t corner = 0, triangle = 0;
   for (vertexT *v = qh->vertex_list; v && v->next; v = v->next) hull->point_count++;
   for (facetT *f = qh->facet_list; f && f->next; f = f->next) hull->triangle_count++;
-  SCREE_ALLOC_OR(hull->points, hull->point_count, error, out_of_memory);
-  SCREE_ALLOC_OR(hull->triangles, 3 * hull->triangle_count, error, out_of_memory);
+  SCREE_TRY_ALLOC(hull->points, hull->point_count, error);
+  SCREE_TRY_ALLOC(hull->triangles, 3 * hull->triangle_count, error);
   for (vertexT *v = qh->vertex_list; v && v->next; v = v->next) {
     v->visitid = (unsigned int)corner;
     hull->points[corner++] = points[qh_pointid(qh, v->point)];
@@ -52,8 +52,6 @@ static scree_status copy_corners(qhT *qh, const vec3 *points, scree_hull *hull,
     for (int k = 0; k < 3; k++) out[k] = ((vertexT *)f->vertices->e[k].p)->visitid;
   }
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* Turns every triangle outward, and sums. */
@@ -98,12 +96,10 @@ static scree_status find_hull(const vec3 *points, size_t point_count, const char
 static scree_status keep_all(const vec3 *points, size_t point_count, scree_hull *hull,
                              scree_error *error) {
   scree_hull_free(hull);
-  SCREE_ALLOC_OR(hull->points, point_count, error, out_of_memory);
+  SCREE_TRY_ALLOC(hull->points, point_count, error);
   for (size_t i = 0; i < point_count; i++) hull->points[i] = points[i];
   hull->point_count = point_count;
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_hull_build(const vec3 *points, size_t point_count, scree_hull *hull,

@@ -79,7 +79,7 @@ static scree_status integrate(const scree_mesh *mesh, vec3 origin, int integral_
                               double *integrals, scree_error *error) {
   integrator in = {.mesh = mesh, .origin = origin, .integral_count = integral_count};
   size_t blocks = scree_block_count(mesh->triangle_count, BLOCK);
-  SCREE_ALLOC_OR(in.sums, blocks * (size_t)integral_count, error, out_of_memory);
+  SCREE_TRY_ALLOC(in.sums, blocks * (size_t)integral_count, error);
   scree_parallel_for(mesh->triangle_count, BLOCK, integrate_block, &in);
   for (int i = 0; i < integral_count; i++) {
     scree_sum total = {0};
@@ -89,8 +89,6 @@ static scree_status integrate(const scree_mesh *mesh, vec3 origin, int integral_
   }
   scree_free(in.sums);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 void scree_mesh_bounds(const scree_mesh *mesh, vec3 *low, vec3 *high) {
@@ -130,10 +128,9 @@ bool scree_mesh_is_cycle(const scree_mesh *mesh) {
 /* ---- The whole set ---- */
 
 static scree_status check_facets(const scree_mesh *mesh, scree_error *error) {
-  scree_status status = scree_mesh_verify(mesh, error);
-  if (status == SCREE_OK && mesh->triangle_count == 0)
-    return scree_fail(error, SCREE_BAD_MESH, "the mesh has no triangles");
-  return status;
+  SCREE_TRY(scree_mesh_verify(mesh, error));
+  return mesh->triangle_count ? SCREE_OK
+                              : scree_fail(error, SCREE_BAD_MESH, "the mesh has no triangles");
 }
 
 static vec3 middle(vec3 low, vec3 high) {
@@ -173,47 +170,34 @@ static void set_mass(scree_measures *m, vec3 origin, double diagonal, const doub
 /* The vertices in use, relative to origin. */
 static scree_status gather_points(const scree_mesh *mesh, vec3 origin, vec3 **points,
                                   size_t *point_count, scree_error *error) {
-  bool *used = NULL;
-  vec3 *made = NULL;
   size_t count = 0;
-  SCREE_ALLOC_OR(used, mesh->vertex_count, error, out_of_memory);
-  SCREE_ALLOC_OR(made, mesh->vertex_count, error, out_of_memory);
-  memset(used, 0, mesh->vertex_count * sizeof *used);
+  SCREE_SCRATCH_ZERO(bool, used, mesh->vertex_count, error);
+  SCREE_TRY_ALLOC(*points, mesh->vertex_count, error);
   for (size_t c = 0; c < 3 * mesh->triangle_count; c++) used[mesh->triangles[c]] = true;
   for (size_t v = 0; v < mesh->vertex_count; v++)
-    if (used[v]) made[count++] = vec3_sub(vec3_load(mesh->positions + 3 * v), origin);
-  scree_free(used);
-  *points = made;
+    if (used[v]) (*points)[count++] = vec3_sub(vec3_load(mesh->positions + 3 * v), origin);
   *point_count = count;
   return SCREE_OK;
-out_of_memory:
-  scree_free(used);
-  scree_free(made);
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static scree_status measure_hull(const scree_mesh *mesh, vec3 origin, scree_measures *m,
                                  scree_error *error) {
-  vec3 *points = NULL;
+  SCREE_CLEANUP(scree_free_at) vec3 *points = NULL;
   size_t point_count = 0;
-  scree_hull hull = {0};
+  SCREE_CLEANUP(scree_hull_free) scree_hull hull = {0};
   scree_minimum_box box;
   mat3 axes;
   memcpy(axes.m, m->principal_axes, sizeof axes.m);
-  scree_status status = gather_points(mesh, origin, &points, &point_count, error);
-  if (status == SCREE_OK) status = scree_hull_build(points, point_count, &hull, error);
-  if (status == SCREE_OK) status = scree_minimum_box_fit(&hull, &axes, &box, error);
-  if (status == SCREE_OK) {
-    m->hull_area = hull.area;
-    m->hull_volume = hull.volume;
-    m->convexity = m->has_volume && hull.volume > 0 ? fabs(m->volume) / hull.volume : 0;
-    memcpy(m->oriented_axes, box.axes.m, sizeof m->oriented_axes);
-    vec3_store(m->oriented_dimensions, box.size);
-    vec3_store(m->oriented_center, vec3_add(origin, box.center));
-  }
-  scree_hull_free(&hull);
-  scree_free(points);
-  return status;
+  SCREE_TRY(gather_points(mesh, origin, &points, &point_count, error));
+  SCREE_TRY(scree_hull_build(points, point_count, &hull, error));
+  SCREE_TRY(scree_minimum_box_fit(&hull, &axes, &box, error));
+  m->hull_area = hull.area;
+  m->hull_volume = hull.volume;
+  m->convexity = m->has_volume && hull.volume > 0 ? fabs(m->volume) / hull.volume : 0;
+  memcpy(m->oriented_axes, box.axes.m, sizeof m->oriented_axes);
+  vec3_store(m->oriented_dimensions, box.size);
+  vec3_store(m->oriented_center, vec3_add(origin, box.center));
+  return SCREE_OK;
 }
 
 scree_status scree_mesh_measure(const scree_mesh *mesh, scree_measures *measures,
@@ -221,32 +205,28 @@ scree_status scree_mesh_measure(const scree_mesh *mesh, scree_measures *measures
   scree_measures m = {0};
   double integrals[INTEGRALS];
   vec3 low, high;
-  scree_status status = check_facets(mesh, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(check_facets(mesh, error));
   scree_mesh_bounds(mesh, &low, &high);
   vec3 origin = middle(low, high), size = vec3_sub(high, low);
-  status = integrate(mesh, origin, INTEGRALS, integrals, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(integrate(mesh, origin, INTEGRALS, integrals, error));
   m.closed = scree_mesh_is_cycle(mesh);
   m.area = integrals[AREA];
   vec3_store(m.box_min, low);
   vec3_store(m.box_max, high);
   vec3_store(m.dimensions, size);
   set_mass(&m, origin, vec3_norm(size), integrals);
-  status = measure_hull(mesh, origin, &m, error);
-  if (status == SCREE_OK) *measures = m;
-  return status;
+  SCREE_TRY(measure_hull(mesh, origin, &m, error));
+  *measures = m;
+  return SCREE_OK;
 }
 
 scree_status scree_mesh_area_volume(const scree_mesh *mesh, double *area, double *volume,
                                     scree_error *error) {
   double integrals[2];
   vec3 low, high;
-  scree_status status = check_facets(mesh, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(check_facets(mesh, error));
   scree_mesh_bounds(mesh, &low, &high);
-  status = integrate(mesh, middle(low, high), 2, integrals, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(integrate(mesh, middle(low, high), 2, integrals, error));
   if (area) *area = integrals[AREA];
   if (volume) *volume = integrals[VOLUME];
   return SCREE_OK;

@@ -345,57 +345,45 @@ static void set_facings(const scree_hull *hull, facing *facings) {
   }
 }
 
-static void free_fitters(fitter *fitters, int count) {
-  for (int i = 0; i < count && fitters; i++) {
-    scree_free(fitters[i].sides);
-    scree_free(fitters[i].projected);
-    scree_free(fitters[i].outline);
+typedef struct fitters {
+  fitter *items;
+  int count;
+} fitters;
+
+static void free_fitters(fitters *f) {
+  for (int i = 0; i < f->count; i++) {
+    scree_free(f->items[i].sides);
+    scree_free(f->items[i].projected);
+    scree_free(f->items[i].outline);
   }
-  scree_free(fitters);
+  scree_free(f->items);
 }
 
-static fitter *make_fitters(const scree_hull *hull, const facing *facings, int count,
-                            scree_error *error) {
-  fitter *fitters = scree_alloc_zero((size_t)count, sizeof *fitters);
-  if (!fitters) {
-    scree_fail_memory(error, (size_t)count * sizeof *fitters, "fitting a box");
-    return NULL;
-  }
-  for (int i = 0; i < count; i++) {
-    fitter *f = &fitters[i];
+static scree_status make_fitters(const scree_hull *hull, const facing *facings, fitters *made,
+                                 scree_error *error) {
+  int count = scree_worker_count();
+  SCREE_TRY_ALLOC_ZERO(made->items, (size_t)count, error);
+  while (made->count < count) {
+    fitter *f = &made->items[made->count++];
     f->hull = hull;
     f->facings = facings;
-    SCREE_ALLOC_OR(f->sides, hull->point_count, error, out_of_memory);
-    SCREE_ALLOC_OR(f->projected, hull->point_count, error, out_of_memory);
-    SCREE_ALLOC_OR(f->outline, 2 * hull->point_count + 2, error, out_of_memory);
+    SCREE_TRY_ALLOC(f->sides, hull->point_count, error);
+    SCREE_TRY_ALLOC(f->projected, hull->point_count, error);
+    SCREE_TRY_ALLOC(f->outline, 2 * hull->point_count + 2, error);
   }
-  return fitters;
-out_of_memory:
-  free_fitters(fitters, count);
-  return NULL;
+  return SCREE_OK;
 }
 
 scree_status scree_minimum_box_fit(const scree_hull *hull, const mat3 *axes, scree_minimum_box *box,
                                    scree_error *error) {
-  facing *facings = NULL;
-  fitter *fitters = NULL;
-  start_list list = {0};
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  int worker_count = scree_worker_count();
-  SCREE_ALLOC_OR(facings, hull->triangle_count, error, done);
+  SCREE_CLEANUP(free_fitters) fitters f = {0};
+  SCREE_CLEANUP(scree_free_at) start_list list = {0};
+  SCREE_SCRATCH(facing, facings, hull->triangle_count, error);
   set_facings(hull, facings);
-  fitters = make_fitters(hull, facings, worker_count, error);
-  if (!fitters) goto done;
-  if (!push_starts(&list, hull, axes)) {
-    scree_fail_memory(error, (list.count + 1) * sizeof *list.items, "directions of boxes");
-    goto done;
-  }
-  mat3 best = search(fitters, &list, axes);
+  SCREE_TRY(make_fitters(hull, facings, &f, error));
+  if (!push_starts(&list, hull, axes))
+    return scree_fail_memory(error, (list.count + 1) * sizeof *list.items, "directions of boxes");
+  mat3 best = search(f.items, &list, axes);
   *box = finish(hull, &best);
-  status = SCREE_OK;
-done:
-  free_fitters(fitters, worker_count);
-  scree_free(facings);
-  scree_free(list.items);
-  return status;
+  return SCREE_OK;
 }

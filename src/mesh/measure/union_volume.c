@@ -289,9 +289,8 @@ static void add_block(void *context, size_t begin, size_t end, size_t block, int
 
 static scree_status list_partners(work *w, const scree_meetings *found, scree_error *error) {
   size_t facets = w->mesh->triangle_count;
-  SCREE_ALLOC_OR(w->first, facets + 1, error, out_of_memory);
-  SCREE_ALLOC_OR(w->partners, 2 * found->count, error, out_of_memory);
-  memset(w->first, 0, (facets + 1) * sizeof *w->first);
+  SCREE_TRY_ALLOC_ZERO(w->first, facets + 1, error);
+  SCREE_TRY_ALLOC(w->partners, 2 * found->count, error);
   for (size_t i = 0; i < found->count; i++)
     w->first[found->items[i].first]++, w->first[found->items[i].second]++;
   uint32_t sum = 0;
@@ -306,8 +305,6 @@ static scree_status list_partners(work *w, const scree_meetings *found, scree_er
     w->partners[--w->first[m->second]] = m->first << 1 | flat;
   }
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static bool meets(const work *w, uint32_t facet) {
@@ -346,50 +343,42 @@ static void ask_pieces(work *w, uint32_t *parent, uint32_t *number) {
 
 static scree_status list_asked(work *w, const scree_adjacency *adjacency, scree_error *error) {
   size_t count = w->mesh->triangle_count;
-  uint32_t *parent = NULL, *number = NULL;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(w->asked, count, error, done);
-  SCREE_ALLOC_OR(w->pieces, count, error, done);
-  SCREE_ALLOC_OR(parent, count, error, done);
-  SCREE_ALLOC_OR(number, count, error, done);
-  status = SCREE_OK;
+  SCREE_SCRATCH(uint32_t, parent, count, error);
+  SCREE_SCRATCH(uint32_t, number, count, error);
+  SCREE_TRY_ALLOC(w->asked, count, error);
+  SCREE_TRY_ALLOC(w->pieces, count, error);
   for (uint32_t t = 0; t < count; t++)
     if (meets(w, t)) w->asked[w->cut_count++] = t;
   join_pieces(w, adjacency, parent);
   ask_pieces(w, parent, number);
-done:
-  scree_free(parent);
-  scree_free(number);
-  return status;
+  return SCREE_OK;
+}
+
+static void free_work(work *w) {
+  scree_free(w->first);
+  scree_free(w->partners);
+  scree_free(w->asked);
+  scree_free(w->pieces);
+  scree_free(w->sums);
 }
 
 scree_status scree_union_volume(const scree_facet_tree *tree, const scree_adjacency *adjacency,
                                 const scree_meetings *found, double *volume, bool *known,
                                 scree_error *error) {
   const scree_box *box = &tree->tree.nodes[0].box;
+  SCREE_CLEANUP(free_work)
   work w = {.tree = tree, .mesh = tree->mesh, .origin = vec3_lerp(box->low, box->high, 0.5)};
   scree_sum sum = {0};
-  scree_status status = list_partners(&w, found, error);
-  if (status == SCREE_OK) status = list_asked(&w, adjacency, error);
-  if (status != SCREE_OK) goto done;
+  SCREE_TRY(list_partners(&w, found, error));
+  SCREE_TRY(list_asked(&w, adjacency, error));
   w.winding = (scree_winding){tree, NULL, w.first, w.partners, scree_winding_rounding(tree)};
-  status = SCREE_OUT_OF_MEMORY;
   size_t blocks = scree_block_count(w.asked_count, FACET_BLOCK);
-  SCREE_ALLOC_OR(w.sums, blocks, error, done);
+  SCREE_TRY_ALLOC(w.sums, blocks, error);
   scree_parallel_for(w.asked_count, FACET_BLOCK, add_block, &w);
-  if (atomic_load(&w.failed)) {
-    scree_fail_memory(error, sizeof(point), "the volume of a union");
-    goto done;
-  }
-  status = SCREE_OK;
+  if (atomic_load(&w.failed))
+    return scree_fail_memory(error, sizeof(point), "the volume of a union");
   *known = !atomic_load(&w.unknown);
   for (size_t i = 0; i < blocks; i++) scree_sum_merge(&sum, w.sums[i]);
   if (*known) *volume = scree_sum_value(sum) / 6;
-done:
-  scree_free(w.first);
-  scree_free(w.partners);
-  scree_free(w.asked);
-  scree_free(w.pieces);
-  scree_free(w.sums);
-  return status;
+  return SCREE_OK;
 }

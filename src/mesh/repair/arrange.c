@@ -341,22 +341,20 @@ static bool list_candidates(arranger *a) {
 
 /* Pairs of candidates that may come within the tolerance, as facets. */
 static scree_status list_pairs(arranger *a, scree_error *error) {
-  scree_facet_tree tree = {0};
+  SCREE_CLEANUP(scree_facet_tree_free) scree_facet_tree tree = {0};
   a->pairs.count = 0;
   if (!list_candidates(a)) return no_memory(error);
   if (a->candidates.count == 0) return SCREE_OK;
   scree_mesh part = {a->positions.items, a->triangles.items, a->positions.count / 3,
                      a->candidates.count};
-  scree_status status = scree_facet_tree_build(&part, &tree, error);
-  if (status != SCREE_OK) return status;
-  if (!scree_near_pairs(&tree, a->tolerance, &a->pairs)) status = no_memory(error);
-  scree_facet_tree_free(&tree);
+  SCREE_TRY(scree_facet_tree_build(&part, &tree, error));
+  if (!scree_near_pairs(&tree, a->tolerance, &a->pairs)) return no_memory(error);
   for (size_t i = 0; i < a->pairs.count; i++) {
     scree_facet_pair *pair = &a->pairs.items[i];
     pair->first = a->candidates.items[pair->first];
     pair->second = a->candidates.items[pair->second];
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* The vertices of candidates, to be compared with each other. */
@@ -403,7 +401,7 @@ static scree_status merge_vertices(arranger *a, size_t old_count, scree_error *e
   size_t count = a->positions.count / 3;
   scree_free(a->merged);
   a->merged = NULL;
-  SCREE_ALLOC_OR(a->merged, count, error, out_of_memory);
+  SCREE_TRY_ALLOC(a->merged, count, error);
   for (uint32_t v = 0; v < count; v++) a->merged[v] = v;
   for (size_t i = 0; i < a->joins.count; i++)
     scree_join(a->merged, a->joins.items[i].a, a->joins.items[i].b);
@@ -425,8 +423,6 @@ static scree_status merge_vertices(arranger *a, size_t old_count, scree_error *e
   }
   for (uint32_t v = 0; v < count; v++) a->merged[v] = scree_find_root(a->merged, v);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* ---- Lists in order ---- */
@@ -602,53 +598,44 @@ static scree_status cut_all(arranger *a, scree_error *error) {
 static scree_status find_meetings(arranger *a, const scree_mesh *mesh,
                                   const scree_progress *progress, scree_meetings *found,
                                   scree_error *error) {
-  scree_facet_tree tree;
-  bool *settled = NULL;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(settled, a->facets.count, error, out_of_memory);
+  SCREE_CLEANUP(scree_facet_tree_free) scree_facet_tree tree = {0};
+  SCREE_SCRATCH(bool, settled, a->facets.count, error);
   for (size_t t = 0; t < a->facets.count; t++) settled[t] = a->facets.items[t].settled;
-  status = scree_facet_tree_build(mesh, &tree, error);
-  if (status != SCREE_OK) goto done;
-  status = scree_facet_meetings_new(&tree, a->first ? NULL : settled, scree_arrange_limit(mesh),
-                                    progress, found, error);
-  scree_facet_tree_free(&tree);
+  SCREE_TRY(scree_facet_tree_build(mesh, &tree, error));
+  SCREE_TRY(scree_facet_meetings_new(&tree, a->first ? NULL : settled, scree_arrange_limit(mesh),
+                                     progress, found, error));
   /* of more than the limit there is the count alone */
-  for (size_t i = 0; status == SCREE_OK && !found->truncated && i < found->count; i++) {
+  for (size_t i = 0; !found->truncated && i < found->count; i++) {
     facet *f = &a->facets.items[found->items[i].first],
           *g = &a->facets.items[found->items[i].second];
     f->met = g->met = true;
     f->settled = g->settled = false;
   }
-done:
-  scree_free(settled);
-out_of_memory:
-  return status;
+  return SCREE_OK;
 }
 
 /* *done: nothing meets. */
 static scree_status run_round(arranger *a, const scree_progress *progress, bool *done,
                               scree_error *error) {
   scree_mesh mesh;
-  scree_meetings found = {0};
+  SCREE_CLEANUP(scree_free_at) scree_meetings found = {0};
   size_t old_count = a->positions.count / 3;
   sum_facets(a);
   *done = a->facets.count == 0; /* there are none, or all have cancelled */
   if (*done) return SCREE_OK;
   if (!make_mesh(a, &mesh)) return no_memory(error);
-  scree_status status = find_meetings(a, &mesh, progress, &found, error);
-  if (status == SCREE_OK && found.truncated) a->reason = scree_arrange_too_many;
+  SCREE_TRY(find_meetings(a, &mesh, progress, &found, error));
+  if (found.truncated) a->reason = scree_arrange_too_many;
   if (a->first || found.count < a->fewest_met) a->fewest_met = found.count;
   if (found.count > 2 * a->fewest_met + ROUNDING_MEETINGS) a->reason = endless;
   a->first = false;
-  if (status == SCREE_OK && !a->reason) status = list_pairs(a, error);
+  if (a->reason) return SCREE_OK;
+  SCREE_TRY(list_pairs(a, error));
   bool any = found.count > 0;
-  scree_free(found.items);
-  if (status != SCREE_OK || a->reason) return status;
   if (!place_all(a, &any)) return no_memory(error);
   *done = !any;
   if (*done) return SCREE_OK;
-  status = merge_vertices(a, old_count, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(merge_vertices(a, old_count, error));
   order_edge_points(a);
   order_facet_lists(a);
   return cut_all(a, error);
@@ -659,14 +646,12 @@ static scree_status finish(arranger *a, scree_arrangement *arrangement, scree_er
   scree_mesh mesh;
   int32_t *weights = NULL;
   if (!make_mesh(a, &mesh)) return no_memory(error);
-  SCREE_ALLOC_OR(weights, a->facets.count, error, out_of_memory);
+  SCREE_TRY_ALLOC(weights, a->facets.count, error);
   for (size_t t = 0; t < a->facets.count; t++) weights[t] = a->facets.items[t].weight;
   *arrangement = (scree_arrangement){mesh, weights};
   a->positions.items = NULL;
   a->triangles.items = NULL;
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_arrange(const scree_mesh *mesh, const scree_progress *progress,

@@ -95,19 +95,12 @@ static void take_topology(const scree_topology *t, scree_check *check) {
   defect[SCREE_DEFECT_UNUSED_VERTEX] = t->unused_vertex_count;
 }
 
-static bool all_closed(const scree_shells *shells) {
-  for (size_t i = 0; i < shells->count; i++)
-    if (!shells->items[i].closed) return false;
-  return true;
-}
-
 static scree_status count_meetings(const scree_facet_tree *tree, const scree_adjacency *adjacency,
                                    const scree_shells *shells, const scree_progress *progress,
                                    scree_shell_pairs *pairs, scree_check *check,
                                    scree_error *error) {
-  scree_meetings found;
-  scree_status status = scree_facet_meetings(tree, SCREE_PAIR_LIMIT, progress, &found, error);
-  if (status != SCREE_OK) return status;
+  SCREE_CLEANUP(scree_free_at) scree_meetings found = {0};
+  SCREE_TRY(scree_facet_meetings(tree, SCREE_PAIR_LIMIT, progress, &found, error));
   check->intersections_known = true;
   if (found.truncated) {
     check->too_many_pairs = true;
@@ -119,13 +112,10 @@ static scree_status count_meetings(const scree_facet_tree *tree, const scree_adj
                    : meet == SCREE_MEET_TOUCH ? SCREE_DEFECT_TOUCHING_PAIR
                                               : SCREE_DEFECT_OVERLAPPING_PAIR]++;
   }
-  status = scree_shell_pairs_find(shells, &found, pairs, error);
+  SCREE_TRY(scree_shell_pairs_find(shells, &found, pairs, error));
   check->defects[SCREE_DEFECT_OVERLAPPING_SHELLS] = pairs->count;
-  if (status == SCREE_OK && found.count && all_closed(shells))
-    status =
-        scree_union_volume(tree, adjacency, &found, &check->volume, &check->volume_known, error);
-  scree_free(found.items);
-  return status;
+  if (found.count == 0 || !scree_shells_closed(shells)) return SCREE_OK;
+  return scree_union_volume(tree, adjacency, &found, &check->volume, &check->volume_known, error);
 }
 
 /* An inward shell that meets others may be a pocket in the wall of one: where the union's volume is
@@ -191,20 +181,15 @@ static scree_status find_connection(const scree_mesh *mesh, const scree_adjacenc
                                     scree_check *check, scree_shells *shells, scree_error *error) {
   connection c = {.mesh = mesh, .adjacency = adjacency};
   scree_parallel_for(WALKS, 1, connect, &c);
-  scree_status status = SCREE_OK;
-  for (int walk = 0; walk < WALKS && status == SCREE_OK; walk++) {
-    status = c.status[walk];
-    if (status != SCREE_OK && error) *error = c.error[walk];
+  *shells = c.shells;
+  for (int walk = 0; walk < WALKS; walk++) {
+    if (c.status[walk] == SCREE_OK) continue;
+    if (error) *error = c.error[walk];
+    return c.status[walk];
   }
-  if (status == SCREE_OK)
-    status = scree_topology_finish(mesh, adjacency, false, &c.topology, error);
-  if (status != SCREE_OK) {
-    scree_shells_free(&c.shells);
-    return status;
-  }
+  SCREE_TRY(scree_topology_finish(mesh, adjacency, false, &c.topology, error));
   take_topology(&c.topology, check);
   check->defects[SCREE_DEFECT_SHARP_EDGE] = c.sharp_count;
-  *shells = c.shells;
   return SCREE_OK;
 }
 
@@ -217,33 +202,25 @@ static bool fans_are_whole(const scree_check *check) {
 static scree_status examine(const scree_mesh *mesh, const scree_check_options *options,
                             const scree_progress *progress, scree_check *check,
                             scree_error *error) {
-  scree_adjacency adjacency = {0};
-  scree_shells shells = {0};
-  scree_shell_pairs pairs = {0};
-  scree_facet_tree tree = {0};
-  scree_status status = scree_adjacency_build(mesh, &adjacency, error);
-  if (status != SCREE_OK) return status;
-  status = find_connection(mesh, &adjacency, check, &shells, error);
+  SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
+  SCREE_CLEANUP(scree_shells_free) scree_shells shells = {0};
+  SCREE_CLEANUP(scree_free_at) scree_shell_pairs pairs = {0};
+  SCREE_CLEANUP(scree_facet_tree_free) scree_facet_tree tree = {0};
+  SCREE_TRY(scree_adjacency_build(mesh, &adjacency, error));
+  SCREE_TRY(find_connection(mesh, &adjacency, check, &shells, error));
   check->shell_count = shells.count;
-  if (status != SCREE_OK || mesh->triangle_count == 0) goto done;
+  if (mesh->triangle_count == 0) return SCREE_OK;
   bool clear = false; /* the tree is dear: a clean scan of one shell does without */
-  if (status == SCREE_OK && options->intersections && shells.count == 1 &&
-      mesh->triangle_count >= PROOF_FACETS)
-    status = scree_facets_apart(mesh, fans_are_whole(check) ? &adjacency : NULL, &clear, error);
+  if (options->intersections && shells.count == 1 && mesh->triangle_count >= PROOF_FACETS)
+    SCREE_TRY(scree_facets_apart(mesh, fans_are_whole(check) ? &adjacency : NULL, &clear, error));
   check->intersections_known = clear;
-  if (status == SCREE_OK && ((options->intersections && !clear) || shells.count > 1))
-    status = scree_facet_tree_build(mesh, &tree, error);
-  if (status == SCREE_OK && options->intersections && !clear)
-    status = count_meetings(&tree, &adjacency, &shells, progress, &pairs, check, error);
-  if (status != SCREE_OK || check->too_many_pairs) goto done;
-  if (shells.count > 1) status = scree_shells_wind(&shells, &pairs, &tree, error);
-  if (status == SCREE_OK) count_kinds(&shells, check);
-done:
-  scree_adjacency_free(&adjacency);
-  scree_facet_tree_free(&tree);
-  scree_shells_free(&shells);
-  scree_free(pairs.keys);
-  return status;
+  bool look = options->intersections && !clear;
+  if (look || shells.count > 1) SCREE_TRY(scree_facet_tree_build(mesh, &tree, error));
+  if (look) SCREE_TRY(count_meetings(&tree, &adjacency, &shells, progress, &pairs, check, error));
+  if (check->too_many_pairs) return SCREE_OK;
+  if (shells.count > 1) SCREE_TRY(scree_shells_wind(&shells, &pairs, &tree, error));
+  count_kinds(&shells, check);
+  return SCREE_OK;
 }
 
 /* ---- The verdict ---- */
@@ -325,8 +302,7 @@ scree_status scree_mesh_check(const scree_mesh *mesh, const scree_check_options 
                               scree_error *error) {
   scree_check_options defaults = scree_default_check_options();
   scree_check made = {.triangle_count = mesh->triangle_count, .vertex_count = mesh->vertex_count};
-  scree_status status = verify_indices(mesh, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(verify_indices(mesh, error));
   for (size_t v = 0; v < mesh->vertex_count; v++)
     made.defects[SCREE_DEFECT_BAD_COORDINATE] += scree_vertex_is_bad(mesh->positions + 3 * v);
   bool finite = !made.defects[SCREE_DEFECT_BAD_COORDINATE];
@@ -335,8 +311,7 @@ scree_status scree_mesh_check(const scree_mesh *mesh, const scree_check_options 
     scree_mesh_bounds(mesh, &low, &high);
     vec3_store(made.size, vec3_sub(high, low));
   }
-  if (finite) status = examine(mesh, options ? options : &defaults, progress, &made, error);
-  if (status != SCREE_OK) return status;
+  if (finite) SCREE_TRY(examine(mesh, options ? options : &defaults, progress, &made, error));
   conclude(&made);
   *check = made;
   return SCREE_OK;

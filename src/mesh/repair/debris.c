@@ -45,27 +45,18 @@ static void free_nest(nest *n) {
 }
 
 static scree_status find_nest(const scree_repair *r, nest *n, scree_error *error) {
-  *n = (nest){0};
-  scree_status status = scree_adjacency_build(&r->mesh, &n->adjacency, error);
-  if (status == SCREE_OK) status = scree_shells_find(&r->mesh, &n->adjacency, &n->shells, error);
-  if (status == SCREE_OK && n->shells.count > 1)
-    status = scree_facet_tree_build(&r->mesh, &n->tree, error);
-  if (status != SCREE_OK) goto failed;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(n->drop, n->shells.count, error, failed);
-  memset(n->drop, 0, n->shells.count);
+  SCREE_TRY(scree_adjacency_build(&r->mesh, &n->adjacency, error));
+  SCREE_TRY(scree_shells_find(&r->mesh, &n->adjacency, &n->shells, error));
+  if (n->shells.count > 1) SCREE_TRY(scree_facet_tree_build(&r->mesh, &n->tree, error));
+  SCREE_TRY_ALLOC_ZERO(n->drop, n->shells.count, error);
   for (size_t i = 0; i < n->shells.count; i++)
     n->largest_area = fmax(n->largest_area, n->shells.items[i].area);
   return SCREE_OK;
-failed:
-  free_nest(n);
-  return status;
 }
 
 /* Removes the facets of the shells marked. What they enclosed is not lost by cutting or merging. */
 static scree_status drop_shells(scree_repair *r, const nest *n, scree_error *error) {
-  bool *marked = NULL;
-  SCREE_ALLOC_OR(marked, r->mesh.triangle_count, error, out_of_memory);
+  SCREE_SCRATCH(bool, marked, r->mesh.triangle_count, error);
   for (size_t i = 0; i < n->shells.count; i++) {
     const scree_shell *s = &n->shells.items[i];
     if (n->drop[i] && s->closed && scree_shell_kind_of(s) != SCREE_SHELL_NESTED)
@@ -74,10 +65,7 @@ static scree_status drop_shells(scree_repair *r, const nest *n, scree_error *err
   for (size_t t = 0; t < r->mesh.triangle_count; t++)
     marked[t] = n->shells.label[t] != SCREE_NO_SHELL && n->drop[n->shells.label[t]];
   scree_repair_remove(r, marked);
-  scree_free(marked);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static bool is_flat_sheet(const scree_shell *s) {
@@ -86,9 +74,8 @@ static bool is_flat_sheet(const scree_shell *s) {
 
 /* Small open shells and, beside a larger one that is none, flat sheets, as labels are in scans. */
 scree_status scree_repair_scraps(scree_repair *r, scree_error *error) {
-  nest n;
-  scree_status status = find_nest(r, &n, error);
-  if (status != SCREE_OK) return status;
+  SCREE_CLEANUP(free_nest) nest n = {0};
+  SCREE_TRY(find_nest(r, &n, error));
   size_t count = 0;
   double largest_body = 0;
   for (size_t i = 0; i < n.shells.count; i++)
@@ -101,10 +88,9 @@ scree_status scree_repair_scraps(scree_repair *r, scree_error *error) {
                 (s->area < least || (least > 0 && is_flat_sheet(s) && s->area < largest_body));
     count += n.drop[i];
   }
-  if (count) status = drop_shells(r, &n, error);
-  if (status == SCREE_OK) r->report.done[SCREE_REPAIR_DROP_DEBRIS] += count;
-  free_nest(&n);
-  return status;
+  if (count) SCREE_TRY(drop_shells(r, &n, error));
+  r->report.done[SCREE_REPAIR_DROP_DEBRIS] += count;
+  return SCREE_OK;
 }
 
 /* ---- Outside out ---- */
@@ -112,10 +98,7 @@ scree_status scree_repair_scraps(scree_repair *r, scree_error *error) {
 static void turn_shells(scree_repair *r, nest *n, const bool *turn) {
   for (size_t t = 0; t < r->mesh.triangle_count; t++) {
     uint32_t label = n->shells.label[t];
-    if (label == SCREE_NO_SHELL || !turn[label]) continue;
-    uint32_t *corner = r->mesh.triangles + 3 * t, keep = corner[1];
-    corner[1] = corner[2];
-    corner[2] = keep;
+    if (label != SCREE_NO_SHELL && turn[label]) scree_corners_turn(r->mesh.triangles + 3 * t);
   }
   for (size_t i = 0; i < n->shells.count; i++) {
     if (!turn[i]) continue;
@@ -125,14 +108,11 @@ static void turn_shells(scree_repair *r, nest *n, const bool *turn) {
 }
 
 static scree_status find_pairs(const scree_repair *r, nest *n, scree_error *error) {
-  scree_meetings found;
+  SCREE_CLEANUP(scree_free_at) scree_meetings found = {0};
   if (!r->options->intersections || r->untangled || n->shells.count < 2) return SCREE_OK;
-  scree_status status = scree_facet_meetings(&n->tree, MEETING_LIMIT, r->progress, &found, error);
-  if (status != SCREE_OK) return status;
-  status = scree_shell_pairs_find(&n->shells, &found, &n->pairs, error);
+  SCREE_TRY(scree_facet_meetings(&n->tree, MEETING_LIMIT, r->progress, &found, error));
   n->all_tangled = found.truncated;
-  scree_free(found.items);
-  return status;
+  return scree_shell_pairs_find(&n->shells, &found, &n->pairs, error);
 }
 
 static scree_status wind_shells(nest *n, scree_error *error) {
@@ -173,21 +153,17 @@ static bool mark_inverted(const nest *n, bool *turn) {
 }
 
 static scree_status turn_outward(scree_repair *r, nest *n, scree_error *error) {
-  bool *turn = NULL;
-  SCREE_ALLOC_OR(turn, n->shells.count, error, out_of_memory);
-  scree_status status = wind_shells(n, error);
-  if (status == SCREE_OK && mark_inverted_nests(n, turn)) {
+  SCREE_SCRATCH(bool, turn, n->shells.count, error);
+  SCREE_TRY(wind_shells(n, error));
+  if (mark_inverted_nests(n, turn)) {
     turn_shells(r, n, turn);
-    status = wind_shells(n, error);
+    SCREE_TRY(wind_shells(n, error));
   }
-  for (int i = 0; i < TURNS && status == SCREE_OK && mark_inverted(n, turn); i++) {
+  for (int i = 0; i < TURNS && mark_inverted(n, turn); i++) {
     turn_shells(r, n, turn);
-    status = wind_shells(n, error);
+    SCREE_TRY(wind_shells(n, error));
   }
-  scree_free(turn);
-  return status;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
+  return SCREE_OK;
 }
 
 /* ---- What stays ---- */
@@ -237,10 +213,9 @@ static int compare_cavities(const void *a, const void *b) {
 
 /* Marks them from the smallest on, as long as all that was filled stays under the share. */
 static scree_status fill_cavities(scree_repair *r, nest *n, scree_error *error) {
-  cavity *cavities = NULL;
   size_t count = 0;
   double held = 0, *filled = &r->report.filled_volume;
-  SCREE_ALLOC_OR(cavities, n->shells.count, error, out_of_memory);
+  SCREE_SCRATCH(cavity, cavities, n->shells.count, error);
   for (size_t i = 0; i < n->shells.count; i++) {
     const scree_shell *s = &n->shells.items[i];
     scree_shell_kind kind = scree_shell_kind_of(s);
@@ -255,35 +230,24 @@ static scree_status fill_cavities(scree_repair *r, nest *n, scree_error *error) 
     n->drop[cavities[i].shell] = true;
     r->report.done[SCREE_REPAIR_FILL_CAVITY]++;
   }
-  scree_free(cavities);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_repair_outward(scree_repair *r, scree_error *error) {
-  nest n;
-  scree_status status = find_nest(r, &n, error);
-  if (status != SCREE_OK) return status;
-  status = find_pairs(r, &n, error);
-  if (status == SCREE_OK) status = turn_outward(r, &n, error);
-  free_nest(&n);
-  return status;
+  SCREE_CLEANUP(free_nest) nest n = {0};
+  SCREE_TRY(find_nest(r, &n, error));
+  SCREE_TRY(find_pairs(r, &n, error));
+  return turn_outward(r, &n, error);
 }
 
 scree_status scree_repair_shells(scree_repair *r, scree_error *error) {
-  nest n;
-  scree_status status = find_nest(r, &n, error);
-  if (status != SCREE_OK) return status;
-  status = find_pairs(r, &n, error);
-  if (status == SCREE_OK) status = turn_outward(r, &n, error);
-  if (status == SCREE_OK) {
-    judge_shells(r, &n);
-    status = fill_cavities(r, &n, error);
-  }
-  if (status == SCREE_OK) status = drop_shells(r, &n, error);
-  free_nest(&n);
-  return status;
+  SCREE_CLEANUP(free_nest) nest n = {0};
+  SCREE_TRY(find_nest(r, &n, error));
+  SCREE_TRY(find_pairs(r, &n, error));
+  SCREE_TRY(turn_outward(r, &n, error));
+  judge_shells(r, &n);
+  SCREE_TRY(fill_cavities(r, &n, error));
+  return drop_shells(r, &n, error);
 }
 
 /* ---- Cutting ---- */
@@ -314,28 +278,18 @@ static double marked_share(const scree_mesh *mesh, const bool *marked) {
 }
 
 scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, scree_error *error) {
-  nest n;
-  scree_meetings found = {0};
-  bool *marked = NULL, *vertex = NULL;
+  SCREE_CLEANUP(free_nest) nest n = {0};
+  SCREE_CLEANUP(scree_free_at) scree_meetings found = {0};
   *cut_count = 0;
-  scree_status status = find_nest(r, &n, error);
-  if (status != SCREE_OK) return status;
-  status = scree_mesh_meetings(&r->mesh, MEETING_LIMIT, r->progress, &found, error);
-  if (status != SCREE_OK || found.truncated) goto done;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(marked, r->mesh.triangle_count, error, done);
-  SCREE_ALLOC_OR(vertex, r->mesh.vertex_count, error, done);
-  status = SCREE_OK;
-  memset(marked, 0, r->mesh.triangle_count);
+  SCREE_TRY(find_nest(r, &n, error));
+  SCREE_TRY(scree_mesh_meetings(&r->mesh, MEETING_LIMIT, r->progress, &found, error));
+  if (found.truncated) return SCREE_OK;
+  SCREE_SCRATCH_ZERO(bool, marked, r->mesh.triangle_count, error);
+  SCREE_SCRATCH(bool, vertex, r->mesh.vertex_count, error);
   mark_meetings(&found, &n.shells, marked);
-  if (found.count + scree_sharp_edges(&r->mesh, &n.adjacency, marked) == 0) goto done;
+  if (found.count + scree_sharp_edges(&r->mesh, &n.adjacency, marked) == 0) return SCREE_OK;
   for (int i = 0; i < rings; i++) grow_marks(&r->mesh, marked, vertex);
   if (marked_share(&r->mesh, marked) <= CUT_SHARE) *cut_count = scree_repair_remove(r, marked);
   r->report.done[SCREE_REPAIR_CUT_INTERSECTION] += *cut_count;
-done:
-  scree_free(found.items);
-  scree_free(marked);
-  scree_free(vertex);
-  free_nest(&n);
-  return status;
+  return SCREE_OK;
 }

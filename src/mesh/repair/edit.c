@@ -99,12 +99,8 @@ static corner_key key_of(const scree_mesh *mesh, size_t t) {
 
 scree_status scree_facets_drop_doubles(scree_mesh *mesh, size_t *dropped, scree_error *error) {
   size_t count = mesh->triangle_count;
-  corner_key *keys = NULL;
-  bool *marked = NULL;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(keys, count, error, done);
-  SCREE_ALLOC_OR(marked, count, error, done);
-  memset(marked, 0, count);
+  SCREE_SCRATCH(corner_key, keys, count, error);
+  SCREE_SCRATCH_ZERO(bool, marked, count, error);
   for (size_t t = 0; t < count; t++) keys[t] = key_of(mesh, t);
   qsort(keys, count, sizeof *keys, compare_corner_keys);
   for (size_t i = 1; i < count; i++)
@@ -112,9 +108,5 @@ scree_status scree_facets_drop_doubles(scree_mesh *mesh, size_t *dropped, scree_
         keys[i].high == keys[i - 1].high)
       marked[keys[i].facet] = true;
   *dropped = scree_facets_drop(mesh, marked);
-  status = SCREE_OK;
-done:
-  scree_free(keys);
-  scree_free(marked);
-  return status;
+  return SCREE_OK;
 }

@@ -113,7 +113,7 @@ static void take_rim_vertex(patch *p, size_t i, double *size) {
 static scree_status take_rim(patch *p, scree_error *error) {
   p->rim_count = p->filling->count;
   p->least_area = 1e-24 * p->r->diagonal * p->r->diagonal;
-  SCREE_ALLOC_OR(p->outer, p->rim_count, error, out_of_memory);
+  SCREE_TRY_ALLOC(p->outer, p->rim_count, error);
   for (size_t i = 0; i < p->rim_count; i++) {
     double size;
     take_rim_vertex(p, i, &size);
@@ -122,8 +122,6 @@ static scree_status take_rim(patch *p, scree_error *error) {
       return scree_repair_no_memory(error);
   }
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 typedef struct side {
@@ -140,8 +138,7 @@ static int compare_sides(const void *a, const void *b) {
 /* Joins the facets along their common sides. */
 static scree_status join_facets(patch *p, scree_error *error) {
   size_t count = 3 * p->facets.count;
-  side *sides = NULL;
-  SCREE_ALLOC_OR(sides, count, error, out_of_memory);
+  SCREE_SCRATCH(side, sides, count, error);
   for (uint32_t i = 0; i < count; i++) {
     const facet *f = &p->facets.items[i / 3];
     uint32_t a = f->vertex[i % 3], b = f->vertex[(i + 1) % 3];
@@ -154,10 +151,7 @@ static scree_status join_facets(patch *p, scree_error *error) {
     p->facets.items[x->facet].next[x->corner] = y->facet;
     p->facets.items[y->facet].next[y->corner] = x->facet;
   }
-  scree_free(sides);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 typedef struct name {
@@ -173,7 +167,7 @@ static int compare_names(const void *a, const void *b) {
 static scree_status take_facets(patch *p, scree_error *error) {
   const scree_mesh *m = &p->r->mesh;
   name *names = NULL;
-  SCREE_ALLOC_OR(names, p->rim_count, error, out_of_memory);
+  SCREE_TRY_ALLOC(names, p->rim_count, error);
   for (uint32_t i = 0; i < p->rim_count; i++) names[i] = (name){p->filling->vertex[i], i};
   qsort(names, p->rim_count, sizeof *names, compare_names);
   bool room = SCREE_RESERVE(&p->facets, m->triangle_count - p->filling->first_facet);
@@ -189,8 +183,6 @@ static scree_status take_facets(patch *p, scree_error *error) {
   scree_free(names);
   if (!room) return scree_repair_no_memory(error);
   return join_facets(p, error);
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* ---- Swapping ---- */
@@ -362,12 +354,9 @@ static bool is_told_here(const patch *p, uint32_t t, int k) {
 
 static scree_status alloc_laplacian(const patch *p, laplacian *l, scree_error *error) {
   l->rows = p->at.count;
-  SCREE_ALLOC_OR(l->begin, l->rows + 2, error, out_of_memory);
-  SCREE_ALLOC_OR(l->constant, l->rows, error, out_of_memory);
-  SCREE_ALLOC_OR(l->area, l->rows, error, out_of_memory);
-  memset(l->begin, 0, (l->rows + 2) * sizeof *l->begin);
-  memset(l->constant, 0, l->rows * sizeof *l->constant);
-  memset(l->area, 0, l->rows * sizeof *l->area);
+  SCREE_TRY_ALLOC_ZERO(l->begin, l->rows + 2, error);
+  SCREE_TRY_ALLOC_ZERO(l->constant, l->rows, error);
+  SCREE_TRY_ALLOC_ZERO(l->area, l->rows, error);
   for (uint32_t t = 0; t < p->facets.count; t++)
     for (int k = 0; k < 3; k++) {
       if (!is_told_here(p, t, k)) continue;
@@ -376,11 +365,9 @@ static scree_status alloc_laplacian(const patch *p, laplacian *l, scree_error *e
     }
   for (size_t v = 0; v < l->rows; v++) l->begin[v + 2] += l->begin[v + 1] + 1;
   l->capacity = l->begin[l->rows + 1];
-  SCREE_ALLOC_OR(l->column, l->capacity, error, out_of_memory);
-  SCREE_ALLOC_OR(l->entry, l->capacity, error, out_of_memory);
+  SCREE_TRY_ALLOC(l->column, l->capacity, error);
+  SCREE_TRY_ALLOC(l->entry, l->capacity, error);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static double weight_of_edge(const patch *p, uint32_t t, int k) {
@@ -417,8 +404,7 @@ static void scale_row(const patch *p, laplacian *l, uint32_t v) {
 }
 
 static scree_status build_laplacian(const patch *p, laplacian *l, scree_error *error) {
-  scree_status status = alloc_laplacian(p, l, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(alloc_laplacian(p, l, error));
   for (size_t v = 0; v < l->rows; v++) l->begin[v + 1]++; /* the first is its own */
   for (uint32_t t = 0; t < p->facets.count; t++)
     for (int k = 0; k < 3; k++) {
@@ -499,26 +485,16 @@ static void solve(const laplacian *l, size_t rim_count, const scratch *s, vec3 *
 }
 
 static scree_status smooth(patch *p, scree_error *error) {
-  laplacian l = {.rows = 0};
-  scratch s = {NULL, NULL, NULL, NULL, NULL};
-  scree_status status = build_laplacian(p, &l, error);
-  if (status != SCREE_OK) goto done;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(s.residual, l.rows, error, done);
-  SCREE_ALLOC_OR(s.towards, l.rows, error, done);
-  SCREE_ALLOC_OR(s.step, l.rows, error, done);
-  SCREE_ALLOC_OR(s.image, l.rows, error, done);
-  SCREE_ALLOC_OR(s.diagonal, l.rows, error, done);
+  SCREE_CLEANUP(free_laplacian) laplacian l = {.rows = 0};
+  SCREE_TRY(build_laplacian(p, &l, error));
+  SCREE_SCRATCH(vec3, residual, l.rows, error);
+  SCREE_SCRATCH(vec3, towards, l.rows, error);
+  SCREE_SCRATCH(vec3, step, l.rows, error);
+  SCREE_SCRATCH(vec3, image, l.rows, error);
+  SCREE_SCRATCH(double, diagonal, l.rows, error);
+  scratch s = {residual, towards, step, image, diagonal};
   solve(&l, p->rim_count, &s, p->at.items);
-  status = SCREE_OK;
-done:
-  scree_free(s.residual);
-  scree_free(s.towards);
-  scree_free(s.step);
-  scree_free(s.image);
-  scree_free(s.diagonal);
-  free_laplacian(&l);
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- The whole ---- */
@@ -535,8 +511,7 @@ static bool is_good(const patch *p) {
 /* The filling in the mesh makes way for the patch. */
 static scree_status put_back(patch *p, scree_error *error) {
   scree_mesh *m = &p->r->mesh;
-  uint32_t *index = NULL;
-  SCREE_ALLOC_OR(index, p->at.count, error, out_of_memory);
+  SCREE_SCRATCH(uint32_t, index, p->at.count, error);
   bool room = true;
   for (size_t v = 0; room && v < p->at.count; v++) {
     double at[3];
@@ -551,31 +526,26 @@ static scree_status put_back(patch *p, scree_error *error) {
     const uint32_t *v = p->facets.items[t].vertex;
     room = scree_repair_add_facet(p->r, index[v[0]], index[v[1]], index[v[2]]);
   }
-  scree_free(index);
   return room ? SCREE_OK : scree_repair_no_memory(error);
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_repair_fair(scree_repair *r, const scree_filling *filling, bool *faired,
                                scree_error *error) {
-  patch p = {.filling = filling, .r = r};
+  SCREE_CLEANUP(free_patch) patch p = {.filling = filling, .r = r};
   *faired = false;
-  scree_status status = take_rim(&p, error);
-  if (status == SCREE_OK) status = take_facets(&p, error);
+  SCREE_TRY(take_rim(&p, error));
+  SCREE_TRY(take_facets(&p, error));
   double coarse = 1;
   while (coarse * COARSEST < (double)filling->count) coarse *= 2;
-  for (; status == SCREE_OK && coarse >= 1; coarse /= 2) {
-    status = refine(&p, coarse, error);
-    for (int i = 0; i < SOLUTIONS && status == SCREE_OK; i++) {
-      status = smooth(&p, error);
+  for (; coarse >= 1; coarse /= 2) {
+    SCREE_TRY(refine(&p, coarse, error));
+    for (int i = 0; i < SOLUTIONS; i++) {
+      SCREE_TRY(smooth(&p, error));
       relax(&p);
     }
   }
-  if (status == SCREE_OK && is_good(&p) && p.at.count > p.rim_count) {
-    status = put_back(&p, error);
-    *faired = status == SCREE_OK;
-  }
-  free_patch(&p);
-  return status;
+  if (!is_good(&p) || p.at.count == p.rim_count) return SCREE_OK;
+  SCREE_TRY(put_back(&p, error));
+  *faired = true;
+  return SCREE_OK;
 }

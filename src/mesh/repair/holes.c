@@ -146,18 +146,11 @@ static bool add_filling(scree_repair *r, const loop *l, const cell *table) {
 
 static scree_status fill_best(scree_repair *r, const loop *l, bool *filled, scree_error *error) {
   size_t n = l->count;
-  cell *table = NULL;
-  scree_status status = SCREE_OK;
-  SCREE_ALLOC_OR(table, n * n, error, out_of_memory);
-  memset(table, 0, n * n * sizeof *table);
+  SCREE_SCRATCH_ZERO(cell, table, n * n, error);
   for (size_t span = 2; span < n; span++)
     for (size_t i = 0; i + span < n; i++) best_apex(l, table, i, i + span);
   *filled = table[n - 1].apex != 0;
-  if (*filled && !add_filling(r, l, table)) status = scree_repair_no_memory(error);
-  scree_free(table);
-  return status;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
+  return *filled && !add_filling(r, l, table) ? scree_repair_no_memory(error) : SCREE_OK;
 }
 
 /* ---- Ear by ear ---- */
@@ -178,23 +171,6 @@ typedef struct ears {
   double *cost;
 } ears;
 
-static scree_status alloc_ears(ears *e, size_t n, scree_error *error) {
-  SCREE_ALLOC_OR(e->next, n, error, out_of_memory);
-  SCREE_ALLOC_OR(e->previous, n, error, out_of_memory);
-  SCREE_ALLOC_OR(e->across, n, error, out_of_memory);
-  SCREE_ALLOC_OR(e->cost, n, error, out_of_memory);
-  return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
-}
-
-static void free_ears(ears *e) {
-  scree_free(e->next);
-  scree_free(e->previous);
-  scree_free(e->across);
-  scree_free(e->cost);
-}
-
 static uint32_t cheapest_ear(const loop *l, const ears *e, uint32_t start, size_t left) {
   uint32_t best = UINT32_MAX, b = start;
   for (size_t i = 0; i < left; i++, b = e->next[b]) {
@@ -208,10 +184,12 @@ static uint32_t cheapest_ear(const loop *l, const ears *e, uint32_t start, size_
 /* O(n^2) and a search per ear considered; nothing is added where no ear can be cut. */
 static scree_status fill_by_ears(scree_repair *r, const loop *l, bool *filled, scree_error *error) {
   size_t n = l->count, first_facet = r->mesh.triangle_count;
-  ears e = {0};
+  SCREE_SCRATCH(uint32_t, next, n, error);
+  SCREE_SCRATCH(uint32_t, previous, n, error);
+  SCREE_SCRATCH(vec3, across, n, error);
+  SCREE_SCRATCH(double, costs, n, error);
+  ears e = {next, previous, across, costs};
   uint32_t b = 0;
-  scree_status status = alloc_ears(&e, n, error);
-  if (status != SCREE_OK) goto done;
   for (uint32_t i = 0; i < n; i++) {
     e.next[i] = i + 1 < n ? i + 1 : 0;
     e.previous[i] = i ? i - 1 : (uint32_t)n - 1;
@@ -222,13 +200,11 @@ static scree_status fill_by_ears(scree_repair *r, const loop *l, bool *filled, s
     uint32_t ear = cheapest_ear(l, &e, b, left);
     if (ear == UINT32_MAX) {
       r->mesh.triangle_count = first_facet;
-      goto done;
+      return SCREE_OK;
     }
     uint32_t a = e.previous[ear], c = e.next[ear];
-    if (!scree_repair_add_facet(r, l->vertex[a], l->vertex[ear], l->vertex[c])) {
-      status = scree_repair_no_memory(error);
-      goto done;
-    }
+    if (!scree_repair_add_facet(r, l->vertex[a], l->vertex[ear], l->vertex[c]))
+      return scree_repair_no_memory(error);
     e.across[a] = normal_of(l, a, ear, c);
     e.next[a] = c;
     e.previous[c] = b = a;
@@ -236,9 +212,7 @@ static scree_status fill_by_ears(scree_repair *r, const loop *l, bool *filled, s
     e.cost[c] = ear_cost(l, e.next, e.previous, e.across, c);
   }
   *filled = true;
-done:
-  free_ears(&e);
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- Loops ---- */
@@ -287,15 +261,13 @@ static scree_status make_smooth(hole_work *w, const loop *l, size_t first, scree
   smooth_filling s = {.begin = first, .plain_count = r->mesh.triangle_count - first};
   scree_filling filling = {l->adjacency, l->vertex, l->half_edge, l->count, first};
   bool faired = false;
-  SCREE_ALLOC_OR(s.plain, 3 * s.plain_count, error, out_of_memory);
+  SCREE_TRY_ALLOC(s.plain, 3 * s.plain_count, error);
   memcpy(s.plain, r->mesh.triangles + 3 * first, 3 * s.plain_count * sizeof *s.plain);
   scree_status status = scree_repair_fair(r, &filling, &faired, error);
   s.end = r->mesh.triangle_count;
   if (status == SCREE_OK && faired && SCREE_PUSH(&w->smooth, s)) return SCREE_OK;
   scree_free(s.plain);
   return status == SCREE_OK && faired ? scree_repair_no_memory(error) : status;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* The mean edge's share that vertices of a plane rim may lie off the plane. */
@@ -328,42 +300,36 @@ static bool stands_on_plane(const loop *l) {
 static scree_status fill_loop(hole_work *w, const uint32_t *half_edges, size_t count,
                               scree_error *error) {
   scree_repair *r = w->r;
-  loop l = {.r = r, .adjacency = &w->adjacency, .count = count};
-  scree_status status = SCREE_OUT_OF_MEMORY;
   bool filled = false;
   size_t before = r->mesh.triangle_count;
   if (count < 3 || count > w->edge_limit || count > MOST_EDGES) return SCREE_OK;
   if (count == 3 && half_edges[0] / 3 == half_edges[1] / 3) return SCREE_OK; /* a lone facet */
-  SCREE_ALLOC_OR(l.vertex, count, error, done);
-  SCREE_ALLOC_OR(l.half_edge, count, error, done);
+  SCREE_SCRATCH(uint32_t, vertex, count, error);
+  SCREE_SCRATCH(uint32_t, half_edge, count, error);
+  loop l = {r, &w->adjacency, vertex, half_edge, count};
   for (size_t i = 0; i < count; i++) {
     /* the filling runs backwards: from the end of each half-edge to its start */
     uint32_t h = half_edges[count - 1 - i];
-    l.vertex[i] = scree_half_edge_to(&r->mesh, h);
-    l.half_edge[i] = h;
+    vertex[i] = scree_half_edge_to(&r->mesh, h);
+    half_edge[i] = h;
   }
-  status =
-      count <= EXACT_EDGES ? fill_best(r, &l, &filled, error) : fill_by_ears(r, &l, &filled, error);
-  if (status == SCREE_OK && filled && count > SMOOTH_EDGES && r->options->fill_large_holes &&
+  SCREE_TRY((count <= EXACT_EDGES ? fill_best : fill_by_ears)(r, &l, &filled, error));
+  if (filled && count > SMOOTH_EDGES && r->options->fill_large_holes &&
       !r->options->flat_large_holes && !stands_on_plane(&l))
-    status = make_smooth(w, &l, before, error);
+    SCREE_TRY(make_smooth(w, &l, before, error));
   if (filled) {
     r->report.done[SCREE_REPAIR_FILL_HOLE]++;
     r->report.done[SCREE_REPAIR_FILL_FACET] += r->mesh.triangle_count - before;
   }
-done:
-  scree_free(l.vertex);
-  scree_free(l.half_edge);
-  return status;
+  return SCREE_OK;
 }
 
 /* Walks the loop from `start`, filling each part that closes on itself. */
 static scree_status walk(hole_work *w, uint32_t start, scree_error *error) {
   const scree_repair *r = w->r;
   chain *c = &w->chain;
-  scree_status status = SCREE_OK;
   c->count = 0;
-  for (uint32_t h = start; status == SCREE_OK && h != SCREE_NO_HALF_EDGE && !w->seen[h];
+  for (uint32_t h = start; h != SCREE_NO_HALF_EDGE && !w->seen[h];
        h = follow(&r->mesh, &w->adjacency, h)) {
     w->seen[h] = true;
     if (c->count == 0) w->place[r->mesh.triangles[h]] = 1;
@@ -374,7 +340,7 @@ static scree_status walk(hole_work *w, uint32_t start, scree_error *error) {
       continue;
     }
     size_t from = w->place[end] - 1;
-    status = fill_loop(w, c->items + from, c->count - from, error);
+    SCREE_TRY(fill_loop(w, c->items + from, c->count - from, error));
     for (size_t i = from + 1; i < c->count; i++) w->place[r->mesh.triangles[c->items[i]]] = 0;
     c->count = from;
   }
@@ -383,7 +349,7 @@ static scree_status walk(hole_work *w, uint32_t start, scree_error *error) {
     w->place[scree_half_edge_to(&r->mesh, c->items[i])] = 0;
   }
   w->place[r->mesh.triangles[start]] = 0;
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- Smooth fillings that meet something ---- */
@@ -400,8 +366,7 @@ static scree_status take_back(hole_work *w, const scree_meetings *found, scree_e
   scree_repair *r = w->r;
   size_t before = r->mesh.triangle_count, *done = r->report.done;
   bool *marked = NULL;
-  SCREE_ALLOC_OR(marked, before, error, out_of_memory);
-  memset(marked, 0, before);
+  SCREE_TRY_ALLOC_ZERO(marked, before, error);
   for (size_t i = 0; i < w->smooth.count; i++) {
     smooth_filling *s = &w->smooth.items[i];
     if (!meets(s, found)) {
@@ -422,41 +387,32 @@ static scree_status take_back(hole_work *w, const scree_meetings *found, scree_e
          v < end; v += 3)
       if (!scree_repair_add_facet(r, v[0], v[1], v[2])) return scree_repair_no_memory(error);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static scree_status judge_smooth(hole_work *w, scree_error *error) {
-  scree_meetings found = {0};
-  scree_status status = SCREE_OK;
+  SCREE_CLEANUP(scree_free_at) scree_meetings found = {0};
   if (w->smooth.count == 0) return SCREE_OK;
   if (w->r->options->intersections)
-    status = scree_mesh_meetings(&w->r->mesh, MEETING_LIMIT, w->r->progress, &found, error);
-  if (status == SCREE_OK) status = take_back(w, &found, error);
-  scree_free(found.items);
-  return status;
+    SCREE_TRY(scree_mesh_meetings(&w->r->mesh, MEETING_LIMIT, w->r->progress, &found, error));
+  return take_back(w, &found, error);
+}
+
+static void free_work(hole_work *w) {
+  for (size_t i = 0; i < w->smooth.count; i++) scree_free(w->smooth.items[i].plain);
+  scree_free(w->smooth.items);
+  scree_free(w->seen);
+  scree_free(w->place);
+  scree_free(w->chain.items);
+  scree_adjacency_free(&w->adjacency);
 }
 
 scree_status scree_repair_holes(scree_repair *r, size_t edge_limit, scree_error *error) {
-  hole_work w = {.r = r, .edge_limit = edge_limit};
-  size_t half_edge_count = 3 * r->mesh.triangle_count, vertex_count = r->mesh.vertex_count;
-  scree_status status = scree_adjacency_build(&r->mesh, &w.adjacency, error);
-  if (status != SCREE_OK) return status;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(w.seen, half_edge_count, error, done);
-  SCREE_ALLOC_OR(w.place, vertex_count, error, done);
-  memset(w.seen, 0, half_edge_count);
-  memset(w.place, 0, vertex_count * sizeof *w.place);
-  status = SCREE_OK;
-  for (uint32_t h = 0; h < half_edge_count && status == SCREE_OK; h++)
-    if (w.adjacency.ring[h] == h && !w.seen[h]) status = walk(&w, h, error);
-  if (status == SCREE_OK) status = judge_smooth(&w, error);
-done:
-  for (size_t i = 0; i < w.smooth.count; i++) scree_free(w.smooth.items[i].plain);
-  scree_free(w.smooth.items);
-  scree_free(w.seen);
-  scree_free(w.place);
-  scree_free(w.chain.items);
-  scree_adjacency_free(&w.adjacency);
-  return status;
+  SCREE_CLEANUP(free_work) hole_work w = {.r = r, .edge_limit = edge_limit};
+  size_t half_edge_count = 3 * r->mesh.triangle_count;
+  SCREE_TRY(scree_adjacency_build(&r->mesh, &w.adjacency, error));
+  SCREE_TRY_ALLOC_ZERO(w.seen, half_edge_count, error);
+  SCREE_TRY_ALLOC_ZERO(w.place, r->mesh.vertex_count, error);
+  for (uint32_t h = 0; h < half_edge_count; h++)
+    if (w.adjacency.ring[h] == h && !w.seen[h]) SCREE_TRY(walk(&w, h, error));
+  return judge_smooth(&w, error);
 }

@@ -57,51 +57,34 @@ static void mark_fins(const scree_mesh *mesh, const scree_adjacency *adjacency, 
 /* The root of the patch of the largest area. */
 static scree_status largest_patch(const scree_mesh *mesh, uint32_t *patch, uint32_t *largest,
                                   scree_error *error) {
-  double *area = NULL;
-  SCREE_ALLOC_OR(area, mesh->triangle_count, error, out_of_memory);
-  memset(area, 0, mesh->triangle_count * sizeof *area);
+  SCREE_SCRATCH_ZERO(double, area, mesh->triangle_count, error);
   *largest = 0;
   for (uint32_t t = 0; t < mesh->triangle_count; t++)
     area[scree_find_root(patch, t)] += vec3_norm(scree_facet_normal(mesh, t));
   for (uint32_t t = 0; t < mesh->triangle_count; t++)
     if (area[t] > area[*largest]) *largest = t;
-  scree_free(area);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_repair_fins(scree_repair *r, scree_error *error) {
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  scree_adjacency adjacency = {0};
-  uint32_t *patch = NULL;
-  uint8_t *traits = NULL;
-  bool *marked = NULL;
   size_t removed = 1;
-  SCREE_ALLOC_OR(patch, r->mesh.triangle_count, error, done);
-  SCREE_ALLOC_OR(traits, r->mesh.triangle_count, error, done);
-  SCREE_ALLOC_OR(marked, r->mesh.triangle_count, error, done);
-  status = SCREE_OK;
+  SCREE_SCRATCH(uint32_t, patch, r->mesh.triangle_count, error);
+  SCREE_SCRATCH(uint8_t, traits, r->mesh.triangle_count, error);
+  SCREE_SCRATCH(bool, marked, r->mesh.triangle_count, error);
   /* dropping a fin may make another's edge a boundary */
-  for (int round = 0; round < 16 && removed && status == SCREE_OK; round++) {
-    status = scree_adjacency_build(&r->mesh, &adjacency, error);
-    if (status != SCREE_OK) break;
+  for (int round = 0; round < 16 && removed; round++) {
+    SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
+    SCREE_TRY(scree_adjacency_build(&r->mesh, &adjacency, error));
     uint32_t largest = 0;
     mark_fins(&r->mesh, &adjacency, patch, traits);
-    status = largest_patch(&r->mesh, patch, &largest, error);
-    scree_adjacency_free(&adjacency);
-    if (status != SCREE_OK) break;
+    SCREE_TRY(largest_patch(&r->mesh, patch, &largest, error));
     traits[largest] = 0;
     for (size_t t = 0; t < r->mesh.triangle_count; t++)
       marked[t] = traits[scree_find_root(patch, (uint32_t)t)] == 3;
     removed = scree_repair_remove(r, marked);
     r->report.done[SCREE_REPAIR_DROP_FIN] += removed;
   }
-done:
-  scree_free(patch);
-  scree_free(traits);
-  scree_free(marked);
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- Pairing the facets at edges ---- */
@@ -206,26 +189,7 @@ typedef struct splitter {
   uint32_t *fan;      /* by corner */
   uint32_t *vertex;   /* by corner that is its fan's lowest: the fan's vertex */
   uint8_t *fan_count; /* by vertex, at most 2 */
-  retreat *back;      /* by vertex, once every fan has its own */
 } splitter;
-
-static scree_status alloc_splitter(const scree_repair *r, splitter *s, scree_error *error) {
-  size_t corner_count = 3 * r->mesh.triangle_count;
-  SCREE_ALLOC_OR(s->fan, corner_count, error, out_of_memory);
-  SCREE_ALLOC_OR(s->vertex, corner_count, error, out_of_memory);
-  SCREE_ALLOC_OR(s->fan_count, r->mesh.vertex_count, error, out_of_memory);
-  memset(s->fan_count, 0, r->mesh.vertex_count);
-  return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
-}
-
-static void free_splitter(splitter *s) {
-  scree_free(s->fan);
-  scree_free(s->vertex);
-  scree_free(s->fan_count);
-  scree_free(s->back);
-}
 
 /* Gives each fan beyond the first a vertex of its own, at vertices with `only` (NULL: at all). */
 static bool separate_fans(scree_repair *r, splitter *s, const bool *only, size_t *split_count) {
@@ -248,11 +212,10 @@ static bool separate_fans(scree_repair *r, splitter *s, const bool *only, size_t
 }
 
 /* Moves the vertices of all fans at split vertices. */
-static scree_status draw_back(scree_repair *r, splitter *s, size_t old_vertex_count,
+static scree_status draw_back(scree_repair *r, const splitter *s, size_t old_vertex_count,
                               scree_error *error) {
   scree_mesh *m = &r->mesh;
-  SCREE_ALLOC_OR(s->back, m->vertex_count, error, out_of_memory);
-  memset(s->back, 0, m->vertex_count * sizeof *s->back);
+  SCREE_SCRATCH_ZERO(retreat, back, m->vertex_count, error);
   for (size_t c = 0; c < 3 * m->triangle_count; c++) {
     uint32_t v = m->triangles[c];
     if (v < old_vertex_count && s->fan_count[v] < 2) continue;
@@ -261,63 +224,44 @@ static scree_status draw_back(scree_repair *r, splitter *s, size_t old_vertex_co
       if (t + k == c) continue;
       vec3 d = vec3_sub(vec3_load(m->positions + 3 * (size_t)m->triangles[t + k]),
                         vec3_load(m->positions + 3 * (size_t)v));
-      s->back[v].sum = vec3_add(s->back[v].sum, d);
-      s->back[v].length += vec3_norm(d);
-      s->back[v].count++;
+      back[v].sum = vec3_add(back[v].sum, d);
+      back[v].length += vec3_norm(d);
+      back[v].count++;
     }
   }
   for (size_t v = 0; v < m->vertex_count; v++)
-    if (s->back[v].count) {
+    if (back[v].count) {
       double *at = m->positions + 3 * v;
-      vec3_store(at, retreat_from(r, vec3_load(at), &s->back[v]));
+      vec3_store(at, retreat_from(r, vec3_load(at), &back[v]));
     }
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static scree_status split_fans(scree_repair *r, const uint32_t *twin, const bool *only,
                                size_t *split_count, scree_error *error) {
-  splitter s = {0};
-  size_t old_vertex_count = r->mesh.vertex_count;
-  scree_status status = alloc_splitter(r, &s, error);
-  if (status != SCREE_OK) goto done;
-  find_fans(&r->mesh, twin, s.fan);
-  if (!separate_fans(r, &s, only, split_count)) {
-    status = scree_repair_no_memory(error);
-    goto done;
-  }
-  for (size_t c = 0; c < 3 * r->mesh.triangle_count; c++) r->mesh.triangles[c] = s.vertex[s.fan[c]];
-  if (*split_count) status = draw_back(r, &s, old_vertex_count, error);
-done:
-  free_splitter(&s);
-  return status;
+  size_t corner_count = 3 * r->mesh.triangle_count, old_vertex_count = r->mesh.vertex_count;
+  SCREE_SCRATCH(uint32_t, fan, corner_count, error);
+  SCREE_SCRATCH(uint32_t, vertex, corner_count, error);
+  SCREE_SCRATCH_ZERO(uint8_t, fan_count, old_vertex_count, error);
+  splitter s = {fan, vertex, fan_count};
+  find_fans(&r->mesh, twin, fan);
+  if (!separate_fans(r, &s, only, split_count)) return scree_repair_no_memory(error);
+  for (size_t c = 0; c < corner_count; c++) r->mesh.triangles[c] = vertex[fan[c]];
+  return *split_count ? draw_back(r, &s, old_vertex_count, error) : SCREE_OK;
 }
 
 static scree_status split(scree_repair *r, bool at_edges_only, scree_error *error) {
-  scree_adjacency adjacency = {0};
-  uint32_t *twin = NULL;
-  bool *loose = NULL;
-  size_t edge_count = 0, vertex_count = 0;
-  scree_status status = scree_adjacency_build(&r->mesh, &adjacency, error);
-  if (status != SCREE_OK) return status;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(twin, 3 * r->mesh.triangle_count, error, done);
-  SCREE_ALLOC_OR(loose, r->mesh.vertex_count, error, done);
-  memset(loose, 0, r->mesh.vertex_count);
-  status = SCREE_OK;
-  edge_count = pair_edges(&r->mesh, &adjacency, twin, loose);
+  SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
+  size_t vertex_count = 0;
+  SCREE_TRY(scree_adjacency_build(&r->mesh, &adjacency, error));
+  SCREE_SCRATCH(uint32_t, twin, 3 * r->mesh.triangle_count, error);
+  SCREE_SCRATCH_ZERO(bool, loose, r->mesh.vertex_count, error);
+  size_t edge_count = pair_edges(&r->mesh, &adjacency, twin, loose);
   if (edge_count || !at_edges_only)
-    status = split_fans(r, twin, at_edges_only ? loose : NULL, &vertex_count, error);
-  if (status == SCREE_OK) {
-    r->report.done[SCREE_REPAIR_SPLIT_EDGE] += edge_count;
-    if (!at_edges_only) r->report.done[SCREE_REPAIR_SPLIT_VERTEX] += vertex_count;
-  }
-done:
-  scree_free(twin);
-  scree_free(loose);
-  scree_adjacency_free(&adjacency);
-  return status;
+    SCREE_TRY(split_fans(r, twin, at_edges_only ? loose : NULL, &vertex_count, error));
+  r->report.done[SCREE_REPAIR_SPLIT_EDGE] += edge_count;
+  if (!at_edges_only) r->report.done[SCREE_REPAIR_SPLIT_VERTEX] += vertex_count;
+  return SCREE_OK;
 }
 
 scree_status scree_repair_edges(scree_repair *r, scree_error *error) {
@@ -357,32 +301,21 @@ static size_t flood(wind *w, uint32_t start, double area[3]) {
 }
 
 scree_status scree_repair_winding(scree_repair *r, scree_error *error) {
-  scree_adjacency adjacency = {0};
-  wind w = {.mesh = &r->mesh};
-  scree_status status = scree_adjacency_build(&r->mesh, &adjacency, error);
-  if (status != SCREE_OK) return status;
-  status = SCREE_OUT_OF_MEMORY;
-  w.ring = adjacency.ring;
-  SCREE_ALLOC_OR(w.turned, r->mesh.triangle_count, error, done);
-  SCREE_ALLOC_OR(w.queue, r->mesh.triangle_count, error, done);
-  memset(w.turned, 0, r->mesh.triangle_count);
+  SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
+  SCREE_TRY(scree_adjacency_build(&r->mesh, &adjacency, error));
+  SCREE_SCRATCH_ZERO(uint8_t, turned, r->mesh.triangle_count, error);
+  SCREE_SCRATCH(uint32_t, queue, r->mesh.triangle_count, error);
+  wind w = {&r->mesh, adjacency.ring, turned, queue};
   for (uint32_t t = 0; t < r->mesh.triangle_count; t++) {
     double area[3] = {0, 0, 0};
-    if (w.turned[t]) continue;
+    if (turned[t]) continue;
     size_t count = flood(&w, t, area);
     uint8_t wrong = area[2] > area[1] ? 1 : 2;
     for (size_t i = 0; i < count; i++) {
-      if (w.turned[w.queue[i]] != wrong) continue;
-      uint32_t *corner = r->mesh.triangles + 3 * (size_t)w.queue[i], keep = corner[1];
-      corner[1] = corner[2];
-      corner[2] = keep;
+      if (turned[queue[i]] != wrong) continue;
+      scree_corners_turn(r->mesh.triangles + 3 * (size_t)queue[i]);
       r->report.done[SCREE_REPAIR_TURN]++;
     }
   }
-  status = SCREE_OK;
-done:
-  scree_free(w.turned);
-  scree_free(w.queue);
-  scree_adjacency_free(&adjacency);
-  return status;
+  return SCREE_OK;
 }

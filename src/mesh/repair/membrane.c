@@ -124,33 +124,18 @@ static void mark_membranes(walk *w, bool *marked) {
 
 scree_status scree_repair_membranes(scree_repair *r, scree_error *error) {
   size_t count = r->mesh.triangle_count;
-  scree_adjacency adjacency = {0};
-  walk w = {.mesh = &r->mesh, .adjacency = &adjacency};
-  uint32_t *largest = NULL;
-  bool *marked = NULL;
-  scree_status status = scree_adjacency_build(&r->mesh, &adjacency, error);
-  if (status != SCREE_OK) return status;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(w.piece, count, error, done);
-  SCREE_ALLOC_OR(w.traits, count, error, done);
-  SCREE_ALLOC_OR(w.seen, count, error, done);
-  SCREE_ALLOC_OR(w.stack, 2 * count, error, done);
-  SCREE_ALLOC_OR(largest, count, error, done);
-  SCREE_ALLOC_OR(marked, count, error, done);
-  memset(w.traits, 0, count);
-  memset(w.seen, 0, count);
+  SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
+  SCREE_TRY(scree_adjacency_build(&r->mesh, &adjacency, error));
+  SCREE_SCRATCH(uint32_t, piece, count, error);
+  SCREE_SCRATCH_ZERO(uint8_t, traits, count, error);
+  SCREE_SCRATCH_ZERO(uint8_t, seen, count, error);
+  SCREE_SCRATCH(uint32_t, stack, 2 * count, error);
+  SCREE_SCRATCH(uint32_t, largest, count, error);
+  SCREE_SCRATCH(bool, marked, count, error);
+  walk w = {&r->mesh, &adjacency, piece, traits, seen, stack, 0};
   find_pieces(&w);
   walk_outside(&w, largest);
   mark_membranes(&w, marked);
   r->report.done[SCREE_REPAIR_DROP_MEMBRANE] += scree_repair_remove(r, marked);
-  status = SCREE_OK;
-done:
-  scree_free(w.piece);
-  scree_free(w.traits);
-  scree_free(w.seen);
-  scree_free(w.stack);
-  scree_free(largest);
-  scree_free(marked);
-  scree_adjacency_free(&adjacency);
-  return status;
+  return SCREE_OK;
 }

@@ -52,17 +52,9 @@ static bool is_crowded(const scree_adjacency *adjacency) {
   return false;
 }
 
-static bool all_closed(const scree_shells *shells) {
-  for (size_t i = 0; i < shells->count; i++)
-    if (!shells->items[i].closed) return false;
-  return true;
-}
-
 static scree_status count_tangled(const scree_shells *shells, const scree_meetings *found,
                                   tangle *t, scree_error *error) {
-  bool *tangled = NULL;
-  SCREE_ALLOC_OR(tangled, shells->count, error, out_of_memory);
-  memset(tangled, 0, shells->count);
+  SCREE_SCRATCH_ZERO(bool, tangled, shells->count, error);
   for (size_t i = 0; i < found->count; i++) {
     uint32_t a = shells->label[found->items[i].first], b = shells->label[found->items[i].second];
     if (a == SCREE_NO_SHELL || b == SCREE_NO_SHELL) continue;
@@ -70,51 +62,36 @@ static scree_status count_tangled(const scree_shells *shells, const scree_meetin
     if (a != b) t->between = true;
   }
   for (size_t i = 0; i < shells->count; i++) t->shell_count += tangled[i];
-  scree_free(tangled);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static scree_status find_tangle(scree_repair *r, tangle *t, scree_error *error) {
-  scree_adjacency adjacency = {0};
-  scree_shells shells = {0};
-  scree_meetings found = {0};
+  SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
+  SCREE_CLEANUP(scree_shells_free) scree_shells shells = {0};
+  SCREE_CLEANUP(scree_free_at) scree_meetings found = {0};
   *t = (tangle){.closed = false};
-  scree_status status = scree_adjacency_build(&r->mesh, &adjacency, error);
-  if (status == SCREE_OK) status = scree_shells_find(&r->mesh, &adjacency, &shells, error);
-  if (status != SCREE_OK) goto done;
-  t->closed = all_closed(&shells);
+  SCREE_TRY(scree_adjacency_build(&r->mesh, &adjacency, error));
+  SCREE_TRY(scree_shells_find(&r->mesh, &adjacency, &shells, error));
+  t->closed = scree_shells_closed(&shells);
   t->crowded = is_crowded(&adjacency);
-  if (!t->closed) goto done;
-  status = scree_mesh_meetings(&r->mesh, scree_arrange_limit(&r->mesh), r->progress, &found, error);
-  if (status == SCREE_OK && found.truncated) r->unmerged = scree_arrange_too_many;
-  if (status == SCREE_OK && !found.truncated) status = count_tangled(&shells, &found, t, error);
-done:
-  scree_free(found.items);
-  scree_shells_free(&shells);
-  scree_adjacency_free(&adjacency);
-  return status;
+  if (!t->closed) return SCREE_OK;
+  SCREE_TRY(
+      scree_mesh_meetings(&r->mesh, scree_arrange_limit(&r->mesh), r->progress, &found, error));
+  if (found.truncated) r->unmerged = scree_arrange_too_many;
+  return found.truncated ? SCREE_OK : count_tangled(&shells, &found, t, error);
 }
 
 /* ---- Which side is which ---- */
 
-static scree_status find_patches(merger *m, scree_error *error) {
+static void find_patches(merger *m) {
   const scree_mesh *mesh = &m->parts.mesh;
-  size_t count = mesh->triangle_count;
-  SCREE_ALLOC_OR(m->patch, count, error, out_of_memory);
-  SCREE_ALLOC_OR(m->speaker, count, error, out_of_memory);
-  SCREE_ALLOC_OR(m->keep, count, error, out_of_memory);
   scree_join_over_edges(mesh, &m->adjacency, true, m->patch);
-  for (uint32_t t = 0; t < count; t++) {
+  for (uint32_t t = 0; t < mesh->triangle_count; t++) {
     uint32_t root = scree_find_root(m->patch, t); /* the lowest: it comes first */
     if (root == t || vec3_norm(scree_facet_normal(mesh, t)) >
                          vec3_norm(scree_facet_normal(mesh, m->speaker[root])))
       m->speaker[root] = t;
   }
-  return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* A point of the facet as it is seen, another for each attempt. */
@@ -153,10 +130,12 @@ static scree_status judge_patches(merger *m, bool folds, const char **reason, sc
     *reason = "they enclose nothing";
     return SCREE_OK;
   }
-  scree_status status = scree_adjacency_build(mesh, &m->adjacency, error);
-  if (status == SCREE_OK) status = find_patches(m, error);
-  if (status == SCREE_OK) status = scree_facet_tree_build(mesh, &m->tree, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_adjacency_build(mesh, &m->adjacency, error));
+  SCREE_TRY_ALLOC(m->patch, mesh->triangle_count, error);
+  SCREE_TRY_ALLOC(m->speaker, mesh->triangle_count, error);
+  SCREE_TRY_ALLOC(m->keep, mesh->triangle_count, error);
+  find_patches(m);
+  SCREE_TRY(scree_facet_tree_build(mesh, &m->tree, error));
   scree_winding w = {
       .tree = &m->tree, .weights = m->parts.weights, .rounding = scree_winding_rounding(&m->tree)};
   for (uint32_t t = 0; t < mesh->triangle_count && !*reason; t++) {
@@ -183,29 +162,23 @@ static void take_surface(scree_repair *r, merger *m) {
     out[0] = a, out[1] = b, out[2] = c;
   }
   mesh->triangle_count = kept;
-  scree_mesh_free(&r->mesh);
-  r->mesh = *mesh;
-  r->vertex_capacity = mesh->vertex_count;
-  r->triangle_capacity = kept;
-  *mesh = (scree_mesh){0};
+  scree_repair_take(r, mesh);
 }
 
 scree_status scree_repair_merge(scree_repair *r, bool early, bool *merged, scree_error *error) {
   bool folds = r->options->merge_folds;
   tangle t;
-  merger m = {.patch = NULL};
+  SCREE_CLEANUP(free_merger) merger m = {.patch = NULL};
   *merged = false;
   r->unmerged = NULL;
-  scree_status status = find_tangle(r, &t, error);
-  if (status != SCREE_OK || r->unmerged || !t.closed || !t.any) return status;
+  SCREE_TRY(find_tangle(r, &t, error));
+  if (r->unmerged || !t.closed || !t.any) return SCREE_OK;
   if (early && !folds && !t.between && !t.crowded) return SCREE_OK;
-  status = scree_arrange(&r->mesh, r->progress, &m.parts, &r->unmerged, error);
-  if (status == SCREE_OK && !r->unmerged) status = judge_patches(&m, folds, &r->unmerged, error);
-  if (status == SCREE_OK && !r->unmerged) {
-    take_surface(r, &m);
-    r->report.done[SCREE_REPAIR_MERGE_SHELL] += t.shell_count;
-    *merged = true;
-  }
-  free_merger(&m);
-  return status;
+  SCREE_TRY(scree_arrange(&r->mesh, r->progress, &m.parts, &r->unmerged, error));
+  if (!r->unmerged) SCREE_TRY(judge_patches(&m, folds, &r->unmerged, error));
+  if (r->unmerged) return SCREE_OK;
+  take_surface(r, &m);
+  r->report.done[SCREE_REPAIR_MERGE_SHELL] += t.shell_count;
+  *merged = true;
+  return SCREE_OK;
 }

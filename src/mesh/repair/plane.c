@@ -29,19 +29,18 @@ typedef struct rim {
 } rim;
 
 static scree_status collect_rim(const scree_mesh *mesh, rim *out, scree_error *error) {
-  scree_adjacency adjacency;
-  scree_status status = scree_adjacency_build(mesh, &adjacency, error);
+  SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
+  SCREE_TRY(scree_adjacency_build(mesh, &adjacency, error));
   double sum = 0;
-  for (size_t h = 0; status == SCREE_OK && h < 3 * mesh->triangle_count; h++) {
+  for (size_t h = 0; h < 3 * mesh->triangle_count; h++) {
     if (adjacency.ring[h] != h) continue;
     vec3 a = scree_mesh_vertex(mesh, scree_half_edge_from(mesh, (uint32_t)h)),
          b = scree_mesh_vertex(mesh, scree_half_edge_to(mesh, (uint32_t)h));
     double length = vec3_distance(a, b);
     rim_piece piece = {vec3_scale(vec3_add(a, b), 0.5), length, sum += length};
-    if (!SCREE_PUSH(out, piece)) status = scree_repair_no_memory(error);
+    if (!SCREE_PUSH(out, piece)) return scree_repair_no_memory(error);
   }
-  scree_adjacency_free(&adjacency);
-  return status;
+  return SCREE_OK;
 }
 
 static vec3 draw(const rim *r, scree_rng *rng) {
@@ -99,11 +98,11 @@ static double fit_plane(const rim *r, double tolerance, scree_cut_plane *p) {
 
 static scree_status find_plane(const scree_mesh *mesh, double diagonal, scree_cut_plane *best,
                                scree_error *error) {
-  rim r = {0};
+  SCREE_CLEANUP(scree_free_at) rim r = {0};
   scree_rng rng = {1, 0, 0};
   double tolerance = TOLERANCE * diagonal, most = 0;
-  scree_status status = collect_rim(mesh, &r, error);
-  for (int i = 0; status == SCREE_OK && r.count && i < TRIES; i++) {
+  SCREE_TRY(collect_rim(mesh, &r, error));
+  for (int i = 0; r.count && i < TRIES; i++) {
     vec3 a = draw(&r, &rng), b = draw(&r, &rng), c = draw(&r, &rng);
     vec3 normal = vec3_cross(vec3_sub(b, a), vec3_sub(c, a));
     if (!(vec3_norm(normal) > 1e-6 * diagonal * diagonal)) continue;
@@ -111,29 +110,26 @@ static scree_status find_plane(const scree_mesh *mesh, double diagonal, scree_cu
     double length = length_near(&r, &p, tolerance);
     if (length > most) most = length, *best = p;
   }
-  double whole = r.count ? r.items[r.count - 1].up_to : 0;
-  if (status == SCREE_OK && r.count == 0)
-    status = scree_fail(error, SCREE_BAD_MESH,
-                        "the surface has no boundary, by which the plane that it stands on is "
-                        "found; say where it is, as z=12mm");
-  else if (status == SCREE_OK && !(most >= LEAST_SHARE * whole))
-    status = scree_fail(error, SCREE_BAD_MESH,
-                        "no plane carries more than %.2g %% of the boundary, and %g %% are needed; "
-                        "say where it is, as z=12mm",
-                        whole > 0 ? 100 * most / whole : 0, 100 * LEAST_SHARE);
-  if (status == SCREE_OK) {
-    double deviation = fit_plane(&r, tolerance, best), low = 0, high = 0;
-    for (size_t v = 0; v < mesh->vertex_count; v++) {
-      double d = distance_to(best, scree_mesh_vertex(mesh, v));
-      low = fmin(low, d), high = fmax(high, d);
-    }
-    if (-low > high)
-      *best = plane_of(vec3_neg(vec3_load(best->normal)),
-                       vec3_scale(vec3_load(best->normal), best->offset));
-    best->offset += 3 * deviation + ABOVE * diagonal;
+  if (r.count == 0)
+    return scree_fail(error, SCREE_BAD_MESH,
+                      "the surface has no boundary, by which the plane that it stands on is "
+                      "found; say where it is, as z=12mm");
+  double whole = r.items[r.count - 1].up_to;
+  if (!(most >= LEAST_SHARE * whole))
+    return scree_fail(error, SCREE_BAD_MESH,
+                      "no plane carries more than %.2g %% of the boundary, and %g %% are needed; "
+                      "say where it is, as z=12mm",
+                      whole > 0 ? 100 * most / whole : 0, 100 * LEAST_SHARE);
+  double deviation = fit_plane(&r, tolerance, best), low = 0, high = 0;
+  for (size_t v = 0; v < mesh->vertex_count; v++) {
+    double d = distance_to(best, scree_mesh_vertex(mesh, v));
+    low = fmin(low, d), high = fmax(high, d);
   }
-  scree_free(r.items);
-  return status;
+  if (-low > high)
+    *best = plane_of(vec3_neg(vec3_load(best->normal)),
+                     vec3_scale(vec3_load(best->normal), best->offset));
+  best->offset += 3 * deviation + ABOVE * diagonal;
+  return SCREE_OK;
 }
 
 /* ---- The cut ---- */
@@ -178,36 +174,28 @@ static double diagonal_of(const scree_mesh *mesh) {
 scree_status scree_repair_cut_off(const scree_mesh *mesh, const scree_cut_plane *given,
                                   scree_cut_plane *plane, size_t *dropped, scree_mesh *above,
                                   scree_error *error) {
-  corners out = {0};
-  double *height = NULL, diagonal = diagonal_of(mesh);
-  scree_status status = SCREE_OK;
+  SCREE_CLEANUP(scree_free_at) corners out = {0};
+  double diagonal = diagonal_of(mesh);
   if (given)
     *plane = *given;
   else
-    status = find_plane(mesh, diagonal, plane, error);
-  if (status != SCREE_OK) return status;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(height, mesh->vertex_count, error, done);
+    SCREE_TRY(find_plane(mesh, diagonal, plane, error));
+  SCREE_SCRATCH(double, height, mesh->vertex_count, error);
   for (size_t v = 0; v < mesh->vertex_count; v++) {
     double d = distance_to(plane, scree_mesh_vertex(mesh, v));
     height[v] = fabs(d) <= 1e-9 * diagonal ? 0 : d;
   }
   *dropped = 0;
-  status = SCREE_OK;
-  for (size_t t = 0; t < mesh->triangle_count && status == SCREE_OK; t++) {
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
     const uint32_t *c = mesh->triangles + 3 * t;
     if (height[c[0]] <= 0 && height[c[1]] <= 0 && height[c[2]] <= 0)
       ++*dropped;
     else if (!keep_above(mesh, t, height, &out))
-      status = scree_repair_no_memory(error);
+      return scree_repair_no_memory(error);
   }
-  if (status == SCREE_OK && out.count == 0)
-    status = scree_fail(error, SCREE_BAD_MESH, "nothing of the surface stands on the plane");
-  if (status == SCREE_OK && *dropped == 0)
-    status = scree_fail(error, SCREE_BAD_MESH, "nothing of the surface lies below the plane");
-  if (status == SCREE_OK) status = scree_mesh_weld(out.items, out.count / 9, 0, above, NULL, error);
-done:
-  scree_free(out.items);
-  scree_free(height);
-  return status;
+  if (out.count == 0)
+    return scree_fail(error, SCREE_BAD_MESH, "nothing of the surface stands on the plane");
+  if (*dropped == 0)
+    return scree_fail(error, SCREE_BAD_MESH, "nothing of the surface lies below the plane");
+  return scree_mesh_weld(out.items, out.count / 9, 0, above, NULL, error);
 }

@@ -73,7 +73,12 @@ static scree_status verify_options(const scree_repair_options *o, scree_error *e
 
 /* ---- Welding ---- */
 
-static void measure_box(scree_repair *r) {
+void scree_repair_take(scree_repair *r, scree_mesh *mesh) {
+  scree_mesh_free(&r->mesh);
+  r->mesh = *mesh;
+  *mesh = (scree_mesh){0};
+  r->vertex_capacity = r->mesh.vertex_count;
+  r->triangle_capacity = r->mesh.triangle_count;
   const scree_box box = scree_box_of_points(r->mesh.positions, r->mesh.vertex_count);
   r->diagonal = r->mesh.vertex_count ? vec3_distance(box.low, box.high) : 0;
   vec3 far = vec3_max(vec3_neg(box.low), box.high);
@@ -119,10 +124,8 @@ static bool is_canonical(const scree_mesh *mesh) {
 static scree_status weld(scree_repair *r, const scree_mesh *mesh, size_t *bad, size_t *collapsed,
                          scree_error *error) {
   scree_mesh welded;
-  double *corners = NULL;
   size_t count = 0;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(corners, 9 * mesh->triangle_count, error, done);
+  SCREE_SCRATCH(double, corners, 9 * mesh->triangle_count, error);
   for (size_t t = 0; t < mesh->triangle_count; t++) {
     bool good = true;
     for (size_t k = 0; k < 3; k++) {
@@ -133,33 +136,16 @@ static scree_status weld(scree_repair *r, const scree_mesh *mesh, size_t *bad, s
     count += good;
   }
   *bad = mesh->triangle_count - count;
-  status = scree_mesh_weld(corners, count, 0, &welded, collapsed, error);
-  if (status != SCREE_OK) goto done;
-  scree_mesh_free(&r->mesh);
-  r->mesh = welded;
-  r->vertex_capacity = welded.vertex_count;
-  r->triangle_capacity = welded.triangle_count;
-  measure_box(r);
-done:
-  scree_free(corners);
-  return status;
-}
-
-/* A mesh that is in canonical order already, as every reader gives it. */
-static scree_status take_copy(scree_repair *r, const scree_mesh *mesh, scree_error *error) {
-  scree_status status = scree_mesh_copy(mesh, &r->mesh, error);
-  if (status != SCREE_OK) return status;
-  r->vertex_capacity = mesh->vertex_count;
-  r->triangle_capacity = mesh->triangle_count;
-  measure_box(r);
+  SCREE_TRY(scree_mesh_weld(corners, count, 0, &welded, collapsed, error));
+  scree_repair_take(r, &welded);
   return SCREE_OK;
 }
 
 scree_status scree_repair_duplicates(scree_repair *r, scree_error *error) {
   size_t dropped;
-  scree_status status = scree_facets_drop_doubles(&r->mesh, &dropped, error);
-  if (status == SCREE_OK) r->report.done[SCREE_REPAIR_DROP_DUPLICATE] += dropped;
-  return status;
+  SCREE_TRY(scree_facets_drop_doubles(&r->mesh, &dropped, error));
+  r->report.done[SCREE_REPAIR_DROP_DUPLICATE] += dropped;
+  return SCREE_OK;
 }
 
 /* ---- Rounds ---- */
@@ -181,9 +167,8 @@ static scree_status mend_open(scree_repair *r, scree_error *error) {
   /* the holes of a surface that was closed are all of the repair's own cutting */
   bool was_closed = r->report.before.defects[SCREE_DEFECT_BOUNDARY_EDGE] == 0;
   size_t edge_limit = o->fill_large_holes || was_closed ? SIZE_MAX : o->hole_edges;
-  scree_status status = scree_repair_scraps(r, error);
-  if (status == SCREE_OK) status = scree_repair_holes(r, edge_limit, error);
-  return status;
+  SCREE_TRY(scree_repair_scraps(r, error));
+  return scree_repair_holes(r, edge_limit, error);
 }
 
 static scree_status mend_surface(scree_repair *r, const scree_check *check, scree_error *error) {
@@ -191,20 +176,16 @@ static scree_status mend_surface(scree_repair *r, const scree_check *check, scre
   bool open = defect[SCREE_DEFECT_BOUNDARY_EDGE] > 0;
   bool crowded = defect[SCREE_DEFECT_NON_MANIFOLD_EDGE] > 0;
   bool dented = defect[SCREE_DEFECT_DEGENERATE_FACET] > 0;
-  scree_status status = SCREE_OK;
-  if (defect[SCREE_DEFECT_DUPLICATE_FACET]) status = scree_repair_duplicates(r, error);
-  if (status == SCREE_OK && dented) status = scree_repair_flat(r, error);
-  if (status == SCREE_OK && (open || dented)) status = scree_repair_seams(r, error);
-  if (status == SCREE_OK && (open || dented)) status = scree_repair_t_junctions(r, error);
-  if (status == SCREE_OK && crowded) status = scree_repair_fins(r, error);
-  if (status == SCREE_OK && crowded) status = scree_repair_membranes(r, error);
-  if (status == SCREE_OK && (crowded || defect[SCREE_DEFECT_INCONSISTENT_EDGE]))
-    status = scree_repair_winding(r, error);
-  if (status == SCREE_OK && crowded) status = scree_repair_edges(r, error);
-  if (status == SCREE_OK && open) status = mend_open(r, error);
-  if (status == SCREE_OK && !open && defect[SCREE_DEFECT_NON_MANIFOLD_VERTEX])
-    status = scree_repair_vertices(r, error);
-  return status;
+  if (defect[SCREE_DEFECT_DUPLICATE_FACET]) SCREE_TRY(scree_repair_duplicates(r, error));
+  if (dented) SCREE_TRY(scree_repair_flat(r, error));
+  if (open || dented) SCREE_TRY(scree_repair_seams(r, error));
+  if (open || dented) SCREE_TRY(scree_repair_t_junctions(r, error));
+  if (crowded) SCREE_TRY(scree_repair_fins(r, error));
+  if (crowded) SCREE_TRY(scree_repair_membranes(r, error));
+  if (crowded || defect[SCREE_DEFECT_INCONSISTENT_EDGE]) SCREE_TRY(scree_repair_winding(r, error));
+  if (crowded) SCREE_TRY(scree_repair_edges(r, error));
+  if (open) return mend_open(r, error);
+  return defect[SCREE_DEFECT_NON_MANIFOLD_VERTEX] ? scree_repair_vertices(r, error) : SCREE_OK;
 }
 
 static size_t actions_done(const scree_repair *r) {
@@ -223,18 +204,17 @@ static size_t actions_done(const scree_repair *r) {
  * and is of no use there. */
 static scree_status take_volume(scree_repair *r, scree_error *error) {
   scree_check check;
-  double area;
   bool as_given = actions_done(r) == r->report.done[SCREE_REPAIR_WELD];
   if (isnan(r->volume) && as_given && r->report.before.volume_known)
     r->volume = r->report.before.volume;
   if (!isnan(r->volume)) return SCREE_OK;
-  scree_status status = check_now(r, r->options->intersections && !r->untangled, &check, error);
-  if (status == SCREE_OK && check.volume_known)
+  SCREE_TRY(check_now(r, r->options->intersections && !r->untangled, &check, error));
+  if (check.volume_known)
     r->volume = check.volume;
-  else if (status == SCREE_OK && !check.defects[SCREE_DEFECT_OVERLAPPING_SHELLS] &&
+  else if (!check.defects[SCREE_DEFECT_OVERLAPPING_SHELLS] &&
            !check.defects[SCREE_DEFECT_NON_MANIFOLD_EDGE]) /* shells that share one count as one */
-    status = scree_mesh_area_volume(&r->mesh, &area, &r->volume, error);
-  return status;
+    return scree_mesh_area_volume(&r->mesh, NULL, &r->volume, error);
+  return SCREE_OK;
 }
 
 /* Of a surface whose coordinates may be bad, or that has no facets; NaN, 0. */
@@ -282,10 +262,10 @@ static scree_status try_merge(scree_repair *r, tries *n, bool early, bool *merge
                               scree_error *error) {
   *merged = false;
   if (n->refused && n->refused_at == actions_done(r)) return SCREE_OK;
-  scree_status status = scree_repair_merge(r, early, merged, error);
+  SCREE_TRY(scree_repair_merge(r, early, merged, error));
   n->refused = r->unmerged != NULL;
   n->refused_at = actions_done(r);
-  return status;
+  return SCREE_OK;
 }
 
 /* Facets that meet are cut out, or shells merged; *settled where neither is done. */
@@ -293,36 +273,33 @@ static scree_status untangle(scree_repair *r, tries *n, bool *settled, scree_err
   const scree_repair_options *o = r->options;
   size_t cut_count = 0;
   bool merged = false;
-  scree_status status = SCREE_OK;
   if (o->cut_intersections && !o->merge_folds && n->cuts < CUT_ROUNDS)
-    status = scree_repair_cut(r, ++n->cuts, &cut_count, error);
-  if (status == SCREE_OK && cut_count == 0 && o->merge_shells && n->merges < MERGE_ROUNDS) {
+    SCREE_TRY(scree_repair_cut(r, ++n->cuts, &cut_count, error));
+  if (cut_count == 0 && o->merge_shells && n->merges < MERGE_ROUNDS) {
     n->merges++;
-    status = try_merge(r, n, false, &merged, error);
+    SCREE_TRY(try_merge(r, n, false, &merged, error));
   }
   *settled = cut_count == 0 && !merged;
   if (*settled && !r->apart) { /* without the small ones, or all but the largest, it may do */
     r->apart = true;
     *settled = false;
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* One step on a mesh with the given cheap check; *settled where there is nothing left to do. */
 static scree_status step(scree_repair *r, const scree_check *check, tries *n, bool *settled,
                          scree_error *error) {
   size_t before = actions_done(r);
-  scree_status status;
   *settled = false;
   if (!surface_is_sound(check)) {
-    status = mend_surface(r, check, error);
-    *settled = status == SCREE_OK && actions_done(r) == before;
-    return status;
+    SCREE_TRY(mend_surface(r, check, error));
+    *settled = actions_done(r) == before;
+    return SCREE_OK;
   }
-  status = scree_repair_shells(r, error);
-  if (status != SCREE_OK || actions_done(r) != before) return status;
-  status = take_volume(r, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_repair_shells(r, error));
+  if (actions_done(r) != before) return SCREE_OK;
+  SCREE_TRY(take_volume(r, error));
   *settled = true;
   if (!r->options->intersections || r->untangled) return SCREE_OK;
   return untangle(r, n, settled, error);
@@ -337,31 +314,30 @@ static scree_status merge_early(scree_repair *r, tries *n, scree_error *error) {
   bool merged;
   size_t bad, collapsed;
   if (!r->options->merge_shells || !met) return SCREE_OK;
-  scree_status status = SCREE_OK;
   if (!defect[SCREE_DEFECT_BOUNDARY_EDGE] && !defect[SCREE_DEFECT_INCONSISTENT_EDGE]) {
-    status = scree_repair_outward(r, error);
-    if (status == SCREE_OK) status = take_volume(r, error);
+    SCREE_TRY(scree_repair_outward(r, error));
+    SCREE_TRY(take_volume(r, error));
   }
-  if (status == SCREE_OK) status = try_merge(r, n, true, &merged, error);
-  return status == SCREE_OK && merged ? weld(r, &r->mesh, &bad, &collapsed, error) : status;
+  SCREE_TRY(try_merge(r, n, true, &merged, error));
+  return merged ? weld(r, &r->mesh, &bad, &collapsed, error) : SCREE_OK;
 }
 
 static scree_status run_rounds(scree_repair *r, scree_error *error) {
   tries n = {0};
   size_t bad, collapsed;
   r->came_in = r->mesh.triangle_count;
-  scree_status status = merge_early(r, &n, error);
-  for (int round = 0; round < ROUNDS && status == SCREE_OK; round++) {
+  SCREE_TRY(merge_early(r, &n, error));
+  for (int round = 0; round < ROUNDS; round++) {
     bool settled;
-    status = check_now(r, false, &r->report.after, error);
-    if (status != SCREE_OK || r->mesh.triangle_count == 0) return status;
-    status = step(r, &r->report.after, &n, &settled, error);
-    if (status != SCREE_OK || settled) break;
-    status = weld(r, &r->mesh, &bad, &collapsed, error);
-    r->report.done[SCREE_REPAIR_DROP_DEGENERATE] += status == SCREE_OK ? collapsed : 0;
-    if (status == SCREE_OK) status = scree_repair_growth(r, r->mesh.triangle_count, error);
+    SCREE_TRY(check_now(r, false, &r->report.after, error));
+    if (r->mesh.triangle_count == 0) break;
+    SCREE_TRY(step(r, &r->report.after, &n, &settled, error));
+    if (settled) break;
+    SCREE_TRY(weld(r, &r->mesh, &bad, &collapsed, error));
+    r->report.done[SCREE_REPAIR_DROP_DEGENERATE] += collapsed;
+    SCREE_TRY(scree_repair_growth(r, r->mesh.triangle_count, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* Everything after the first check, which found what r->report.before says. */
@@ -369,26 +345,23 @@ static scree_status mend(scree_repair *r, const scree_mesh *mesh, scree_error *e
   size_t *done = r->report.done, collapsed = 0;
   size_t unused = r->report.before.defects[SCREE_DEFECT_UNUSED_VERTEX];
   size_t used = r->report.before.vertex_count - unused;
-  scree_status status;
-  if (unused || !is_canonical(mesh))
-    status = weld(r, mesh, &done[SCREE_REPAIR_DROP_BAD], &collapsed, error);
-  else
-    status = take_copy(r, mesh, error);
-  if (status != SCREE_OK) return status;
+  scree_mesh copy;
+  if (unused || !is_canonical(mesh)) {
+    SCREE_TRY(weld(r, mesh, &done[SCREE_REPAIR_DROP_BAD], &collapsed, error));
+  } else { /* as every reader gives it */
+    SCREE_TRY(scree_mesh_copy(mesh, &copy, error));
+    scree_repair_take(r, &copy);
+  }
   done[SCREE_REPAIR_DROP_DEGENERATE] = collapsed;
   if (!done[SCREE_REPAIR_DROP_BAD] && !collapsed && used > r->mesh.vertex_count)
     done[SCREE_REPAIR_WELD] = used - r->mesh.vertex_count;
   r->untangled = r->report.before.usable;
-  if (!r->report.before.usable || r->report.before.shell_count > 1) status = run_rounds(r, error);
-  if (status != SCREE_OK) return status;
+  if (!r->report.before.usable || r->report.before.shell_count > 1) SCREE_TRY(run_rounds(r, error));
   r->report.after = r->report.before; /* of the same facets */
   if (actions_done(r) > 0 || r->report.before.defects[SCREE_DEFECT_UNUSED_VERTEX])
-    status = check_now(r, r->options->intersections, &r->report.after, error);
-  if (status == SCREE_OK)
-    status =
-        measure(&r->mesh, &r->report.after, &r->report.area_after, &r->report.volume_after, error);
+    SCREE_TRY(check_now(r, r->options->intersections, &r->report.after, error));
   r->report.volume_before = r->report.before.volume_known ? r->report.before.volume : r->volume;
-  return status;
+  return measure(&r->mesh, &r->report.after, &r->report.area_after, &r->report.volume_after, error);
 }
 
 /* Whether cutting has taken so much of the body, or added so much, that another way may keep it
@@ -444,13 +417,12 @@ static scree_status repair_checked(const scree_mesh *mesh, const scree_check *be
                     .volume = NAN,
                     .report.before = *before};
   double area_before, unsaid;
-  scree_status status = measure(mesh, before, &area_before, &unsaid, error);
-  if (status == SCREE_OK) status = mend(&r, mesh, error);
+  SCREE_TRY(measure(mesh, before, &area_before, &unsaid, error));
+  scree_status status = mend(&r, mesh, error);
   if (status == SCREE_OK && options->merge_shells && !options->merge_folds && has_lost(&r))
     status = mend_otherwise(&r, mesh, error);
   r.report.area_before = area_before;
-  if (status == SCREE_OK || status == SCREE_BAD_MESH)
-    if (report) *report = r.report;
+  if (report && (status == SCREE_OK || status == SCREE_BAD_MESH)) *report = r.report;
   if (status == SCREE_OK && !r.report.after.usable)
     status =
         scree_fail(error, SCREE_BAD_MESH, "the mesh cannot be repaired; what remains is %s%s%s",
@@ -473,19 +445,17 @@ static scree_status repair_cut_off(const scree_mesh *mesh, const scree_repair_op
   scree_repair_report made = {.seam_distance = 0};
   scree_cut_plane plane;
   scree_check before;
-  scree_mesh above, whole;
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh above = {0};
+  scree_mesh whole;
   size_t dropped;
   double area, unsaid;
-  scree_status status = scree_mesh_check(mesh, &how, progress, &before, error);
-  if (status == SCREE_OK) status = measure(mesh, &before, &area, &unsaid, error);
-  if (status == SCREE_OK)
-    status = scree_repair_cut_off(mesh, chosen.cut == SCREE_CUT_GIVEN ? &chosen.plane : NULL,
-                                  &plane, &dropped, &above, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_mesh_check(mesh, &how, progress, &before, error));
+  SCREE_TRY(measure(mesh, &before, &area, &unsaid, error));
+  SCREE_TRY(scree_repair_cut_off(mesh, chosen.cut == SCREE_CUT_GIVEN ? &chosen.plane : NULL, &plane,
+                                 &dropped, &above, error));
   chosen.cut = SCREE_CUT_NONE;
   chosen.keep_largest = chosen.fill_large_holes = chosen.flat_large_holes = true;
-  status = scree_mesh_repair(&above, &chosen, progress, &whole, &made, error);
-  scree_mesh_free(&above);
+  scree_status status = scree_mesh_repair(&above, &chosen, progress, &whole, &made, error);
   made.done[SCREE_REPAIR_CUT_OFF] = dropped;
   made.plane = plane;
   made.before = before;
@@ -505,19 +475,17 @@ scree_status scree_mesh_repair(const scree_mesh *mesh, const scree_repair_option
   scree_check_options how = {.intersections = chosen.intersections};
   scree_repair_report untouched = {.seam_distance = 0};
   scree_check *before = &untouched.before;
-  scree_status status = verify_options(&chosen, error);
-  if (status == SCREE_OK && chosen.cut != SCREE_CUT_NONE)
+  SCREE_TRY(verify_options(&chosen, error));
+  if (chosen.cut != SCREE_CUT_NONE)
     return repair_cut_off(mesh, &chosen, progress, repaired, report, error);
-  if (status == SCREE_OK) status = scree_mesh_check(mesh, &how, progress, before, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_mesh_check(mesh, &how, progress, before, error));
   if (mesh == repaired && needs_nothing(mesh, before)) {
-    status = report_untouched(mesh, &untouched, error);
-    if (report && status == SCREE_OK) *report = untouched;
-    return status;
+    SCREE_TRY(report_untouched(mesh, &untouched, error));
+    if (report) *report = untouched;
+    return SCREE_OK;
   }
   scree_mesh made;
-  status = repair_checked(mesh, before, &chosen, progress, &made, report, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(repair_checked(mesh, before, &chosen, progress, &made, report, error));
   if (mesh == repaired) scree_mesh_free(repaired);
   *repaired = made;
   return SCREE_OK;
@@ -528,10 +496,9 @@ scree_status scree_mesh_prepare(const scree_mesh *mesh, const scree_repair_optio
                                 scree_repair_report *report, scree_error *error) {
   scree_repair_report made = {.seam_distance = 0};
   if (options) return scree_mesh_repair(mesh, options, progress, ready, report, error);
-  scree_status status = scree_mesh_check(mesh, NULL, progress, &made.before, error);
-  if (status != SCREE_OK) return status;
-  status = report_untouched(mesh, &made, error);
-  if (status != SCREE_OK) return status;
+  scree_status status = SCREE_OK;
+  SCREE_TRY(scree_mesh_check(mesh, NULL, progress, &made.before, error));
+  SCREE_TRY(report_untouched(mesh, &made, error));
   if (!made.before.usable)
     status = scree_fail(error, SCREE_BAD_MESH, "the mesh is %s", made.before.verdict);
   else if (mesh != ready)

@@ -25,6 +25,8 @@ typedef struct scree_repair {
 
 /* ---- repair_edit.c: changes to the mesh ---- */
 
+/* The mesh takes the place of the one under repair, which is freed. */
+void scree_repair_take(scree_repair *r, scree_mesh *mesh);
 /* Room for more; false when memory is out. */
 bool scree_repair_add_vertex(scree_repair *r, const double *position, uint32_t *index);
 bool scree_repair_add_facet(scree_repair *r, uint32_t a, uint32_t b, uint32_t c);

@@ -59,18 +59,14 @@ static void sort_rim(const scree_mesh *m, scree_rim *b) {
 
 scree_status scree_rim_find(const scree_mesh *mesh, scree_rim *b, scree_error *error) {
   *b = (scree_rim){0};
-  scree_status status = scree_adjacency_build(mesh, &b->adjacency, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_adjacency_build(mesh, &b->adjacency, error));
   scree_rim_count(&b->adjacency, &b->edge_count, &b->crowded_count);
   if (b->edge_count == 0) return SCREE_OK;
-  SCREE_ALLOC_OR(b->vertices, mesh->vertex_count, error, out_of_memory);
-  SCREE_ALLOC_OR(b->reach, mesh->vertex_count, error, out_of_memory);
+  SCREE_TRY_ALLOC(b->vertices, mesh->vertex_count, error);
+  SCREE_TRY_ALLOC(b->reach, mesh->vertex_count, error);
   measure_rim(mesh, b);
   sort_rim(mesh, b);
   return SCREE_OK;
-out_of_memory:
-  scree_rim_free(b);
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* ---- T-junctions ---- */
@@ -117,16 +113,15 @@ static bool find_on_edge(const scree_mesh *m, const scree_rim *b, const scree_ju
   return true;
 }
 
-scree_status scree_rim_junctions(const scree_mesh *mesh, const scree_rim *rim,
-                                 const scree_junction_rule *rule, scree_junctions *found,
-                                 scree_error *error) {
+scree_status scree_junctions_find(const scree_mesh *mesh, const scree_junction_rule *rule,
+                                  scree_junctions *found, scree_error *error) {
+  SCREE_CLEANUP(scree_rim_free) scree_rim rim = {0};
   size_t work = 0;
-  *found = (scree_junctions){0};
-  for (size_t e = 0; e < rim->adjacency.edge_count && work <= rule->most; e++) {
-    uint32_t h = rim->adjacency.edges[e];
-    if (rim->adjacency.ring[h] != h || find_on_edge(mesh, rim, rule, h, &work, found)) continue;
-    scree_free(found->items);
-    return scree_fail_memory(error, found->capacity * sizeof *found->items, "T-junctions");
+  SCREE_TRY(scree_rim_find(mesh, &rim, error));
+  for (size_t e = 0; e < rim.adjacency.edge_count && work <= rule->most; e++) {
+    uint32_t h = rim.adjacency.edges[e];
+    if (rim.adjacency.ring[h] == h && !find_on_edge(mesh, &rim, rule, h, &work, found))
+      return scree_fail_memory(error, found->capacity * sizeof *found->items, "T-junctions");
   }
   if (work > rule->most) found->count = 0;
   if (found->count) qsort(found->items, found->count, sizeof *found->items, compare_junctions);

@@ -41,10 +41,9 @@ typedef struct scree_junction_rule {
   size_t most; /* comparisons; beyond them none is found */
 } scree_junction_rule;
 
-/* In the order of the half-edges, and along each. Free items with scree_free. */
-scree_status scree_rim_junctions(const scree_mesh *mesh, const scree_rim *rim,
-                                 const scree_junction_rule *rule, scree_junctions *found,
-                                 scree_error *error);
+/* In the order of the half-edges, and along each. *found is empty before; free its items. */
+scree_status scree_junctions_find(const scree_mesh *mesh, const scree_junction_rule *rule,
+                                  scree_junctions *found, scree_error *error);
 /* Splits the facets there, at one edge of each in a pass, into fans from the corner across; the
  * mesh has room for so many facets more. Answers how many came new, at the end. */
 size_t scree_junctions_split(scree_mesh *mesh, const scree_junctions *found);

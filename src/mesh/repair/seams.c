@@ -69,77 +69,52 @@ static bool remap(const scree_repair *r, uint32_t *parent, uint32_t *corners) {
 static scree_status try_distance(scree_repair *r, const scree_rim *b, double distance,
                                  uint32_t *corners, scree_error *error) {
   scree_mesh *m = &r->mesh;
-  uint32_t *parent = NULL;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(parent, m->vertex_count, error, done);
+  SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
+  SCREE_SCRATCH(uint32_t, parent, m->vertex_count, error);
   for (size_t v = 0; v < m->vertex_count; v++) parent[v] = (uint32_t)v;
-  status = SCREE_OK;
-  if (!join_near(r, b, distance, parent) || !remap(r, parent, corners)) goto done;
+  if (!join_near(r, b, distance, parent) || !remap(r, parent, corners)) return SCREE_OK;
   scree_mesh joined = {m->positions, corners, m->vertex_count, m->triangle_count};
-  scree_adjacency adjacency;
-  status = scree_adjacency_build(&joined, &adjacency, error);
-  if (status != SCREE_OK) goto done;
+  SCREE_TRY(scree_adjacency_build(&joined, &adjacency, error));
   size_t open, crowded;
   scree_rim_count(&adjacency, &open, &crowded);
-  scree_adjacency_free(&adjacency);
-  if (open < b->edge_count && crowded <= b->crowded_count) {
-    memcpy(m->triangles, corners, 3 * m->triangle_count * sizeof *corners);
-    r->report.done[SCREE_REPAIR_CLOSE_SEAM] += b->edge_count - open;
-    r->report.seam_distance = distance;
-  }
-done:
-  scree_free(parent);
-  return status;
+  if (open >= b->edge_count || crowded > b->crowded_count) return SCREE_OK;
+  memcpy(m->triangles, corners, 3 * m->triangle_count * sizeof *corners);
+  r->report.done[SCREE_REPAIR_CLOSE_SEAM] += b->edge_count - open;
+  r->report.seam_distance = distance;
+  return SCREE_OK;
 }
 
 scree_status scree_repair_seams(scree_repair *r, scree_error *error) {
   double tolerance = r->options->seam_tolerance;
-  uint32_t *corners = NULL;
-  scree_status status = SCREE_OK;
   if (tolerance <= 0) return SCREE_OK;
-  SCREE_ALLOC_OR(corners, 3 * r->mesh.triangle_count, error, out_of_memory);
-  for (int step = 0; step < SEAM_STEPS && status == SCREE_OK; step++) {
-    scree_rim b;
-    status = scree_rim_find(&r->mesh, &b, error);
-    if (status != SCREE_OK) break;
-    bool closed = b.edge_count == 0;
+  SCREE_SCRATCH(uint32_t, corners, 3 * r->mesh.triangle_count, error);
+  for (int step = 0; step < SEAM_STEPS; step++) {
+    SCREE_CLEANUP(scree_rim_free) scree_rim b = {0};
+    SCREE_TRY(scree_rim_find(&r->mesh, &b, error));
+    if (b.edge_count == 0) break;
     double distance = tolerance * r->diagonal * pow(10, step + 1 - SEAM_STEPS);
-    if (!closed) status = try_distance(r, &b, distance, corners, error);
-    scree_rim_free(&b);
-    if (closed) break;
+    SCREE_TRY(try_distance(r, &b, distance, corners, error));
   }
-  scree_free(corners);
-  return status;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
+  return SCREE_OK;
 }
 
 /* ---- T-junctions ---- */
 
 static scree_status pass(scree_repair *r, size_t *split_count, scree_error *error) {
   const scree_junction_rule rule = {ON_EDGE_DIAGONAL * r->diagonal, ON_EDGE_LENGTH, NEAR_LIMIT};
-  scree_rim rim;
-  scree_junctions found;
-  *split_count = 0;
-  scree_status status = scree_rim_find(&r->mesh, &rim, error);
-  if (status != SCREE_OK) return status;
-  status = scree_rim_junctions(&r->mesh, &rim, &rule, &found, error);
-  scree_rim_free(&rim);
-  if (status != SCREE_OK) return status;
-  status = scree_repair_growth(r, r->mesh.triangle_count + found.count, error);
-  if (status == SCREE_OK && !scree_repair_reserve(r, found.count))
-    status = scree_repair_no_memory(error);
-  if (status == SCREE_OK) *split_count = scree_junctions_split(&r->mesh, &found);
-  scree_free(found.items);
-  return status;
+  SCREE_CLEANUP(scree_free_at) scree_junctions found = {0};
+  SCREE_TRY(scree_junctions_find(&r->mesh, &rule, &found, error));
+  SCREE_TRY(scree_repair_growth(r, r->mesh.triangle_count + found.count, error));
+  if (!scree_repair_reserve(r, found.count)) return scree_repair_no_memory(error);
+  *split_count = scree_junctions_split(&r->mesh, &found);
+  return SCREE_OK;
 }
 
 scree_status scree_repair_t_junctions(scree_repair *r, scree_error *error) {
-  scree_status status = SCREE_OK;
   size_t split_count = 1;
-  for (int i = 0; i < PASSES && split_count && status == SCREE_OK; i++) {
-    status = pass(r, &split_count, error);
+  for (int i = 0; i < PASSES && split_count; i++) {
+    SCREE_TRY(pass(r, &split_count, error));
     r->report.done[SCREE_REPAIR_SPLIT_T_JUNCTION] += split_count;
   }
-  return status;
+  return SCREE_OK;
 }

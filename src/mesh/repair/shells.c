@@ -10,6 +10,7 @@
 #include "mesh/repair/shells.h"
 
 #include "base/array.h"
+#include "base/radix.h"
 #include "base/sum.h"
 #include "mesh/predicates.h"
 
@@ -61,15 +62,12 @@ static void mark_open(const scree_mesh *mesh, const scree_adjacency *adjacency,
 
 scree_status scree_shells_find(const scree_mesh *mesh, const scree_adjacency *adjacency,
                                scree_shells *shells, scree_error *error) {
-  scree_shells made = {0};
-  scree_sum(*sums)[2] = NULL;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(made.label, mesh->triangle_count, error, done);
+  SCREE_CLEANUP(scree_shells_free) scree_shells made = {0};
+  typedef scree_sum shell_sums[2]; /* area, volume */
+  SCREE_TRY_ALLOC(made.label, mesh->triangle_count, error);
   made.count = label_shells(mesh, adjacency, made.label);
-  SCREE_ALLOC_OR(made.items, made.count, error, done);
-  SCREE_ALLOC_OR(sums, made.count, error, done);
-  memset(made.items, 0, made.count * sizeof *made.items);
-  memset(sums, 0, made.count * sizeof *sums);
+  SCREE_TRY_ALLOC_ZERO(made.items, made.count, error);
+  SCREE_SCRATCH_ZERO(shell_sums, sums, made.count, error);
   for (size_t t = 0; t < mesh->triangle_count; t++)
     if (made.label[t] != SCREE_NO_SHELL)
       add_facet(mesh, t, &made.items[made.label[t]], sums[made.label[t]]);
@@ -78,14 +76,9 @@ scree_status scree_shells_find(const scree_mesh *mesh, const scree_adjacency *ad
     made.items[i].volume = scree_sum_value(sums[i][1]);
   }
   mark_open(mesh, adjacency, &made);
-  status = SCREE_OK;
-done:
-  scree_free(sums);
-  if (status == SCREE_OK)
-    *shells = made;
-  else
-    scree_shells_free(&made);
-  return status;
+  *shells = made;
+  made = (scree_shells){0};
+  return SCREE_OK;
 }
 
 void scree_shells_free(scree_shells *shells) {
@@ -93,6 +86,12 @@ void scree_shells_free(scree_shells *shells) {
   scree_free(shells->label);
   scree_free(shells->items);
   *shells = (scree_shells){0};
+}
+
+bool scree_shells_closed(const scree_shells *shells) {
+  for (size_t i = 0; i < shells->count; i++)
+    if (!shells->items[i].closed) return false;
+  return true;
 }
 
 /* ---- Shells that meet ---- */
@@ -108,20 +107,18 @@ static uint64_t key_of(uint32_t a, uint32_t b) {
 
 scree_status scree_shell_pairs_find(const scree_shells *shells, const scree_meetings *found,
                                     scree_shell_pairs *pairs, scree_error *error) {
-  uint64_t *keys = NULL;
+  uint64_t *keys;
   size_t key_count = 0, count = 0;
-  SCREE_ALLOC_OR(keys, found->count, error, out_of_memory);
+  SCREE_TRY_ALLOC(keys, found->count, error);
   for (size_t i = 0; i < found->count; i++) {
     uint32_t a = shells->label[found->items[i].first], b = shells->label[found->items[i].second];
     if (a != b && a != SCREE_NO_SHELL && b != SCREE_NO_SHELL) keys[key_count++] = key_of(a, b);
   }
-  qsort(keys, key_count, sizeof *keys, compare_keys);
+  scree_sort_keys(keys, key_count);
   for (size_t i = 0; i < key_count; i++)
     if (i == 0 || keys[i] != keys[i - 1]) keys[count++] = keys[i];
   *pairs = (scree_shell_pairs){keys, count};
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static bool do_meet(const scree_shell_pairs *pairs, uint32_t a, uint32_t b) {
@@ -164,17 +161,11 @@ static void find_starts(const scree_shells *shells, const scree_mesh *mesh, cons
 
 static scree_status make_starts(const scree_shells *shells, const scree_mesh *mesh,
                                 uint32_t **start, scree_error *error) {
-  uint32_t *owner = NULL;
-  *start = NULL;
-  SCREE_ALLOC_OR(owner, mesh->vertex_count, error, out_of_memory);
-  SCREE_ALLOC_OR(*start, shells->count, error, out_of_memory);
+  SCREE_SCRATCH(uint32_t, owner, mesh->vertex_count, error);
+  SCREE_TRY_ALLOC(*start, shells->count, error);
   find_owners(shells, mesh, owner);
   find_starts(shells, mesh, owner, *start);
-  scree_free(owner);
   return SCREE_OK;
-out_of_memory:
-  scree_free(owner);
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* ---- Winding numbers ---- */
@@ -266,27 +257,23 @@ static void mark_met(scree_shells *shells, const scree_shell_pairs *pairs) {
 
 scree_status scree_shells_wind(scree_shells *shells, const scree_shell_pairs *pairs,
                                const scree_facet_tree *tree, scree_error *error) {
-  hits found = {0};
-  uint32_t *start;
-  scree_status status = make_starts(shells, tree->mesh, &start, error);
+  SCREE_CLEANUP(scree_free_at) hits found = {0};
+  SCREE_CLEANUP(scree_free_at) uint32_t *start = NULL;
+  SCREE_TRY(make_starts(shells, tree->mesh, &start, error));
   mark_met(shells, pairs);
   /* the depths are made first: outermost asks for those of others */
   for (int pass = 0; pass < 2; pass++)
-    for (uint32_t i = 0; i < shells->count && status == SCREE_OK; i++) {
+    for (uint32_t i = 0; i < shells->count; i++) {
       scree_shell *shell = &shells->items[i];
       if (!shell->closed || (pass && shell->depth == 0)) continue;
-      if (!shoot(shells, tree, i, start[i], &found)) {
-        status = scree_fail_memory(error, found.capacity * sizeof(hit), "the nesting of shells");
-        break;
-      }
+      if (!shoot(shells, tree, i, start[i], &found))
+        return scree_fail_memory(error, found.capacity * sizeof(hit), "the nesting of shells");
       wind_around(shells, i, pairs, &found);
       shell->outermost = SCREE_NO_SHELL;
       for (size_t j = 0; pass && j < found.count; j++)
         if (shells->items[found.items[j].label].depth == 0) shell->outermost = found.items[j].label;
     }
-  scree_free(found.items);
-  scree_free(start);
-  return status;
+  return SCREE_OK;
 }
 
 scree_shell_kind scree_shell_kind_of(const scree_shell *shell) {

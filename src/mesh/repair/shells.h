@@ -37,6 +37,8 @@ typedef struct scree_shells {
 scree_status scree_shells_find(const scree_mesh *mesh, const scree_adjacency *adjacency,
                                scree_shells *shells, scree_error *error);
 void scree_shells_free(scree_shells *shells);
+/* Whether all are. */
+bool scree_shells_closed(const scree_shells *shells);
 
 /* Which shells meet which. */
 typedef struct scree_shell_pairs {

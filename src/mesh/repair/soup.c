@@ -56,15 +56,12 @@ static void free_sheets(sheets *s) {
 
 static scree_status begin_sheets(sheets *s, const scree_mesh *mesh, scree_error *error) {
   size_t facets = mesh->triangle_count;
-  *s = (sheets){.mesh = mesh};
-  SCREE_ALLOC_OR(s->partner, 3 * facets, error, out_of_memory);
-  SCREE_ALLOC_OR(s->turned, facets, error, out_of_memory);
-  SCREE_ALLOC_OR(s->piece, facets, error, out_of_memory);
-  SCREE_ALLOC_OR(s->queue, facets, error, out_of_memory);
-  if (scree_adjacency_build(mesh, &s->adjacency, error) == SCREE_OK) return SCREE_OK;
-out_of_memory:
-  free_sheets(s);
-  return SCREE_OUT_OF_MEMORY;
+  s->mesh = mesh;
+  SCREE_TRY_ALLOC(s->partner, 3 * facets, error);
+  SCREE_TRY_ALLOC(s->turned, facets, error);
+  SCREE_TRY_ALLOC(s->piece, facets, error);
+  SCREE_TRY_ALLOC(s->queue, facets, error);
+  return scree_adjacency_build(mesh, &s->adjacency, error);
 }
 
 /* ---- winding ---- */
@@ -183,12 +180,6 @@ typedef struct bulk {
   bool open;
 } bulk;
 
-static void exchange(uint32_t corners[3]) {
-  uint32_t kept = corners[1];
-  corners[1] = corners[2];
-  corners[2] = kept;
-}
-
 /* Of each piece, at its lowest facet: volume about that facet's first corner. */
 static void measure_pieces(const sheets *s, bulk *bulks) {
   for (uint32_t f = 0; f < s->mesh->triangle_count; f++) {
@@ -271,28 +262,18 @@ static size_t drop_from(const cover *c, uint32_t first) {
 static scree_status find_covered(const sheets *s, double tolerance, bool *gone, size_t *count,
                                  scree_error *error) {
   size_t facets = s->mesh->triangle_count;
-  scree_facet_tree tree = {0};
-  uint8_t *loose = scree_alloc_zero(facets, 1);
-  bulk *bulks = scree_alloc_zero(facets, sizeof *bulks);
-  scree_status status = SCREE_OK;
+  SCREE_CLEANUP(scree_facet_tree_free) scree_facet_tree tree = {0};
+  SCREE_SCRATCH(uint8_t, loose, facets, error);
+  SCREE_SCRATCH_ZERO(bulk, bulks, facets, error);
   size_t loose_count = 0;
-  *count = 0;
-  if (!loose || !bulks) {
-    status = scree_fail_memory(error, facets * sizeof *bulks, "a wall's pieces");
-    goto done;
-  }
   measure_pieces(s, bulks);
   for (uint32_t f = 0; f < facets; f++)
     loose_count += loose[f] = !is_solid(&bulks[s->piece[f]], tolerance);
-  if (loose_count == 0) goto done;
-  status = scree_facet_tree_build(s->mesh, &tree, error);
+  if (loose_count == 0) return SCREE_OK;
+  SCREE_TRY(scree_facet_tree_build(s->mesh, &tree, error));
   cover c = {s, &tree, loose, gone, tolerance};
-  for (uint32_t f = 0; status == SCREE_OK && f < facets; f++) *count += drop_from(&c, f);
-done:
-  scree_facet_tree_free(&tree);
-  scree_free(loose);
-  scree_free(bulks);
-  return status;
+  for (uint32_t f = 0; f < facets; f++) *count += drop_from(&c, f);
+  return SCREE_OK;
 }
 
 /* ---- the pieces ---- */
@@ -362,8 +343,7 @@ static int by_name(const void *x, const void *y) {
 static scree_status number_vertices(sheets *s, uint32_t *number, scree_mesh *made,
                                     scree_error *error) {
   size_t corners = 3 * s->mesh->triangle_count, count = 0;
-  corner_name *names = scree_alloc(corners, sizeof *names);
-  if (!names) return scree_fail_memory(error, corners * sizeof *names, "a wall's vertices");
+  SCREE_SCRATCH(corner_name, names, corners, error);
   join_corners(s, number);
   for (uint32_t c = 0; c < corners; c++) number[c] = scree_find_root(number, c);
   detach_facets(s, number);
@@ -379,7 +359,6 @@ static scree_status number_vertices(sheets *s, uint32_t *number, scree_mesh *mad
     number[names[i].corner] = (uint32_t)(count - 1);
   }
   made->vertex_count = count;
-  scree_free(names);
   return SCREE_OK;
 }
 
@@ -395,7 +374,7 @@ static void put_facet(const sheets *s, const uint32_t *number, uint32_t facet, s
   scree_piece *piece = &out->items[out->count - 1];
   uint32_t *t = out->mesh.triangles + 3 * out->mesh.triangle_count;
   memcpy(t, number + 3 * (size_t)facet, 3 * sizeof *t);
-  if (s->turned[facet]) exchange(t);
+  if (s->turned[facet]) scree_corners_turn(t);
   out->mending.turned += s->turned[facet];
   reach_out(piece, &out->mesh, out->mesh.triangle_count++);
   piece->count++;
@@ -427,48 +406,33 @@ static void put_facets(const sheets *s, const uint32_t *number, const bulk *bulk
 
 static scree_status put_pieces(sheets *s, scree_pieces *out, scree_error *error) {
   size_t facets = s->mesh->triangle_count;
-  uint32_t *number = NULL, *next = NULL;
-  bulk *bulks = scree_alloc_zero(facets, sizeof *bulks);
-  if (!bulks) return scree_fail_memory(error, facets * sizeof *bulks, "a wall's pieces");
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(number, 3 * facets, error, done);
-  SCREE_ALLOC_OR(next, facets, error, done);
-  SCREE_ALLOC_OR(out->mesh.positions, 9 * facets, error, done);
-  SCREE_ALLOC_OR(out->mesh.triangles, 3 * facets, error, done);
-  SCREE_ALLOC_OR(out->items, facets, error, done);
-  status = number_vertices(s, number, &out->mesh, error);
-  if (status != SCREE_OK) goto done;
+  SCREE_SCRATCH_ZERO(bulk, bulks, facets, error);
+  SCREE_SCRATCH(uint32_t, number, 3 * facets, error);
+  SCREE_SCRATCH(uint32_t, next, facets, error);
+  SCREE_TRY_ALLOC(out->mesh.positions, 9 * facets, error);
+  SCREE_TRY_ALLOC(out->mesh.triangles, 3 * facets, error);
+  SCREE_TRY_ALLOC(out->items, facets, error);
+  SCREE_TRY(number_vertices(s, number, &out->mesh, error));
   wind_all(s, false); /* by pieces as they were cut */
   measure_pieces(s, bulks);
   out->mending.parted += s->parted;
   put_facets(s, number, bulks, next, out);
-done:
-  scree_free(number);
-  scree_free(next);
-  scree_free(bulks);
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status divide(scree_mesh *mesh, double tolerance, scree_pieces *out,
                            scree_error *error) {
   for (int round = 0;; round++) {
-    sheets s;
+    SCREE_CLEANUP(free_sheets) sheets s = {0};
     size_t covered = 0;
-    bool *gone = scree_alloc_zero(mesh->triangle_count, sizeof *gone);
-    if (!gone) return scree_fail_memory(error, mesh->triangle_count, "a wall's facets");
-    scree_status status = begin_sheets(&s, mesh, error);
-    if (status == SCREE_OK) {
-      join_sheets(&s);
-      if (round < ROUNDS) status = find_covered(&s, tolerance, gone, &covered, error);
-      if (status == SCREE_OK && covered == 0) status = put_pieces(&s, out, error);
-      free_sheets(&s);
-    }
+    SCREE_SCRATCH_ZERO(bool, gone, mesh->triangle_count, error);
+    SCREE_TRY(begin_sheets(&s, mesh, error));
+    join_sheets(&s);
+    if (round < ROUNDS) SCREE_TRY(find_covered(&s, tolerance, gone, &covered, error));
+    if (covered == 0) return put_pieces(&s, out, error);
     scree_facets_drop(mesh, gone);
-    scree_free(gone);
-    out->mending.doubled += covered;
-    if (status == SCREE_OK && covered) /* edges may have lost their other facet */
-      status = scree_soup_join(mesh, tolerance, &out->mending, error);
-    if (status != SCREE_OK || covered == 0) return status;
+    out->mending.doubled += covered; /* edges may have lost their other facet */
+    SCREE_TRY(scree_soup_join(mesh, tolerance, &out->mending, error));
   }
 }
 
@@ -490,25 +454,21 @@ static scree_status refuse(const scree_mesh *soup, scree_error *error) {
 }
 
 scree_status scree_pieces_make(const scree_mesh *soup, scree_pieces *pieces, scree_error *error) {
-  scree_mesh mesh = {0};
-  scree_pieces made = {.count = 0};
-  scree_status status = scree_mesh_verify(soup, error);
-  if (status != SCREE_OK) return status;
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
+  SCREE_CLEANUP(scree_pieces_free) scree_pieces made = {.count = 0};
+  SCREE_TRY(scree_mesh_verify(soup, error));
   if (soup->triangle_count == 0) return refuse(soup, error);
   if (soup->triangle_count > UINT32_MAX / 8)
     return scree_fail(error, SCREE_LIMIT, "wall: %zu facets; at most %u", soup->triangle_count,
                       UINT32_MAX / 8);
   double tolerance = scree_soup_tolerance(soup);
-  status = scree_mesh_copy(soup, &mesh, error);
-  if (status == SCREE_OK) status = scree_soup_tidy(&mesh, tolerance, &made.mending, error);
-  if (status == SCREE_OK && mesh.triangle_count == 0) status = refuse(soup, error);
-  if (status == SCREE_OK) status = divide(&mesh, tolerance, &made, error);
-  scree_mesh_free(&mesh);
-  if (status == SCREE_OK)
-    *pieces = made;
-  else
-    scree_pieces_free(&made);
-  return status;
+  SCREE_TRY(scree_mesh_copy(soup, &mesh, error));
+  SCREE_TRY(scree_soup_tidy(&mesh, tolerance, &made.mending, error));
+  if (mesh.triangle_count == 0) return refuse(soup, error);
+  SCREE_TRY(divide(&mesh, tolerance, &made, error));
+  *pieces = made;
+  made = (scree_pieces){.count = 0};
+  return SCREE_OK;
 }
 
 void scree_pieces_free(scree_pieces *pieces) {
@@ -520,8 +480,7 @@ void scree_pieces_free(scree_pieces *pieces) {
 scree_status scree_wall_mend(const scree_mesh *soup, scree_mesh *wall, scree_wall_mending *mending,
                              scree_error *error) {
   scree_pieces pieces;
-  scree_status status = scree_pieces_make(soup, &pieces, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_pieces_make(soup, &pieces, error));
   if (mending) *mending = pieces.mending;
   *wall = pieces.mesh;
   pieces.mesh = (scree_mesh){0};
@@ -549,6 +508,6 @@ int scree_piece_winding(const scree_pieces *pieces, size_t index, vec3 p) {
 void scree_piece_turn(scree_pieces *pieces, size_t index) {
   scree_piece *piece = &pieces->items[index];
   for (size_t t = piece->first; t < piece->first + piece->count; t++)
-    exchange(pieces->mesh.triangles + 3 * t);
+    scree_corners_turn(pieces->mesh.triangles + 3 * t);
   piece->volume = -piece->volume;
 }

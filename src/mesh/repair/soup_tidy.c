@@ -24,21 +24,19 @@ double scree_soup_tolerance(const scree_mesh *mesh) {
 
 static scree_status weld(scree_mesh *mesh, double tolerance, scree_wall_mending *mending,
                          scree_error *error) {
-  scree_mesh welded = {0};
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh welded = {0};
   const scree_box box = scree_box_of_points(mesh->positions, mesh->vertex_count);
   double diagonal = vec3_distance(box.low, box.high);
   if (!(diagonal > 0)) return SCREE_OK; /* all of it is flat */
-  scree_status status = scree_mesh_copy(mesh, &welded, error);
-  if (status == SCREE_OK) status = scree_weld_near(&welded, tolerance / diagonal, error);
-  if (status == SCREE_OK && welded.vertex_count < mesh->vertex_count) {
-    mending->welded = mesh->vertex_count - welded.vertex_count;
-    mending->flat = mesh->triangle_count - welded.triangle_count;
-    scree_mesh kept = *mesh;
-    *mesh = welded;
-    welded = kept;
-  }
-  scree_mesh_free(&welded);
-  return status;
+  SCREE_TRY(scree_mesh_copy(mesh, &welded, error));
+  SCREE_TRY(scree_weld_near(&welded, tolerance / diagonal, error));
+  if (welded.vertex_count == mesh->vertex_count) return SCREE_OK;
+  mending->welded = mesh->vertex_count - welded.vertex_count;
+  mending->flat = mesh->triangle_count - welded.triangle_count;
+  scree_mesh kept = *mesh;
+  *mesh = welded;
+  welded = kept;
+  return SCREE_OK;
 }
 
 /* Over its longest edge, m. */
@@ -53,12 +51,10 @@ static double height_of(const scree_mesh *mesh, size_t t) {
 
 static scree_status drop_flat(scree_mesh *mesh, double tolerance, scree_wall_mending *mending,
                               scree_error *error) {
-  bool *gone = scree_alloc_zero(mesh->triangle_count, sizeof *gone);
-  if (!gone) return scree_fail_memory(error, mesh->triangle_count, "a wall's facets");
+  SCREE_SCRATCH(bool, gone, mesh->triangle_count, error);
   for (size_t t = 0; t < mesh->triangle_count; t++)
     gone[t] = scree_names_twice(mesh->triangles + 3 * t) || height_of(mesh, t) <= tolerance;
   mending->flat += scree_facets_drop(mesh, gone);
-  scree_free(gone);
   return SCREE_OK;
 }
 
@@ -67,48 +63,39 @@ static scree_status drop_flat(scree_mesh *mesh, double tolerance, scree_wall_men
 static scree_status join_once(scree_mesh *mesh, double tolerance, size_t *joined,
                               scree_error *error) {
   const scree_junction_rule rule = {tolerance, INFINITY, SIZE_MAX};
-  scree_rim rim;
-  scree_junctions found;
-  scree_status status = scree_rim_find(mesh, &rim, error);
-  if (status != SCREE_OK) return status;
-  status = scree_rim_junctions(mesh, &rim, &rule, &found, error);
-  scree_rim_free(&rim);
-  if (status != SCREE_OK) return status;
-  uint32_t *grown =
-      scree_resize(mesh->triangles, mesh->triangle_count + found.count, 3 * sizeof *grown);
-  if (grown) {
-    mesh->triangles = grown;
-    *joined += scree_junctions_split(mesh, &found);
-  } else {
-    status = scree_fail_memory(error, 3 * found.count * sizeof *grown, "a wall's facets");
-  }
-  scree_free(found.items);
-  return status;
+  SCREE_CLEANUP(scree_free_at) scree_junctions found = {0};
+  SCREE_TRY(scree_junctions_find(mesh, &rule, &found, error));
+  size_t count = mesh->triangle_count + found.count;
+  uint32_t *grown = scree_resize(mesh->triangles, count, 3 * sizeof *grown);
+  if (!grown) return scree_fail_memory(error, 3 * count * sizeof *grown, "a wall's facets");
+  mesh->triangles = grown;
+  *joined += scree_junctions_split(mesh, &found);
+  return SCREE_OK;
 }
 
 static scree_status drop_doubles(scree_mesh *mesh, scree_wall_mending *mending,
                                  scree_error *error) {
   size_t dropped;
-  scree_status status = scree_facets_drop_doubles(mesh, &dropped, error);
-  if (status == SCREE_OK) mending->doubled += dropped;
-  return status;
+  SCREE_TRY(scree_facets_drop_doubles(mesh, &dropped, error));
+  mending->doubled += dropped;
+  return SCREE_OK;
 }
 
 scree_status scree_soup_join(scree_mesh *mesh, double tolerance, scree_wall_mending *mending,
                              scree_error *error) {
   for (int pass = 0; pass < PASSES; pass++) {
     size_t before = mending->joined;
-    scree_status status = join_once(mesh, tolerance, &mending->joined, error);
-    if (status != SCREE_OK || mending->joined == before) return status;
+    SCREE_TRY(join_once(mesh, tolerance, &mending->joined, error));
+    if (mending->joined == before) break;
   }
   return SCREE_OK;
 }
 
 scree_status scree_soup_tidy(scree_mesh *mesh, double tolerance, scree_wall_mending *mending,
                              scree_error *error) {
-  scree_status status = weld(mesh, tolerance, mending, error);
-  if (status == SCREE_OK) status = drop_flat(mesh, tolerance, mending, error);
-  if (status == SCREE_OK) status = drop_doubles(mesh, mending, error); /* which have no rims */
-  if (status == SCREE_OK) status = scree_soup_join(mesh, tolerance, mending, error);
-  return status == SCREE_OK ? drop_doubles(mesh, mending, error) : status;
+  SCREE_TRY(weld(mesh, tolerance, mending, error));
+  SCREE_TRY(drop_flat(mesh, tolerance, mending, error));
+  SCREE_TRY(drop_doubles(mesh, mending, error)); /* which have no rims */
+  SCREE_TRY(scree_soup_join(mesh, tolerance, mending, error));
+  return drop_doubles(mesh, mending, error);
 }
