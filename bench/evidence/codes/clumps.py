@@ -20,7 +20,7 @@ sys.path.insert(0, str(HERE.parent))
 from common import WORK, Table, library  # noqa: E402
 from heaps import COLUMNS, compare, measured  # noqa: E402
 
-R, DENSITY, COUNT, STIFF, TUBE, HIGH = 0.0025, 2500, 100, 500.0, 0.025, 0.24
+R, DENSITY, COUNT, STIFF, TUBE, HIGH = 0.0025, 2500, 100, 800.0, 0.025, 0.24
 SPHERE = DENSITY * 4 / 3 * math.pi * R ** 3
 PRIMES = 32452843, 49979687, 67867967, 86028121, 104395301, 122949823, 141650939, 160481183, 179424673, 198491317
 
