@@ -61,6 +61,16 @@ def orifice():
         write(FIGURES / "evidence-orifice.svg", series, "hole, sphere diameters", "(spheres a second) to the power 2/5")
 
 
+def bulk():
+    table = RESULTS / "bulk-drum.csv"
+    if table.exists():
+        rows = read(table)
+        series = [(f"{code}, {name}", [(float(r["time"]), float(r[column])) for r in rows if r["code"] == code.lower()], "line")
+                  for column, name in (("down.small", "small below"), ("down.large", "large below"), ("up.small", "small above"), ("up.large", "large above"))
+                  for code in ("scree", "LIGGGHTS")]
+        write(FIGURES / "evidence-bulk.svg", series, "time, s", "spheres in a quarter")
+
+
 if __name__ == "__main__":
     if len(sys.argv) > 1:
         sys.exit(__doc__)
@@ -68,3 +78,4 @@ if __name__ == "__main__":
     drum()
     penetration()
     orifice()
+    bulk()

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Evidence: cases beside measurements and other codes, docs/background/evidence.md.
-#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration, orifice; all without a name
+#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration, orifice, bulk, polyhedra, clumps, paper; all without a name
 # Each piece goes on where it was broken off; what is done is not done again (delete its table in results/ to repeat it).
 # SCREE_EVIDENCE_DIR names the folder of measurements (default ../shared/evidence); a case without its folder is skipped.
 # One process at a time: nice -n 15 bench/evidence/run.sh runs beside other work. Some hours of one core in all.
@@ -13,7 +13,7 @@ work=${SCREE_EVIDENCE_WORK:-$root/build/evidence}
 results=$here/results
 shapes=recommended,4x,0.25x,0.0625x,sphere,clump5,clump20,clump50
 mkdir -p "$work" "$results"
-[ $# -gt 0 ] || set -- boulders drum penetration orifice
+[ $# -gt 0 ] || set -- boulders drum penetration orifice bulk polyhedra clumps paper
 
 # fitted CASE: its calibration and both tables of it.
 fitted() {
@@ -65,13 +65,38 @@ orifice() {
   "$here/orifice/orifice.py" compare "$results/orifice.csv" >"$results/orifice-compared.csv"
 }
 
+bulk() {
+  local case
+  for case in drum silo-large silo-small; do
+    "$here/bulk/bulk.py" run $case:1 "$results/bulk-$case.csv"
+    [ ! -s "$results/bulk-$case.csv" ] || "$here/bulk/bulk.py" compare $case "$results/bulk-$case.csv" >"$results/bulk-$case-compared.csv"
+  done
+}
+
+# heaps NAME SEEDS VARIANT...: tables of codes/NAME.py; without its other code nothing is there to compare.
+heaps() {
+  "$here/codes/$1.py" run "$results/$1.csv" "${@:2}"
+  [ ! -s "$results/$1.csv" ] || "$here/codes/$1.py" compare "$results/$1.csv" >"$results/$1-compared.csv"
+}
+
+polyhedra() {
+  heaps polyhedra 5 scree yade scree:0.1 scree:0.7
+  heaps polyhedra 2 yade-contacts
+  [ -s "$results/polyhedra-slide.csv" ] || ! command -v "${YADE:-yade}" >/dev/null ||
+    "$here/codes/polyhedra.py" slide scree yade yade:0.1 yade-contacts >"$results/polyhedra-slide.csv"
+}
+
+clumps() { heaps clumps 10 liggghts scree; }
+
+paper() { "$here/paper/claims.py" >"$results/paper-claims.csv"; }
+
 for case in "$@"; do
   case $case in
   boulders) folder=authume ;;
   drum) folder=granudrum ;;
-  penetration) folder=bulk ;;
-  orifice) folder= ;; # nothing measured
-  *) echo "run.sh: no case '$case'; there are boulders, drum, penetration and orifice" >&2 && exit 2 ;;
+  penetration | bulk) folder=bulk ;;
+  orifice | polyhedra | clumps | paper) folder= ;; # nothing measured
+  *) echo "run.sh: no case '$case'; there are boulders, drum, penetration, orifice, bulk, polyhedra, clumps and paper" >&2 && exit 2 ;;
   esac
   if [ -z "$folder" ] || [ -d "$SCREE_EVIDENCE_DIR/$folder" ]; then $case; else echo "$case: skipped, there is no folder $SCREE_EVIDENCE_DIR/$folder"; fi
 done

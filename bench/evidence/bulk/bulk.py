@@ -24,11 +24,11 @@ EVERY = 0.05
 # Steps are what scree asks for at least: 15 in a quarter period of a hit at 1 m/s.
 CASES = {
     "drum": {"scene": "drum", "coarse": 3, "step": 3.4e-5, "time": 5.0, "walls": "Drum_walls.txt", "shapes": {"small": (0.002, 30000), "large": (0.004, 8000)},
-             "inlet": {"at": [0, -0.03, 0], "axis": [0, 1, 0], "radius": 0.1, "length": 0.06}, "fill": 0.8},
+             "inlet": {"at": [0, -0.03, 0], "axis": [0, 1, 0], "radius": 0.1, "length": 0.06}, "fill": 0.8, "stiff": 10},
     "silo-large": {"scene": "silo", "coarse": 2, "step": 2.4e-5, "time": 2.0, "walls": "Silo_walls__large_orifice_.txt", "shapes": {"grain": (0.004, 25000)},
-                   "inlet": {"at": [0, 0, 0.02], "axis": [0, 0, 1], "radius": 0.098, "length": 0.28}, "fill": 0.8},
+                   "inlet": {"at": [0, 0, 0.02], "axis": [0, 0, 1], "radius": 0.1, "length": 0.28}, "fill": 0.5, "stiff": 3},
     "silo-small": {"scene": "silo", "coarse": 2, "step": 2.4e-5, "time": 3.5, "walls": "Silo_walls__small_orifice_.txt", "shapes": {"grain": (0.004, 25000)},
-                   "inlet": {"at": [0, 0, 0.02], "axis": [0, 0, 1], "radius": 0.098, "length": 0.28}, "fill": 0.8},
+                   "inlet": {"at": [0, 0, 0.02], "axis": [0, 0, 1], "radius": 0.1, "length": 0.28}, "fill": 0.5, "stiff": 3},
 }
 COLUMNS = {"drum": ["up.small", "up.large", "down.small", "down.large"], "silo": ["mass"]}
 MATERIALS = {  # of LIGGGHTS, by type
@@ -65,8 +65,8 @@ def fields(case):
 
 
 def filled(case, folder, seed):
-    """Spheres that came to rest, each a row of shape and place: from an inlet in the resting walls, a silo with a plug. Ten
-    times as stiff, since they fall faster than they will flow."""
+    """Spheres that came to rest, each a row of shape and place: from an inlet in the resting walls, a silo with a plug. They
+    are stiffer meanwhile, since they fall faster than they will flow."""
     text = (HERE / f"{case['scene']}.yaml").read_text().splitlines()
     inlet = {**case["inlet"], "radius": case["inlet"]["radius"] - 0.6 * max(d for d, _ in sizes(case).values())}
     lines = [line for line in text if not line.startswith(("bodies:", "outlets:"))]
@@ -79,9 +79,9 @@ def filled(case, folder, seed):
               "    shapes: {" + ", ".join(f"{name}: {n}" for name, (_, n) in sizes(case).items()) + "}",
               f"    count: {sum(n for _, n in sizes(case).values())}"]
     (folder / "fill.yaml").write_text("\n".join(lines) + "\n")
-    stiff = {f"materials.{word.strip()}.young": 10 * float(young) for word, _, young in
+    stiff = {f"materials.{word.strip()}.young": case["stiff"] * float(young) for word, _, young in
              (line.partition(": {young: ") for line in lines) if young for young in [young.split(",")[0]]}
-    scene = library().Scene(str(folder / "fill.yaml"), {**fields(case), **stiff, "contact.time_step": 0.39 * case["step"]})
+    scene = library().Scene(str(folder / "fill.yaml"), {**fields(case), **stiff, "contact.time_step": 0.98 * case["stiff"] ** -0.4 * case["step"]})
     scene.run(case["fill"])
     names, bodies = list(sizes(case)), scene.bodies()
     return [(names[k], *p) for k, p in zip(bodies.shape, bodies.position.tolist())]

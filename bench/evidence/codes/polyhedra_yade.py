@@ -1,5 +1,6 @@
 """yade -n -x polyhedra_yade.py CASE.json: polyhedra from a lifted box, by YADE's law of the overlapping volume. Prints a row a body:
-place and orientation (w x y z). The case: corners, bodies, slabs (centre, size), young (N/m3), friction, damping, step, lift, speed, time."""
+place and orientation (w x y z). The case: corners, bodies, slabs (centre, size), young (N/m3), friction, damping, whether it damps
+gravity too, gravity, step, lift, speed, time."""
 import json
 import math
 import sys
@@ -31,13 +32,15 @@ O.engines = [
         [Ip2_PolyhedraMat_PolyhedraMat_PolyhedraPhys()],
         [Law2_PolyhedraGeom_PolyhedraPhys_Volumetric()],
     ),
-    NewtonIntegrator(gravity=(0, 0, -9.81), damping=case["damping"], dampGravity=False),
+    NewtonIntegrator(gravity=case["gravity"], damping=case["damping"], dampGravity=case["damp_gravity"]),
 ]
 O.dt = case["step"]
 O.run(round(case["lift"] / O.dt), True)
+rest = round((case["time"] - case["lift"]) / O.dt)
 for slab in slabs:
     O.bodies[slab].state.vel = Vector3(0, 0, case["speed"])
-O.run(round((case["time"] - case["lift"]) / O.dt), True)
+if rest:  # 0 would be for ever
+    O.run(rest, True)
 for k, turn in zip(grains, turns):
     state = O.bodies[k].state
     turned = state.ori * turn.inverse()
