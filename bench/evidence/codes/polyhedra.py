@@ -21,7 +21,7 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, library  # noqa: E402
+from common import WORK, Table, commit, library  # noqa: E402
 from heaps import COLUMNS, compare, measured  # noqa: E402
 
 A, HALF = 0.015, (0.011, 0.009, 0.007)
@@ -118,7 +118,7 @@ def run(path, seeds, variants):
 def slide(variants):
     """A box that starts at rest, flat on a slope, friction 0.5: half of the time squared times g (sin a - 0.5 cos a). In scree
     its tangential spring, softer than YADE's, gives way first: some 2 mm more."""
-    print("degrees,variant,way_mm,closed_form_mm")
+    print(f"# commit {commit()}; polyhedra.py slide {' '.join(variants)}\ndegrees,variant,way_mm,closed_form_mm")
     folder = WORK / "polyhedra" / "slide"
     folder.mkdir(parents=True, exist_ok=True)
     for variant in variants:
