@@ -179,6 +179,20 @@ def level_is_taken(browser, folder, answer):
     check(name == "report.html" and b"fp-1" in report and report.rstrip().endswith(b"</html>"), "no report")
 
 
+def clump_is_taken(browser, folder):
+    """The clump of the level of 2,000 triangles, within what other functions of sine and power make of it."""
+    scree("simplify", "fp-1.stl", "-u", "mm", "-n", "2000", "-o", "level.ply", folder=folder)
+    scree("clump", "level.ply", "-u", "mm", "--max", "50", "-o", "clump", folder=folder)
+    name, page = saved(browser, "#save-clump")
+    idle(browser)
+    with open(os.path.join(folder, "clump", "level.csv"), "rb") as file:
+        tables = [[line.split(",") for line in table.decode().splitlines() if not line.startswith("#")] for table in (page, file.read())]
+    here, native = ([[float(value) for value in row] for row in table[1:]] for table in tables)
+    check(name == "fp-1.csv" and tables[0][0] == tables[1][0] and len(here) == len(native), f"{name} has {len(here)} spheres, the program's {len(native)}")
+    check(all(abs(a - b) < 0.5 for rows in zip(here, native) for a, b in zip(*rows)), "the clump is not the program's")
+    check(f"{len(here)} spheres" in browser.text(".state"), f"of the clump the page says {browser.text('.state')}")
+
+
 def broken_files_say_why(browser, folder):
     """The program's sentences, and the page goes on."""
     broken = {"cut.stl": b"solid x\nfacet normal 0 0 0\nouter loop\n", "words.obj": b"v 0 0 zero\n", "open.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
@@ -393,6 +407,7 @@ def main():
             another_tolerance(browser, folder, scan)
         check(tasks.longest() <= BLOCKED, f"the page blocked for {tasks.longest():.0f} ms")
         level_is_taken(browser, folder, answer)
+        clump_is_taken(browser, folder)
         pictures(browser)
         broken_files_say_why(browser, folder)
         several(browser, folder)

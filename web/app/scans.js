@@ -265,8 +265,7 @@ export class ScansTab {
     this.progress.hidden = false;
     this.update();
     try {
-      await act();
-      this.tell('');
+      this.tell((await act()) ?? '');
       return true;
     } catch (error) {
       if (error instanceof Cancelled) {
@@ -418,14 +417,17 @@ export class ScansTab {
     return made;
   }
 
+  // Of the level of 2,000 triangles, as the program's clump, but without decimating again; more than 50 spheres are
+  // seldom recommended, and take most of the time.
   saveClump() {
     const { index, name } = this.looked();
-    const scan = this.opened()[index];
     return this.during(`fitting spheres to ${name}`, async () => {
-      const { code, complaints, files } = await this.engine.ask({ do: 'program', words: ['clump', scan.file.name, '-u', this.unit.value, '-o', 'clump'],
-        files: [[scan.file.name, scan.file]], wanted: [`clump/${name}.csv`] });
+      const { mesh } = await this.engine.ask({ do: 'level', index, count: 2000, ending: 'ply', density: 2000 });
+      const { code, out, complaints, files } = await this.engine.ask({ do: 'program',
+        words: ['clump', `${name}.ply`, '-u', this.unit.value, '--max', '50', '-o', 'clump'], files: [[`${name}.ply`, mesh]], wanted: [`clump/${name}.csv`] });
       if (code || !files[0]) throw new Error(complaints.join(' '));
       saveAs(`${name}.csv`, 'text/csv', files[0]);
+      return `${name}.csv: ${out.filter((line) => line.includes('spheres: ')).join(' ')}`;
     });
   }
 
