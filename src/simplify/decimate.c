@@ -161,7 +161,7 @@ bool scree_decimate_tick(scree_decimator *d) {
   return scree_tick(&d->ticker, "decimating", all > end ? (all - left) / (all - end) : 0);
 }
 
-scree_status scree_decimate_refresh(scree_decimator *d) {
+scree_status scree_decimate_squeeze(scree_decimator *d) {
   uint32_t *vertices = NULL, *triangles = NULL;
   SCREE_ALLOC_OR(vertices, d->s.vertex_count, d->error, out_of_memory);
   SCREE_ALLOC_OR(triangles, d->s.triangle_count, d->error, out_of_memory);
@@ -170,15 +170,16 @@ scree_status scree_decimate_refresh(scree_decimator *d) {
   scree_free(vertices);
   scree_free(triangles);
   scree_halfmesh_give_back(&d->s);
-  scree_surface_tree_fit(&d->tree, &d->s, NULL);
-  scree_discard_tail(d->tree.node, 2 * d->tree.leaves * sizeof *d->tree.node);
-  scree_status status = scree_markers_find(&d->s, &d->markers, d->error);
-  if (status == SCREE_OK && scree_has_samples(&d->samples))
-    status = scree_samples_average(&d->samples, d->error);
-  return status;
+  return scree_markers_find(&d->s, &d->markers, d->error);
 out_of_memory:
   scree_free(vertices);
   return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_decimate_refresh(scree_decimator *d) {
+  SCREE_TRY(scree_decimate_squeeze(d));
+  scree_surface_tree_fit(&d->tree, &d->s, NULL);
+  return scree_has_samples(&d->samples) ? scree_samples_average(&d->samples, d->error) : SCREE_OK;
 }
 
 double scree_decimate_set_usual(scree_decimator *d, double *costs, size_t count, double share) {

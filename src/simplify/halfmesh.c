@@ -35,6 +35,8 @@ void scree_halfmesh_free(scree_halfmesh *s) {
   scree_free(s->half);
   scree_free(s->flags);
   scree_free(s->sums);
+  scree_free(s->best);
+  scree_free(s->cost);
   *s = (scree_halfmesh){0};
 }
 
@@ -487,6 +489,7 @@ scree_status scree_halfmesh_copy(const scree_halfmesh *s, scree_halfmesh *copy,
                                  scree_error *error) {
   scree_halfmesh made = *s;
   made.vertex = NULL, made.half = NULL, made.flags = NULL, made.sums = NULL;
+  made.best = NULL, made.cost = NULL;
   SCREE_ALLOC_OR(made.vertex, s->vertex_count, error, out_of_memory);
   SCREE_ALLOC_OR(made.half, 3 * s->triangle_count, error, out_of_memory);
   SCREE_ALLOC_OR(made.flags, s->vertex_count, error, out_of_memory);
@@ -518,12 +521,19 @@ static void renumber_triangles(void *context, size_t begin, size_t end, size_t b
   }
 }
 
+/* NONE also where it is gone. */
+static void renumber_edge(const compaction *c, uint32_t *h) {
+  bool stays = *h != SCREE_NONE && !scree_is_gone(c->s, *h / 3);
+  *h = stays ? 3 * c->triangle[*h / 3] + *h % 3 : SCREE_NONE;
+}
+
 static void renumber_vertices(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   const compaction *c = context;
   for (size_t v = begin; v < end; v++) {
-    uint32_t *h = &c->s->vertex[v].outgoing;
-    if (*h != SCREE_NONE) *h = 3 * c->triangle[*h / 3] + *h % 3;
+    if (c->s->vertex[v].outgoing == SCREE_NONE) continue;
+    renumber_edge(c, &c->s->vertex[v].outgoing);
+    if (c->s->best) renumber_edge(c, &c->s->best[v]);
   }
 }
 
@@ -552,6 +562,7 @@ static void move_vertices(scree_halfmesh *s) {
       s->vertex[to] = s->vertex[v];
       s->flags[to] = s->flags[v];
       if (s->sums) memcpy(s->sums[to], s->sums[v], sizeof s->sums[v]);
+      if (s->best) s->best[to] = s->best[v], s->cost[to] = s->cost[v];
     }
     to++;
   }
@@ -589,4 +600,6 @@ void scree_halfmesh_give_back(const scree_halfmesh *s) {
   scree_discard_tail(s->vertex, s->vertex_count * sizeof *s->vertex);
   scree_discard_tail(s->half, 3 * s->triangle_count * sizeof *s->half);
   if (s->sums) scree_discard_tail(s->sums, s->vertex_count * sizeof *s->sums);
+  if (s->best) scree_discard_tail(s->best, s->vertex_count * sizeof *s->best);
+  if (s->cost) scree_discard_tail(s->cost, s->vertex_count * sizeof *s->cost);
 }

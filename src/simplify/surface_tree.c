@@ -124,6 +124,7 @@ void scree_surface_tree_fit(scree_surface_tree *tree, const scree_halfmesh *s,
                             const scree_planned *planned) {
   fitting f = {.tree = tree, .s = s, .planned = planned};
   tree->leaves = leaves_for(s->triangle_count);
+  scree_discard_tail(tree->node, 2 * tree->leaves * sizeof *tree->node);
   scree_parallel_for(tree->leaves, BLOCK, fit_leaves, &f);
   for (f.first = tree->leaves / 2; f.first > 0; f.first /= 2)
     scree_parallel_for(f.first, BLOCK, fit_level, &f);

@@ -33,8 +33,8 @@ typedef struct taken {
 
 typedef struct pass {
   scree_decimator *d;
-  uint32_t *best;   /* per vertex: half-edge of its cheapest edge, or NONE */
-  double *cost;     /* per vertex: of that */
+  uint32_t *best;   /* the surface's */
+  double *cost;
   uint32_t *leader; /* per vertex: the cheapest candidate that claims it as an end; NONE between
                        choices */
   uint32_t *apex;   /* the same as an apex */
@@ -50,17 +50,14 @@ typedef struct pass {
 } pass;
 
 static void pass_free(pass *p) {
-  void *const blocks[] = {p->apex,  p->best,       p->cost,   p->leader, p->chosen,
-                          p->marks, p->taken,      p->sorted, p->target, p->sorted_target,
-                          p->order, p->candidates, p->swap};
+  void *const blocks[] = {p->apex,   p->leader,        p->chosen, p->marks,      p->taken, p->sorted,
+                          p->target, p->sorted_target, p->order,  p->candidates, p->swap};
   for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) scree_free(blocks[i]);
 }
 
 static scree_status pass_allocate(pass *p, scree_decimator *d) {
   size_t n = d->s.vertex_count;
-  *p = (pass){.d = d, .room = n / VERTICES_EACH + 1};
-  SCREE_ALLOC_OR(p->best, n, d->error, out_of_memory);
-  SCREE_ALLOC_OR(p->cost, n, d->error, out_of_memory);
+  *p = (pass){.d = d, .best = d->s.best, .cost = d->s.cost, .room = n / VERTICES_EACH + 1};
   SCREE_ALLOC_OR(p->leader, n, d->error, out_of_memory);
   SCREE_ALLOC_OR(p->apex, n, d->error, out_of_memory);
   SCREE_ALLOC_OR(p->chosen, n, d->error, out_of_memory);
@@ -85,11 +82,11 @@ out_of_memory:
 
 static void renew_sums(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
-  pass *p = context;
-  scree_halfmesh *s = &p->d->s;
+  scree_decimator *d = context;
+  scree_halfmesh *s = &d->s;
   for (size_t v = begin; v < end; v++) {
     if (s->vertex[v].outgoing == SCREE_NONE || !(s->flags[v] & SCREE_VERTEX_STALE)) continue;
-    if (!p->d->coster->merge) p->d->coster->sum(s, (uint32_t)v);
+    if (!d->coster->merge) d->coster->sum(s, (uint32_t)v);
   }
 }
 
@@ -147,7 +144,7 @@ static void rank_block(void *context, size_t begin, size_t end, size_t block, in
 /* Costs of all edges about stale vertices, which are fresh then. */
 static void rank_stale(pass *p) {
   scree_halfmesh *s = &p->d->s;
-  scree_parallel_for(s->vertex_count, BLOCK, renew_sums, p);
+  scree_parallel_for(s->vertex_count, BLOCK, renew_sums, p->d);
   scree_parallel_for(s->vertex_count, BLOCK, rank_block, p);
   for (size_t v = 0; v < s->vertex_count; v++) s->flags[v] &= (uint8_t)~SCREE_VERTEX_STALE;
 }
@@ -440,21 +437,34 @@ static scree_status run_round(pass *p, size_t *done) {
   scree_surface_tree_fit(&d->tree, &d->s, &planned);
   scree_parallel_for(p->taken_count, TAKEN_BLOCK, guard_block, p);
   *done += collapse_all(p);
-  rank_stale(p);
   return scree_markers_find(&d->s, &d->markers, d->error);
+}
+
+/* No vertex is ranked yet. */
+static scree_status start_ranks(scree_decimator *d) {
+  scree_halfmesh *s = &d->s;
+  SCREE_ALLOC_OR(s->best, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(s->cost, s->vertex_count, d->error, out_of_memory);
+  for (size_t v = 0; v < s->vertex_count; v++) s->flags[v] |= SCREE_VERTEX_STALE;
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
 }
 
 static scree_status run_pass(scree_decimator *d, size_t least, size_t *done) {
   pass p = {0};
   *done = 0;
-  scree_status status = scree_decimate_refresh(d);
+  scree_status status = scree_decimate_squeeze(d);
+  if (status == SCREE_OK && !d->s.best) status = start_ranks(d);
   if (status == SCREE_OK) status = pass_allocate(&p, d);
   if (status == SCREE_OK) {
-    for (size_t v = 0; v < d->s.vertex_count; v++) d->s.flags[v] |= SCREE_VERTEX_STALE;
     rank_stale(&p);
-    if (set_limit(&p))
-      for (int round = 0; status == SCREE_OK && round < ROUNDS; round++)
-        if (d->s.live_triangle_count > least) status = run_round(&p, done);
+    bool more = set_limit(&p);
+    for (int round = 0; more && status == SCREE_OK && round < ROUNDS; round++) {
+      if (round > 0) rank_stale(&p);
+      status = run_round(&p, done);
+      more = d->s.live_triangle_count > least;
+    }
   }
   pass_free(&p);
   return status;
@@ -469,5 +479,6 @@ scree_status scree_decimate_in_passes(scree_decimator *d, size_t least) {
     live = d->s.live_triangle_count;
     status = scree_decimate_tick(d) ? run_pass(d, least, &done) : SCREE_CANCELLED;
   }
+  scree_parallel_for(d->s.vertex_count, BLOCK, renew_sums, d);
   return status;
 }
