@@ -27,6 +27,11 @@ typedef struct task {
   int depth;
 } task;
 
+/* A node without its box. */
+typedef struct branch {
+  uint32_t first, count;
+} branch;
+
 typedef struct halves {
   uint32_t slot; /* of the left part's node; the right one's is the next */
   task left, right;
@@ -38,7 +43,7 @@ typedef struct builder {
   /* Nodes but the root's are fewer than twice the items, and fewer than the items where no leaf has
    * a single one: so many slots an item, those of a subtree from its first item's on. */
   uint32_t slots;
-  scree_tree_node *scratch;
+  branch *scratch;
   uint32_t root_slot;
   task subtrees[2 * SUBTREES];
   halves splits[SUBTREES]; /* of these, as they are split */
@@ -161,19 +166,11 @@ static size_t split_boxes(const builder *b, const task *t, const scree_box *cent
   return halve(boxes, t->count, bins.axis);
 }
 
-static scree_tree_node leaf_of(const builder *b, const task *t) {
-  scree_tree_node leaf = {b->boxes[t->first].box, t->first, t->count};
-  for (size_t i = 1; i < t->count; i++)
-    leaf.box = scree_box_join(leaf.box, b->boxes[t->first + i].box);
-  return leaf;
-}
-
 /* Makes the task's node a leaf (false), or splits it in two further tasks whose nodes are *slot and
  * *slot + 1. */
 static bool build_node(builder *b, const task *t, uint32_t *slot, task *left, task *right) {
-  scree_tree_node *node = &b->scratch[t->node];
   if (t->count <= b->items->leaf) {
-    *node = leaf_of(b, t);
+    b->scratch[t->node] = (branch){t->first, t->count};
     return false;
   }
   scree_box centres = scree_box_empty();
@@ -182,7 +179,7 @@ static bool build_node(builder *b, const task *t, uint32_t *slot, task *left, ta
     centres = scree_box_join(centres, (scree_box){centre, centre});
   }
   uint32_t middle = (uint32_t)split_boxes(b, t, &centres);
-  *node = (scree_tree_node){.first = *slot};
+  b->scratch[t->node] = (branch){*slot, 0};
   *left = (task){*slot, t->first, middle, t->depth + 1};
   *right = (task){*slot + 1, t->first + middle, t->count - middle, t->depth + 1};
   *slot += 2;
@@ -247,7 +244,7 @@ static size_t count_nodes(const builder *b) {
   int depth = 0;
   stack[depth++] = b->root_slot;
   while (depth > 0) {
-    const scree_tree_node *node = &b->scratch[stack[--depth]];
+    const branch *node = &b->scratch[stack[--depth]];
     count++;
     if (node->count) continue;
     stack[depth++] = node->first + 1;
@@ -256,7 +253,19 @@ static size_t count_nodes(const builder *b) {
   return count;
 }
 
-/* Copies the scratch nodes depth first, without holes, and joins the boxes. */
+static void make_leaf_boxes(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const builder *b = context;
+  for (size_t i = begin; i < end; i++) {
+    scree_tree_node *node = &b->out->nodes[i];
+    const uint32_t *item = b->out->order + node->first;
+    node->box = scree_box_empty();
+    for (uint32_t k = 0; k < node->count; k++)
+      node->box = scree_box_join(node->box, b->items->box(b->items->context, item[k]));
+  }
+}
+
+/* Copies the scratch nodes depth first, without holes. */
 static void lay_out(const builder *b) {
   struct {
     uint32_t from, to;
@@ -267,19 +276,21 @@ static void lay_out(const builder *b) {
   stack[depth++].to = 0;
   while (depth > 0) {
     depth--;
-    uint32_t to = stack[depth].to;
-    scree_tree_node node = b->scratch[stack[depth].from];
-    uint32_t children = node.first;
-    if (!node.count) node.first = used;
-    b->out->nodes[to] = node;
+    branch node = b->scratch[stack[depth].from];
+    b->out->nodes[stack[depth].to] =
+        (scree_tree_node){.first = node.count ? node.first : used, .count = node.count};
     if (node.count) continue;
     for (uint32_t side = 2; side-- > 0;) {
-      stack[depth].from = children + side;
+      stack[depth].from = node.first + side;
       stack[depth++].to = used + side;
     }
     used += 2;
   }
-  for (size_t i = used; i-- > 0;) {
+}
+
+static void make_node_boxes(builder *b) {
+  scree_parallel_for(b->out->node_count, ITEM_BLOCK, make_leaf_boxes, b);
+  for (size_t i = b->out->node_count; i-- > 0;) {
     scree_tree_node *node = &b->out->nodes[i], *child = b->out->nodes + node->first;
     if (!node->count) node->box = scree_box_join(child[0].box, child[1].box);
   }
@@ -299,13 +310,14 @@ scree_status scree_tree_build(const scree_boxed *items, scree_tree *tree, scree_
   scree_parallel_for(count, ITEM_BLOCK, make_boxes, &b);
   build_top(&b);
   scree_parallel_for(b.subtree_count, 1, build_subtree, &b);
+  SCREE_ALLOC_OR(made.order, count, error, done);
+  for (size_t i = 0; i < count; i++) made.order[i] = b.boxes[i].index;
+  scree_free(b.boxes);
+  b.boxes = NULL;
   made.node_count = count_nodes(&b);
   SCREE_ALLOC_OR(made.nodes, made.node_count, error, done);
   lay_out(&b);
-  scree_free(b.scratch);
-  b.scratch = NULL;
-  SCREE_ALLOC_OR(made.order, count, error, done);
-  for (size_t i = 0; i < count; i++) made.order[i] = b.boxes[i].index;
+  make_node_boxes(&b);
   status = SCREE_OK;
 done:
   scree_free(b.boxes);

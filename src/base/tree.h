@@ -38,7 +38,7 @@ typedef enum scree_tree_split {
   SCREE_SPLIT_HALVES, /* at the median: the least deep */
 } scree_tree_split;
 
-/* Items with their boxes, which are asked for once each, by any thread. */
+/* Items with their boxes, which are asked for twice each, by any thread. */
 typedef struct scree_boxed {
   size_t count;
   scree_box (*box)(const void *context, size_t item);

@@ -173,7 +173,7 @@ static bool move(fit *f) {
   if (scree_shape_is_spike(&f->s, fan->at) || !scree_shape_allows(&f->s, fan, 0) ||
       !scree_apart(&around, fan))
     return false;
-  scree_samples_settle(&f->samples, &f->s, fan, &f->gathered);
+  scree_samples_settle(&f->samples, fan, &f->gathered);
   f->s.vertex[fan->a].at = fan->at;
   for (uint32_t i = 0; i < fan->count; i++) {
     scree_bounds b = scree_fan_bounds(fan, i);

@@ -30,25 +30,33 @@ static bool join(scree_surface_node *a, const scree_surface_node *b) {
   return grew;
 }
 
-uint32_t scree_averse(vec3 n) {
-  const double along[13] = {n.x,
-                            n.y,
-                            n.z,
-                            n.x + n.y,
-                            n.x - n.y,
-                            n.x + n.z,
-                            n.x - n.z,
-                            n.y + n.z,
-                            n.y - n.z,
-                            n.x + n.y + n.z,
-                            n.x + n.y - n.z,
-                            n.x - n.y + n.z,
-                            n.y + n.z - n.x};
+void scree_facing_add(scree_facing *f, vec3 n) {
   double rounding = 1e-14 * (fabs(n.x) + fabs(n.y) + fabs(n.z));
+  const double along[SCREE_FACING_LINES] = {n.x,
+                                            n.y,
+                                            n.z,
+                                            n.x + n.y,
+                                            n.x - n.y,
+                                            n.x + n.z,
+                                            n.x - n.z,
+                                            n.y + n.z,
+                                            n.y - n.z,
+                                            n.x + n.y + n.z,
+                                            n.x + n.y - n.z,
+                                            n.x - n.y + n.z,
+                                            n.y + n.z - n.x};
+  for (int k = 0; k < SCREE_FACING_LINES; k++) {
+    double least = along[k] - rounding, most = along[k] + rounding;
+    f->least[k] = least < f->least[k] ? least : f->least[k];
+    f->most[k] = most > f->most[k] ? most : f->most[k];
+  }
+}
+
+uint32_t scree_facing_averse(const scree_facing *f) {
   uint32_t averse = 0;
-  for (int k = 0; k < 13; k++) {
-    averse |= (uint32_t) !(along[k] > rounding) << (2 * k);
-    averse |= (uint32_t) !(-along[k] > rounding) << (2 * k + 1);
+  for (int k = 0; k < SCREE_FACING_LINES; k++) {
+    averse |= (uint32_t) !(f->least[k] > 0) << (2 * k);
+    averse |= (uint32_t) !(f->most[k] < 0) << (2 * k + 1);
   }
   return averse;
 }
@@ -82,31 +90,33 @@ typedef struct fitting {
 } fitting;
 
 /* Triangle t as it is, and as it is planned to be. */
-static void add_triangle(scree_surface_node *node, const fitting *f, size_t t) {
+static void add_triangle(scree_bounds *bounds, scree_facing *facing, const fitting *f, size_t t) {
   const scree_halfmesh *s = f->s;
   vec3 at[3];
   int moved = 0;
   scree_corners(s, t, at);
-  node->averse |= scree_averse(vec3_triangle_normal(at[0], at[1], at[2]));
+  scree_facing_add(facing, vec3_triangle_normal(at[0], at[1], at[2]));
   for (size_t i = 0; i < 3; i++) {
-    scree_bounds_add(&node->bounds, at[i]);
+    scree_bounds_add(bounds, at[i]);
     uint32_t v = s->half[3 * t + i].from;
     if (!f->planned || f->planned->chosen[v] == SCREE_NONE) continue;
     at[i] = f->planned->target[f->planned->chosen[v]];
-    scree_bounds_add(&node->bounds, at[i]);
+    scree_bounds_add(bounds, at[i]);
     moved++;
   }
-  if (moved == 1) node->averse |= scree_averse(vec3_triangle_normal(at[0], at[1], at[2]));
+  if (moved == 1) scree_facing_add(facing, vec3_triangle_normal(at[0], at[1], at[2]));
 }
 
 static void fit_leaves(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   const fitting *f = context;
   for (size_t leaf = begin; leaf < end; leaf++) {
-    scree_surface_node node = {.bounds = scree_bounds_empty()};
+    scree_bounds bounds = scree_bounds_empty();
+    scree_facing facing = scree_facing_all();
     for (size_t t = LEAF * leaf; t < LEAF * leaf + LEAF && t < f->s->triangle_count; t++)
-      if (!scree_is_gone(f->s, t)) add_triangle(&node, f, t);
-    f->tree->node[f->tree->leaves + leaf] = node;
+      if (!scree_is_gone(f->s, t)) add_triangle(&bounds, &facing, f, t);
+    f->tree->node[f->tree->leaves + leaf] =
+        (scree_surface_node){bounds, scree_facing_averse(&facing)};
   }
 }
 
@@ -132,7 +142,9 @@ void scree_surface_tree_fit(scree_surface_tree *tree, const scree_halfmesh *s,
 
 void scree_surface_tree_grow(scree_surface_tree *tree, uint32_t triangle,
                              const scree_bounds *bounds, vec3 normal) {
-  scree_surface_node added = {*bounds, scree_averse(normal)};
+  scree_facing facing = scree_facing_all();
+  scree_facing_add(&facing, normal);
+  scree_surface_node added = {*bounds, scree_facing_averse(&facing)};
   for (size_t i = tree->leaves + triangle / LEAF; i > 0 && join(&tree->node[i], &added);) i /= 2;
 }
 
@@ -172,34 +184,6 @@ size_t scree_surface_tree_overlap(const scree_surface_tree *tree, const scree_ha
       if (count < room) found[count] = (uint32_t)t;
   }
   return count;
-}
-
-/* After Ericson, "Real-time collision detection" (2005), 5.1.5. */
-double scree_distance2(const vec3 corner[3], vec3 p) {
-  vec3 ab = vec3_sub(corner[1], corner[0]), ac = vec3_sub(corner[2], corner[0]),
-       ap = vec3_sub(p, corner[0]);
-  double d1 = vec3_dot(ab, ap), d2 = vec3_dot(ac, ap), u = 0, v = 0;
-  double bb = vec3_norm2(ab), cc = vec3_norm2(ac), bc = vec3_dot(ab, ac);
-  double d3 = d1 - bb, d4 = d2 - bc, d5 = d1 - bc, d6 = d2 - cc;
-  double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-  if (d1 <= 0 && d2 <= 0) {
-  } else if (d3 >= 0 && d4 <= d3) {
-    u = 1;
-  } else if (d6 >= 0 && d5 <= d6) {
-    v = 1;
-  } else if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-    u = d1 / (d1 - d3);
-  } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-    v = d2 / (d2 - d6);
-  } else if (va <= 0 && d4 >= d3 && d5 >= d6) {
-    v = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    u = 1 - v;
-  } else {
-    double sum = va + vb + vc;
-    u = vb / sum;
-    v = vc / sum;
-  }
-  return vec3_norm2(vec3_mad(vec3_mad(ap, ab, -u), ac, -v));
 }
 
 static double distance_to_box(const scree_bounds *b, vec3 p) {

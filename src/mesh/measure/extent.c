@@ -6,6 +6,8 @@
  * of opposite ones one: at most 9 degrees from any other direction. */
 #include "mesh/measure/extent.h"
 
+#include "base/lanes.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -16,24 +18,31 @@ static bool is_kept(int i, int j, int k) {
   return k > 0 || j > 0;
 }
 
+static void set_direction(scree_extent *extent, size_t i, vec3 d) {
+  extent->x[i] = d.x;
+  extent->y[i] = d.y;
+  extent->z[i] = d.z;
+}
+
 void scree_extent_start(scree_extent *extent, const double frame[3][3]) {
   enum { N = SCREE_EXTENT_STEPS };
   vec3 axes[3] = {vec3_load(frame[0]), vec3_load(frame[1]), vec3_load(frame[2])};
   size_t count = 3;
-  for (size_t i = 0; i < 3; i++) extent->direction[i] = axes[i];
+  for (size_t i = 0; i < 3; i++) set_direction(extent, i, axes[i]);
   for (int i = -N; i <= N; i++)
     for (int j = -N; j <= N; j++)
       for (int k = 0; k <= N; k++)
         if (is_kept(i, j, k))
-          extent->direction[count++] =
-              vec3_unit(vec3_mad(vec3_mad(vec3_scale(axes[0], i), axes[1], j), axes[2], k));
+          set_direction(
+              extent, count++,
+              vec3_unit(vec3_mad(vec3_mad(vec3_scale(axes[0], i), axes[1], j), axes[2], k)));
   for (size_t i = 0; i < SCREE_EXTENT_COUNT; i++)
     extent->low[i] = INFINITY, extent->high[i] = -INFINITY;
 }
 
-void scree_extent_add(scree_extent *extent, vec3 p) {
-  for (size_t i = 0; i < SCREE_EXTENT_COUNT; i++) {
-    double along = vec3_dot(extent->direction[i], p);
+SCREE_LANES void scree_extent_add(scree_extent *extent, vec3 p) {
+  for (int i = 0; i < SCREE_EXTENT_COUNT; i++) {
+    double along = scree_extent_along(extent, i, p);
     extent->low[i] = along < extent->low[i] ? along : extent->low[i];
     extent->high[i] = along > extent->high[i] ? along : extent->high[i];
   }
@@ -49,7 +58,7 @@ int scree_extent_end(const scree_extent *extent, vec3 p) {
   int end = 0;
   double least = INFINITY;
   for (int i = 0; i < SCREE_EXTENT_COUNT; i++) {
-    double along = vec3_dot(extent->direction[i], p), width = scree_extent_width(extent, i),
+    double along = scree_extent_along(extent, i, p), width = scree_extent_width(extent, i),
            above = extent->high[i] - along, below = along - extent->low[i];
     if (above < least * width) least = above / width, end = i;
     if (below < least * width) least = below / width, end = ~i;
@@ -57,10 +66,20 @@ int scree_extent_end(const scree_extent *extent, vec3 p) {
   return end;
 }
 
+SCREE_LANES static bool is_beyond(const scree_extent *extent, vec3 p) {
+  long long beyond = 0;
+  for (int i = 0; i < SCREE_EXTENT_COUNT; i++) {
+    double along = scree_extent_along(extent, i, p);
+    beyond |= (along > extent->high[i]) | (along < extent->low[i]);
+  }
+  return beyond;
+}
+
 double scree_extent_beyond(const scree_extent *extent, vec3 p, double size) {
   double most = 0;
+  if (!is_beyond(extent, p)) return 0;
   for (int i = 0; i < SCREE_EXTENT_COUNT; i++) {
-    double along = vec3_dot(extent->direction[i], p), above = along - extent->high[i],
+    double along = scree_extent_along(extent, i, p), above = along - extent->high[i],
            below = extent->low[i] - along, beyond = above > below ? above : below;
     if (beyond <= 0) continue;
     most = fmax(most, beyond * fmax(1, size / scree_extent_width(extent, i)));

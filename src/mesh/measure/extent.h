@@ -10,9 +10,10 @@ enum {
   SCREE_EXTENT_COUNT = 2 * SCREE_EXTENT_STEPS * SCREE_EXTENT_STEPS + 1
 };
 
-/* From low to high along each direction; the first three directions are the frame's axes. */
+/* From low to high along each direction (x, y, z), side by side for loops over them; the first
+ * three are the frame's axes. */
 typedef struct scree_extent {
-  vec3 direction[SCREE_EXTENT_COUNT];
+  double x[SCREE_EXTENT_COUNT], y[SCREE_EXTENT_COUNT], z[SCREE_EXTENT_COUNT];
   double low[SCREE_EXTENT_COUNT], high[SCREE_EXTENT_COUNT];
 } scree_extent;
 
@@ -24,6 +25,9 @@ void scree_extent_add(scree_extent *extent, vec3 p);
 /* Of a mesh's facets. O(N). */
 void scree_extent_of_mesh(scree_extent *extent, const double frame[3][3], const scree_mesh *mesh);
 
+static inline double scree_extent_along(const scree_extent *extent, int i, vec3 p) {
+  return extent->x[i] * p.x + extent->y[i] * p.y + extent->z[i] * p.z;
+}
 static inline double scree_extent_width(const scree_extent *extent, int i) {
   return extent->high[i] - extent->low[i];
 }
@@ -34,7 +38,7 @@ int scree_extent_end(const scree_extent *extent, vec3 p);
 /* How far p lies within that end. */
 static inline double scree_extent_depth(const scree_extent *extent, int end, vec3 p) {
   int i = end < 0 ? ~end : end;
-  double along = vec3_dot(extent->direction[i], p);
+  double along = scree_extent_along(extent, i, p);
   return end < 0 ? along - extent->low[i] : extent->high[i] - along;
 }
 

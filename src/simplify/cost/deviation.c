@@ -94,8 +94,8 @@ out_of_memory:
 }
 
 /* To the front of the triangle's list, or behind its first, which deviates most. */
-static void list_sample(scree_samples *p, const scree_halfmesh *s, uint32_t t, uint32_t v) {
-  float deviation = (float)scree_deviation_of(p, s, v, (double)p->far[v]);
+static void list_sample(scree_samples *p, uint32_t t, uint32_t v) {
+  float deviation = (float)scree_deviation_of(p, v, (double)p->far[v]);
   uint32_t *link = &p->first[t];
   if (*link != SCREE_NONE && deviation <= p->worst[t]) link = &p->next[*link];
   p->worst[t] = fmaxf(p->worst[t], deviation);
@@ -109,7 +109,7 @@ static void link_all(scree_samples *p, const scree_halfmesh *s) {
   memset(p->worst, 0, s->triangle_count * sizeof *p->worst);
   for (uint32_t v = (uint32_t)p->scan.vertex_count; v-- > 0;) {
     if (p->far[v] < 0) continue;
-    list_sample(p, s, p->next[v], v);
+    list_sample(p, p->next[v], v);
   }
 }
 
@@ -152,6 +152,9 @@ static scree_status measure_extent(scree_samples *p, scree_error *error) {
   if (status != SCREE_OK) return status;
   scree_extent_start(&p->extent, (const double(*)[3])frame.m);
   for (size_t v = 0; v < scan->vertex_count; v++) scree_extent_add(&p->extent, scan->vertex[v].at);
+  for (int i = 0; i < SCREE_EXTENT_COUNT; i++)
+    p->weight[i] = scree_larger(1, scree_tune.grow * sqrt(scan->area / PI) /
+                                       scree_extent_width(&p->extent, i));
   SCREE_ALLOC_OR(p->end, scan->vertex_count, error, out_of_memory);
   scree_parallel_for(scan->vertex_count, BLOCK, end_block, p);
   return SCREE_OK;
@@ -320,41 +323,40 @@ double scree_deviation_bound(const scree_samples *p, const scree_halfmesh *s, co
   return worst + sqrt(rise2);
 }
 
-/* Of the width's share that is lost `far - depth` is a bound. */
-static double weight_at(const scree_samples *p, const scree_halfmesh *s, uint32_t v) {
-  int i = p->end[v] < 0 ? ~p->end[v] : p->end[v];
-  return scree_larger(1, scree_tune.grow * sqrt(s->area / PI) / scree_extent_width(&p->extent, i));
+static double weight_at(const scree_samples *p, uint32_t v) {
+  return p->weight[p->end[v] < 0 ? ~p->end[v] : p->end[v]];
 }
 
-double scree_deviation_of(const scree_samples *p, const scree_halfmesh *s, uint32_t v, double far) {
+/* Of the width's share that is lost `far - depth` is a bound. */
+double scree_deviation_of(const scree_samples *p, uint32_t v, double far) {
   double depth = scree_extent_depth(&p->extent, p->end[v], p->scan.vertex[v].at);
-  return scree_larger(far, (far - depth) * weight_at(p, s, v));
+  return scree_larger(far, (far - depth) * weight_at(p, v));
 }
 
 /* How far the sample may be for no more than this deviation. */
-static double far_for(const scree_samples *p, const scree_halfmesh *s, uint32_t v,
-                      double deviation) {
+static double far_for(const scree_samples *p, uint32_t v, double deviation) {
   double depth = scree_extent_depth(&p->extent, p->end[v], p->scan.vertex[v].at);
-  return scree_smaller(deviation, depth + deviation / weight_at(p, s, v));
+  return scree_smaller(deviation, depth + deviation / weight_at(p, v));
 }
 
 double scree_deviation_growth(const scree_samples *p, const scree_halfmesh *s, vec3 at) {
   return scree_extent_beyond(&p->extent, at, scree_tune.grow * sqrt(s->area / PI));
 }
 
-/* The greatest deviation so far, squared, and what is asked of it. */
+/* The greatest deviation so far, and squared, and what is asked of that. */
 typedef struct search {
-  double deviation2, most2;
+  double deviation, deviation2, most2;
 } search;
 
 /* Of one sample; start: the fan's triangle to look at first. */
-static void heed_sample(const scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
-                        uint32_t v, uint32_t start, search *w) {
-  double enough = far_for(p, s, v, sqrt(w->deviation2)),
+static void heed_sample(const scree_samples *p, const scree_fan *f, uint32_t v, uint32_t start,
+                        search *w) {
+  double enough = far_for(p, v, w->deviation),
          far2 = to_fan(f, p->scan.vertex[v].at, enough * enough, &start);
   if (far2 <= enough * enough) return;
-  double lost = scree_deviation_of(p, s, v, sqrt(far2));
+  double lost = scree_deviation_of(p, v, sqrt(far2));
   w->deviation2 = scree_larger(w->deviation2, lost * lost);
+  w->deviation = sqrt(w->deviation2);
 }
 
 /* The samples about the fan: first the ends, and of every list the first, which is the farthest. */
@@ -362,19 +364,19 @@ static void heed_samples(const scree_samples *p, const scree_halfmesh *s, const 
                          search *w) {
   const uint32_t ends[2] = {p->of[f->a], p->of[f->b]}, count = scree_fan_triangle_count(f);
   for (int k = 0; k < 1 + (f->b != f->a); k++)
-    if (p->far[ends[k]] == NOT_YET) heed_sample(p, s, f, ends[k], 0, w);
+    if (p->far[ends[k]] == NOT_YET) heed_sample(p, f, ends[k], 0, w);
   for (int rest = 0; rest < 2; rest++)
     for (uint32_t k = 0; k < count && w->deviation2 <= w->most2; k++) {
       uint32_t v = p->first[scree_fan_triangle(s, f, k)], start = k < f->count ? k : 0;
-      if (v != SCREE_NONE && !rest) heed_sample(p, s, f, v, start, w);
+      if (v != SCREE_NONE && !rest) heed_sample(p, f, v, start, w);
       while (rest && v != SCREE_NONE && (v = p->next[v]) != SCREE_NONE && w->deviation2 <= w->most2)
-        heed_sample(p, s, f, v, start, w);
+        heed_sample(p, f, v, start, w);
     }
 }
 
 double scree_deviation_find(const scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
                             double from, double to) {
-  search w = {from * from, to * to};
+  search w = {sqrt(from * from), from * from, to * to};
   heed_samples(p, s, f, &w);
   if (w.deviation2 <= w.most2)
     w.deviation2 = scree_larger(
@@ -409,8 +411,7 @@ static void thin(scree_samples *p, scree_gathered *g) {
   g->count = left;
 }
 
-void scree_samples_settle(scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
-                          const scree_gathered *g) {
+void scree_samples_settle(scree_samples *p, const scree_fan *f, const scree_gathered *g) {
   for (uint32_t i = 0; i < f->count; i++) {
     p->first[f->edge[i] / 3] = SCREE_NONE;
     p->worst[f->edge[i] / 3] = 0;
@@ -420,7 +421,7 @@ void scree_samples_settle(scree_samples *p, const scree_halfmesh *s, const scree
     double distance2;
     uint32_t t = f->edge[nearest_of_fan(f, p->scan.vertex[v].at, &distance2)] / 3;
     p->far[v] = (float)sqrt(distance2);
-    list_sample(p, s, t, v);
+    list_sample(p, t, v);
   }
 }
 
@@ -428,6 +429,6 @@ bool scree_samples_move(scree_samples *p, const scree_halfmesh *s, const scree_f
                         scree_gathered *g) {
   if (!scree_samples_gather(p, s, f, g)) return false;
   if (g->count > (size_t)scree_tune.crowd * f->count) thin(p, g);
-  scree_samples_settle(p, s, f, g);
+  scree_samples_settle(p, f, g);
   return true;
 }

@@ -14,16 +14,17 @@
 typedef struct scree_samples {
   scree_halfmesh scan; /* the reference surface, in the same box */
   scree_surface_tree scan_tree;
-  scree_extent extent; /* of the scan, in the frame of its least box */
-  int8_t *end;         /* per vertex of the scan: see scree_extent_end */
-  uint32_t *of;        /* per vertex of the surface: of the scan */
-  uint32_t *first;     /* per triangle of the surface: its farthest sample, the first of its list,
-                          or NONE */
-  float *worst;        /* per triangle: the greatest distance of its samples */
-  uint32_t *next;      /* per vertex of the scan: in its triangle's list */
-  float *far;          /* the same: its distance from its triangle; below 0: no sample yet */
-  double mean;         /* of the samples' distances, when it was last found */
-  size_t count;        /* of them then */
+  scree_extent extent;               /* of the scan, in the frame of its least box */
+  double weight[SCREE_EXTENT_COUNT]; /* of what is lost of the width along each direction */
+  int8_t *end;                       /* per vertex of the scan: see scree_extent_end */
+  uint32_t *of;                      /* per vertex of the surface: of the scan */
+  uint32_t *first; /* per triangle of the surface: its farthest sample, the first of its list,
+                      or NONE */
+  float *worst;    /* per triangle: the greatest distance of its samples */
+  uint32_t *next;  /* per vertex of the scan: in its triangle's list */
+  float *far;      /* the same: its distance from its triangle; below 0: no sample yet */
+  double mean;     /* of the samples' distances, when it was last found */
+  size_t count;    /* of them then */
 } scree_samples;
 
 /* Samples about one collapse: scratch of one thread. */
@@ -59,8 +60,7 @@ double scree_deviation_bound(const scree_samples *samples, const scree_halfmesh 
 
 /* A sample so far from the surface, as a deviation: that or, where it is an end of the scan, what
  * is lost of the width there. */
-double scree_deviation_of(const scree_samples *samples, const scree_halfmesh *s, uint32_t sample,
-                          double far);
+double scree_deviation_of(const scree_samples *samples, uint32_t sample, double far);
 
 /* What a vertex there adds to the scan's widths, as a deviation: to become wider by a share counts
  * alike, in whichever direction. A flat body packs by its thickness. */
@@ -77,7 +77,7 @@ bool scree_samples_gather(const scree_samples *samples, const scree_halfmesh *s,
 
 /* What was gathered goes to the nearest of the fan's triangles as it is set. Touches only these
  * triangles' lists. */
-void scree_samples_settle(scree_samples *samples, const scree_halfmesh *s, const scree_fan *fan,
+void scree_samples_settle(scree_samples *samples, const scree_fan *fan,
                           const scree_gathered *gathered);
 
 /* Before the fan collapses: its samples are gathered, thinned and settled. False: out of memory. */

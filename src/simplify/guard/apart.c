@@ -80,9 +80,9 @@ static bool plan_of(const search *q, uint32_t t, corners *c) {
 }
 
 static uint32_t averse_of(const scree_fan *f) {
-  uint32_t averse = 0;
-  for (uint32_t i = 0; i < f->count; i++) averse |= scree_averse(f->after[i]);
-  return averse;
+  scree_facing facing = scree_facing_all();
+  for (uint32_t i = 0; i < f->count; i++) scree_facing_add(&facing, f->after[i]);
+  return scree_facing_averse(&facing);
 }
 
 /* Whether the triangle faces g, or lies outside the box. */

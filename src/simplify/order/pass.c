@@ -33,7 +33,7 @@ typedef struct taken {
 
 typedef struct pass {
   scree_decimator *d;
-  uint32_t *best;   /* the surface's */
+  uint32_t *best; /* the surface's */
   double *cost;
   uint32_t *leader; /* per vertex: the cheapest candidate that claims it as an end; NONE between
                        choices */
@@ -50,8 +50,9 @@ typedef struct pass {
 } pass;
 
 static void pass_free(pass *p) {
-  void *const blocks[] = {p->apex,   p->leader,        p->chosen, p->marks,      p->taken, p->sorted,
-                          p->target, p->sorted_target, p->order,  p->candidates, p->swap};
+  void *const blocks[] = {p->apex,  p->leader,     p->chosen, p->marks,
+                          p->taken, p->sorted,     p->target, p->sorted_target,
+                          p->order, p->candidates, p->swap};
   for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) scree_free(blocks[i]);
 }
 
