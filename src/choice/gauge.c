@@ -176,6 +176,7 @@ void scree_gauge_free(scree_gauge *gauge) {
 
 typedef struct forward {
   const scree_gauge *gauge;
+  const scree_mesh *mesh; /* the level's */
   const scree_surface *level;
   double *distances; /* of the points */
   uint32_t *nearest; /* facet of the level's tree, of each point */
@@ -197,8 +198,10 @@ static void keep_farthest(forward *f, double distance, vec3 at) {
 }
 
 static double facet_distance(const scree_bvh *bvh, uint32_t facet, vec3 p) {
+  double corners[9];
   vec3 point;
-  return sqrt(scree_triangle_closest(bvh->corners + 9 * (size_t)facet, p, &point));
+  scree_bvh_corners(bvh, facet, corners);
+  return sqrt(scree_triangle_closest(corners, p, &point));
 }
 
 /* Vertices round point i, where one of them could be the farthest: by the way from the point, and
@@ -241,7 +244,8 @@ static void go_forward(forward *f, double gap) {
 /* ---- What the probes see ---- */
 
 static vec3 facet_normal(const scree_bvh *bvh, uint32_t facet) {
-  const double *c = bvh->corners + 9 * (size_t)facet;
+  double c[9];
+  scree_bvh_corners(bvh, facet, c);
   return vec3_unit(vec3_triangle_normal(vec3_load(c), vec3_load(c + 3), vec3_load(c + 6)));
 }
 
@@ -327,8 +331,8 @@ static scree_status go_back(forward *f, double *mean, scree_error *error) {
   scree_spread points = {0};
   scree_sum sum = {0, 0};
   double *distances = NULL;
-  scree_status status = scree_spread_make(
-      &f->level->mesh, back_points(g, f->level->mesh.triangle_count), &points, error);
+  scree_status status =
+      scree_spread_make(f->mesh, back_points(g, f->mesh->triangle_count), &points, error);
   if (status != SCREE_OK) return status;
   status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(distances, points.count, error, done);
@@ -398,7 +402,7 @@ scree_status scree_gauge_read(const scree_gauge *gauge, const scree_mesh *level,
   scree_surface *surface = NULL;
   scree_measures measures;
   scree_gauge_reading r = {0};
-  forward f = {.gauge = gauge};
+  forward f = {.gauge = gauge, .mesh = level};
   scree_status status = scree_mesh_measure(level, &measures, error);
   if (status == SCREE_OK) status = scree_surface_create(level, &surface, error);
   if (status != SCREE_OK) return status;

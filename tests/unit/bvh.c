@@ -185,8 +185,9 @@ static void test_closest_points(void **state) {
         vec3 nearest;
         if (mesh.triangle_count == 0) continue;
         CHECK_NEAR(points.distance2[j], expected, 4e-16 * expected);
-        assert_true(points.distance2[j] ==
-                    scree_triangle_closest(bvh.corners + 9 * points.index[j], at[j], &nearest));
+        double corners[9];
+        scree_bvh_corners(&bvh, points.index[j], corners);
+        assert_true(points.distance2[j] == scree_triangle_closest(corners, at[j], &nearest));
       }
     }
     scree_bvh_free(&bvh);

@@ -4,23 +4,28 @@
 #include "mesh/index/bvh.h"
 
 #include "base/alloc.h"
-#include "base/parallel.h"
 #include "mesh/mesh.h"
 
-enum { LEAF = 4, CORNER_BLOCK = 1 << 14 };
+enum { LEAF = 4 };
 
-typedef struct copying {
-  const scree_mesh *mesh;
-  scree_bvh *to;
-} copying;
-
-static void copy_corners(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
-  const copying *c = context;
-  for (size_t i = begin; i < end; i++)
-    for (int k = 0; k < 3; k++)
-      vec3_store(c->to->corners + 9 * i + 3 * k,
-                 scree_mesh_corner(c->mesh, c->to->tree.order[i], k));
+static scree_status copy_mesh(const scree_mesh *mesh, const uint32_t *order, scree_mesh *copy,
+                              scree_error *error) {
+  size_t corner_count = 3 * mesh->triangle_count;
+  SCREE_SCRATCH(uint32_t, number, mesh->vertex_count, error);
+  SCREE_TRY_ALLOC(copy->triangles, corner_count, error);
+  memset(number, 0xff, mesh->vertex_count * sizeof *number);
+  for (size_t c = 0; c < corner_count; c++) {
+    uint32_t *v = &number[mesh->triangles[3 * (size_t)order[c / 3] + c % 3]];
+    if (*v == UINT32_MAX) *v = (uint32_t)copy->vertex_count++;
+    copy->triangles[c] = *v;
+  }
+  copy->triangle_count = mesh->triangle_count;
+  SCREE_TRY_ALLOC(copy->positions, 3 * copy->vertex_count, error);
+  for (size_t v = 0; v < mesh->vertex_count; v++)
+    if (number[v] != UINT32_MAX)
+      memcpy(copy->positions + 3 * (size_t)number[v], mesh->positions + 3 * v,
+             3 * sizeof *mesh->positions);
+  return SCREE_OK;
 }
 
 scree_status scree_bvh_build(const scree_mesh *mesh, scree_bvh *bvh, scree_error *error) {
@@ -28,8 +33,7 @@ scree_status scree_bvh_build(const scree_mesh *mesh, scree_bvh *bvh, scree_error
                                  SCREE_SPLIT_AREA};
   SCREE_CLEANUP(scree_bvh_free) scree_bvh made = {0};
   SCREE_TRY(scree_tree_build(&triangles, &made.tree, error));
-  SCREE_TRY_ALLOC(made.corners, 9 * mesh->triangle_count, error);
-  scree_parallel_for(mesh->triangle_count, CORNER_BLOCK, copy_corners, &(copying){mesh, &made});
+  SCREE_TRY(copy_mesh(mesh, made.tree.order, &made.mesh, error));
   *bvh = made;
   made = (scree_bvh){0};
   return SCREE_OK;
@@ -38,7 +42,7 @@ scree_status scree_bvh_build(const scree_mesh *mesh, scree_bvh *bvh, scree_error
 void scree_bvh_free(scree_bvh *bvh) {
   if (!bvh) return;
   scree_tree_free(&bvh->tree);
-  scree_free(bvh->corners);
+  scree_mesh_free(&bvh->mesh);
   *bvh = (scree_bvh){0};
 }
 
@@ -50,7 +54,9 @@ bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit) {
   for (const scree_tree_node *leaf; (leaf = scree_tree_nearer(&search, hit->distance2));)
     for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++) {
       vec3 point;
-      double distance2 = scree_triangle_closest(bvh->corners + 9 * (size_t)i, p, &point);
+      double corners[9];
+      scree_bvh_corners(bvh, i, corners);
+      double distance2 = scree_triangle_closest(corners, p, &point);
       if (distance2 >= hit->distance2) continue;
       *hit = (scree_bvh_hit){distance2, point, i};
       found = true;
@@ -88,8 +94,11 @@ void scree_bvh_closest_block(const scree_bvh *bvh, scree_point_block *points) {
     const scree_tree_node *node = &nodes[stack[depth].node];
     if (node->count) {
       if (!scree_point_block_near(points, &node->box)) continue;
-      for (uint32_t i = node->first; i < node->first + node->count; i++)
-        scree_point_block_closest(points, bvh->corners + 9 * (size_t)i, i);
+      for (uint32_t i = node->first; i < node->first + node->count; i++) {
+        double corners[9];
+        scree_bvh_corners(bvh, i, corners);
+        scree_point_block_closest(points, corners, i);
+      }
       farthest2 = scree_point_block_farthest(points);
       continue;
     }
@@ -133,7 +142,9 @@ double scree_ray_meet(const scree_bvh *bvh, vec3 from, vec3 along, double least,
       continue;
     for (uint32_t i = node->first; i < node->first + node->count; i++) {
       vec3 normal = {0, 0, 0};
-      double t = meet_triangle(from, along, bvh->corners + 9 * (size_t)i, &normal);
+      double corners[9];
+      scree_bvh_corners(bvh, i, corners);
+      double t = meet_triangle(from, along, corners, &normal);
       if (!(t > least && t < nearest)) continue;
       nearest = t;
       *facing = vec3_dot(vec3_unit(normal), along);

@@ -6,13 +6,16 @@
 #include "base/tree.h"
 #include "mesh/index/closest.h"
 
+#include <string.h>
+
 typedef struct scree_bvh {
   scree_tree tree; /* of the triangles */
-  double *corners; /* 9 per triangle, in tree order */
+  scree_mesh
+      mesh; /* its triangles in tree order, its vertices in the order in which these name them */
 } scree_bvh;
 
-/* Copies the mesh's corners, so the mesh may go. Needs a verified mesh. O(N log N), parallel; about
- * 125 bytes per triangle stay, as many more are used while building. */
+/* Copies the mesh, so that it may go. Needs a verified mesh. O(N log N), parallel; about 65 bytes
+ * per triangle stay, as many more are used while building. */
 scree_status scree_bvh_build(const scree_mesh *mesh, scree_bvh *bvh, scree_error *error);
 void scree_bvh_free(scree_bvh *bvh);
 
@@ -21,6 +24,13 @@ typedef struct scree_bvh_hit {
   vec3 point;
   uint32_t index; /* in tree order; tree.order[index] is the triangle of the mesh */
 } scree_bvh_hit;
+
+/* Corners of triangle `index`, in tree order. */
+static inline void scree_bvh_corners(const scree_bvh *bvh, size_t index, double corners[9]) {
+  for (size_t k = 0; k < 3; k++)
+    memcpy(corners + 3 * k, bvh->mesh.positions + 3 * (size_t)bvh->mesh.triangles[3 * index + k],
+           3 * sizeof *corners);
+}
 
 /* The point of the surface nearest to p, if nearer than hit->distance2, which the caller sets
  * (INFINITY, or from a point known to be near, which saves time); else hit is left alone. Equally

@@ -52,26 +52,15 @@ enum {
 
 static void set_size(scree_surface *s) {
   scree_sum area = {0};
-  for (size_t i = 0; i < s->mesh.triangle_count; i++) {
-    const double *c = s->bvh.corners + 9 * i;
+  for (size_t i = 0; i < s->bvh.mesh.triangle_count; i++) {
+    double c[9];
+    scree_bvh_corners(&s->bvh, i, c);
     vec3 normal = vec3_triangle_normal(vec3_load(c), vec3_load(c + 3), vec3_load(c + 6));
     scree_sum_add(&area, vec3_norm(normal) / 2);
     s->largest_facet = fmax(s->largest_facet, vec3_norm(normal) / 2);
   }
   s->area = scree_sum_value(area);
   s->size = vec3_distance(s->bvh.tree.nodes[0].box.low, s->bvh.tree.nodes[0].box.high);
-}
-
-static scree_status order_vertices(scree_surface *s, scree_error *error) {
-  SCREE_TRY_ALLOC(s->vertices, s->mesh.vertex_count, error);
-  SCREE_SCRATCH_ZERO(bool, seen, s->mesh.vertex_count, error);
-  for (size_t i = 0; i < s->mesh.triangle_count; i++)
-    for (size_t k = 0; k < 3; k++) {
-      uint32_t v = s->mesh.triangles[3 * (size_t)s->bvh.tree.order[i] + k];
-      if (!seen[v]) s->vertices[s->used_count++] = v;
-      seen[v] = true;
-    }
-  return SCREE_OK;
 }
 
 scree_status scree_surface_create(const scree_mesh *mesh, scree_surface **surface,
@@ -81,9 +70,7 @@ scree_status scree_surface_create(const scree_mesh *mesh, scree_surface **surfac
     return scree_fail(error, SCREE_BAD_MESH, "the mesh has no triangles");
   scree_surface *made = scree_alloc_zero(1, sizeof *made);
   if (!made) return scree_fail_memory(error, sizeof *made, "a surface");
-  scree_status status = scree_mesh_copy(mesh, &made->mesh, error);
-  if (status == SCREE_OK) status = scree_bvh_build(mesh, &made->bvh, error);
-  if (status == SCREE_OK) status = order_vertices(made, error);
+  scree_status status = scree_bvh_build(mesh, &made->bvh, error);
   if (status != SCREE_OK) {
     scree_surface_free(made);
     return status;
@@ -95,16 +82,16 @@ scree_status scree_surface_create(const scree_mesh *mesh, scree_surface **surfac
 
 void scree_surface_free(scree_surface *surface) {
   if (!surface) return;
-  scree_mesh_free(&surface->mesh);
   scree_bvh_free(&surface->bvh);
-  scree_free(surface->vertices);
   scree_free(surface);
 }
 
 double scree_surface_nearest(const scree_surface *surface, vec3 p, uint32_t *near) {
   const scree_bvh *bvh = &surface->bvh;
   scree_bvh_hit hit = {.index = *near};
-  hit.distance2 = scree_triangle_closest(bvh->corners + 9 * (size_t)*near, p, &hit.point);
+  double corners[9];
+  scree_bvh_corners(bvh, *near, corners);
+  hit.distance2 = scree_triangle_closest(corners, p, &hit.point);
   scree_bvh_closest(bvh, p, &hit);
   *near = hit.index;
   return sqrt(hit.distance2);
@@ -117,7 +104,9 @@ void scree_surface_nearest_points(const scree_surface *surface, const vec3 *poin
   for (size_t first = 0; first < count; first += (size_t)together.count) {
     size_t left = count - first;
     scree_point_block_set(&together, points + first, left < TOGETHER ? (int)left : TOGETHER);
-    scree_point_block_closest(&together, surface->bvh.corners + 9 * (size_t)near, near);
+    double corners[9];
+    scree_bvh_corners(&surface->bvh, near, corners);
+    scree_point_block_closest(&together, corners, near);
     scree_bvh_closest_block(&surface->bvh, &together);
     for (int i = 0; i < together.count; i++) {
       distances[first + (size_t)i] = sqrt(together.distance2[i]);
@@ -204,9 +193,8 @@ static void sweep_vertices(void *context, size_t begin, size_t end, size_t block
   const sweep *s = context;
   tally t = {.maximum = -1};
   uint32_t near = 0;
-  for (size_t i = s->first + begin; i < s->first + end; i++) {
-    uint32_t v = s->from->vertices[i];
-    vec3 p = vec3_load(s->from->mesh.positions + 3 * (size_t)v);
+  for (size_t v = s->first + begin; v < s->first + end; v++) {
+    vec3 p = vec3_load(s->from->bvh.mesh.positions + 3 * v);
     double distance = scree_surface_nearest(s->to, p, &near);
     s->vertex_distance[v] = distance;
     s->vertex_near[v] = near;
@@ -224,11 +212,11 @@ static vec3 part_middle(const part *p) {
 /* The largest corner distance from triangle near of the other surface: no point of the part is
  * farther from the surface. */
 static double bound_by_triangle(const sweep *s, const part *p, uint32_t near) {
-  double largest2 = 0;
+  double largest2 = 0, corners[9];
+  scree_bvh_corners(&s->to->bvh, near, corners);
   for (int k = 0; k < 3; k++) {
     vec3 point;
-    double distance2 =
-        scree_triangle_closest(s->to->bvh.corners + 9 * (size_t)near, p->corner[k], &point);
+    double distance2 = scree_triangle_closest(corners, p->corner[k], &point);
     largest2 = fmax(largest2, distance2);
   }
   return sqrt(largest2);
@@ -342,8 +330,9 @@ static void sweep_facets(void *context, size_t begin, size_t end, size_t block, 
   const sweep *s = context;
   tally t = {.maximum = -1};
   for (size_t i = s->first + begin; i < s->first + end; i++) {
-    const double *c = s->from->bvh.corners + 9 * i;
-    const uint32_t *corners = s->from->mesh.triangles + 3 * (size_t)s->from->bvh.tree.order[i];
+    const uint32_t *corners = s->from->bvh.mesh.triangles + 3 * i;
+    double c[9];
+    scree_bvh_corners(&s->from->bvh, i, c);
     part facet = {{vec3_load(c), vec3_load(c + 3), vec3_load(c + 6)}};
     double area =
         vec3_norm(vec3_triangle_normal(facet.corner[0], facet.corner[1], facet.corner[2])) / 2;
@@ -429,8 +418,9 @@ static void sweep_bounds(void *context, size_t begin, size_t end, size_t block, 
                .settled = 0,
                .tally = {.maximum = -1}};
   for (size_t i = s->first + begin; i < s->first + end; i++) {
-    const double *p = s->from->bvh.corners + 9 * i;
-    uint32_t corner = s->from->mesh.triangles[3 * (size_t)s->from->bvh.tree.order[i]];
+    uint32_t corner = s->from->bvh.mesh.triangles[3 * i];
+    double p[9];
+    scree_bvh_corners(&s->from->bvh, i, p);
     keep_part(&c, &(queued){.part = {{vec3_load(p), vec3_load(p + 3), vec3_load(p + 6)}},
                             .bound = s->facet_bound[i],
                             .near = s->vertex_near[corner]});
@@ -491,7 +481,7 @@ static bool agree(const sweep *s, const tally *coarse, const tally *fine) {
 /* Facets that are all smaller than a part leave nothing to converge. */
 static scree_status sweep_until_converged(sweep *s, bool converge, stage *st, tally *facets,
                                           scree_error *error) {
-  size_t count = s->from->mesh.triangle_count;
+  size_t count = s->from->bvh.mesh.triangle_count;
   double share = st->share;
   if (!converge || cuts_of(s->from->largest_facet, s->density) <= 1)
     return run_sweep(s, count, sweep_facets, st, facets, error);
@@ -514,12 +504,12 @@ static scree_status sweep_until_converged(sweep *s, bool converge, stage *st, ta
 
 static scree_status run_sweeps(sweep *s, const scree_deviation_rule *way, stage *st,
                                tally *vertices, tally *facets, tally *cuts, scree_error *error) {
-  SCREE_TRY(run_sweep(s, s->from->used_count, sweep_vertices, st, vertices, error));
+  SCREE_TRY(run_sweep(s, s->from->bvh.mesh.vertex_count, sweep_vertices, st, vertices, error));
   s->found = fmax(way->known, vertices->maximum);
   SCREE_TRY(sweep_until_converged(s, way->converge, st, facets, error));
   s->found = fmax(s->found, facets->maximum);
   if (!s->facet_bound) return SCREE_OK;
-  SCREE_TRY(run_sweep(s, s->from->mesh.triangle_count, sweep_bounds, st, cuts, error));
+  SCREE_TRY(run_sweep(s, s->from->bvh.mesh.triangle_count, sweep_bounds, st, cuts, error));
   facets->bound = cuts->bound;
   return SCREE_OK;
 }
@@ -554,16 +544,16 @@ static scree_status deviate(const scree_surface *from, const scree_surface *to,
                             scree_error *error) {
   SCREE_CLEANUP(free_sweep)
   sweep s = {.from = from, .to = to, .gap = way->gap, .slope = way->slope};
-  size_t vertex_count = from->mesh.vertex_count;
+  size_t vertex_count = from->bvh.mesh.vertex_count;
   tally vertices, facets = {0}, cuts = {.maximum = -1};
   s.density = from->area > 0 ? (double)way->sample_count / from->area : 0;
   SCREE_TRY_ALLOC(s.vertex_distance, vertex_count, error);
   SCREE_TRY_ALLOC(s.vertex_near, vertex_count, error);
   SCREE_TRY_ALLOC(s.tallies, CHUNK / BLOCK, error);
-  s.budget = (double)way->cut_budget / (double)from->mesh.triangle_count;
+  s.budget = (double)way->cut_budget / (double)from->bvh.mesh.triangle_count;
   s.budget = fmax(s.budget, (double)way->cut_least);
   if (s.gap > 0) {
-    SCREE_TRY_ALLOC(s.facet_bound, from->mesh.triangle_count, error);
+    SCREE_TRY_ALLOC(s.facet_bound, from->bvh.mesh.triangle_count, error);
     SCREE_TRY_ALLOC(s.heaps, (size_t)scree_worker_count() * HEAP_MOST, error);
   }
   SCREE_TRY(run_sweeps(&s, way, st, &vertices, &facets, &cuts, error));
@@ -589,7 +579,8 @@ static scree_status set_way(const scree_distance_options *options, const scree_s
                             const scree_surface *b, scree_deviation_rule *way, scree_error *error) {
   const scree_distance_options defaults = scree_default_distance_options();
   const scree_distance_options *o = options ? options : &defaults;
-  size_t more = a->used_count > b->used_count ? a->used_count : b->used_count;
+  size_t more = a->bvh.mesh.vertex_count > b->bvh.mesh.vertex_count ? a->bvh.mesh.vertex_count
+                                                                    : b->bvh.mesh.vertex_count;
   *way = (scree_deviation_rule){o->sample_count,  o->sample_count == 0, o->hausdorff_gap, 1, 0,
                                 SCREE_CUT_BUDGET, SCREE_CUT_LEAST};
   if (way->converge) way->sample_count = more < SAMPLE_LEAST ? SAMPLE_LEAST : more;

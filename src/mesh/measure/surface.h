@@ -5,10 +5,7 @@
 #include "mesh/index/bvh.h"
 
 struct scree_surface {
-  scree_mesh mesh;
   scree_bvh bvh;
-  uint32_t *vertices; /* those in use, in the order in which the tree's triangles name them */
-  size_t used_count;
   double area, largest_facet, size; /* size: bounding box diagonal */
 };
 
