@@ -160,16 +160,31 @@ static void say_widths(sentences *s, const char *name, const scree_choice *c) {
   }
 }
 
+/* m; 0: it is no foil. The thickness of a foil counts as no error. */
+static double foil_thickness(const scree_choice *c) {
+  const scree_fidelity *f = c->fidelity;
+  double usual = 2 * fabs(c->volume) / c->area;
+  bool foil = isnan(scree_fidelity_scan(f, SCREE_SCAN_THICKNESS)) &&
+              usual < FOIL * scree_fidelity_scan(f, SCREE_SCAN_LENGTH);
+  return foil ? usual : 0;
+}
+
 static void say_recommended(sentences *s, const scree_choice_report *report,
                             const scree_choice *c) {
   const scree_fidelity *f = c->fidelity;
   const scree_pick *pick = &c->recommended;
   size_t row = c->recommended_row;
-  double at[3], thinnest = scree_fidelity_change(f, row, SCREE_CHANGE_THINNEST),
+  double at[3], foil = foil_thickness(c), mean = scree_fidelity_error(f, row, SCREE_ERROR_MEAN),
+                thinnest = scree_fidelity_change(f, row, SCREE_CHANGE_THINNEST),
                 step = place_step(scree_fidelity_scan(f, SCREE_SCAN_LENGTH));
-  char count[NUMBER_BYTES], rp[NUMBER_BYTES], other[NUMBER_BYTES], walls[96] = "";
+  char count[NUMBER_BYTES], rp[NUMBER_BYTES], other[NUMBER_BYTES], share[NUMBER_BYTES],
+      walls[96] = "";
   scree_fidelity_farthest(f, row, at);
-  if (isfinite(thinnest) && 1 + thinnest < GONE)
+  if (foil > 0)
+    snprintf(walls, sizeof walls, "in the mean %s of this foil's thickness of about %s mm; ",
+             scree_percent_text(mean * scree_fidelity_scan(f, SCREE_SCAN_LENGTH) / foil, share),
+             NUMBER(1e3 * foil, 2));
+  else if (isfinite(thinnest) && 1 + thinnest < GONE)
     snprintf(walls, sizeof walls, "of the thinnest walls, %s mm, some are gone; ",
              NUMBER(1e3 * scree_fidelity_scan(f, SCREE_SCAN_THINNEST), 2));
   else if (isfinite(thinnest))
@@ -179,8 +194,7 @@ static void say_recommended(sentences *s, const scree_choice_report *report,
   say(s,
       "Use %s triangles (Rp = %s): surface %s mm off in the mean, %s mm at worst (at %s, %s, %s "
       "mm); %sinertia %s %%, area %s %%.",
-      scree_count_text(pick->triangle_count, count), scree_rp_text(pick->rp, rp),
-      LENGTH(c, scree_fidelity_error(f, row, SCREE_ERROR_MEAN)),
+      scree_count_text(pick->triangle_count, count), scree_rp_text(pick->rp, rp), LENGTH(c, mean),
       LENGTH(c, scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF)), PLACE(at[0], step),
       PLACE(at[1], step), PLACE(at[2], step), walls,
       CHANGE(scree_fidelity_change(f, row, SCREE_CHANGE_INERTIA)),
@@ -300,13 +314,13 @@ static void warn_of_losses(sentences *s, const scree_choice_report *report, cons
         "Scan noise of %s mm takes part in the mean distance: the count is more than the shape "
         "needs.",
         NUMBER(1e3 * noise, 2));
-  double usual = 2 * fabs(c->volume) / c->area;
-  if (isnan(scree_fidelity_scan(f, SCREE_SCAN_THICKNESS)) && usual < FOIL * length)
+  double foil = foil_thickness(c);
+  if (foil > 0)
     say(s,
         "A foil of about %s mm: its thickness counts as no error (--tolerance mean=%smm keeps it).",
-        NUMBER(1e3 * usual, 2), NUMBER(1e2 * usual, 1));
+        NUMBER(1e3 * foil, 2), NUMBER(1e2 * foil, 1));
   if ((double)c->recommended.triangle_count > NOTABLE_SHARE * (double)c->triangle_count)
-    say(s, "The scan is coarse for these tolerances: of its %s triangles most are needed.",
+    say(s, "Most of the scan's %s triangles are needed for these tolerances.",
         scree_count_text(c->triangle_count, count));
 }
 

@@ -290,7 +290,7 @@ static double weighted(const scree_samples *p, const scree_halfmesh *s, uint32_t
   for (int i = 0; i < SCREE_EXTENT_COUNT; i++) {
     double low = INFINITY, high = -INFINITY, at = 0;
     for (size_t k = 0; k < p->scan.vertex_count; k++) {
-      double along = vec3_dot(p->extent.direction[i], p->scan.vertex[k].at);
+      double along = scree_extent_along(&p->extent, i, p->scan.vertex[k].at);
       low = fmin(low, along), high = fmax(high, along);
       if (k == v) at = along;
     }
