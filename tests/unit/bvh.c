@@ -82,36 +82,6 @@ static void test_triangle(void **state) {
   }
 }
 
-/* Side by side the same bits, anywhere, at corners and on edges. */
-static void test_side_by_side(void **state) {
-  (void)state;
-  scree_rng rng = {.seed = 27};
-  for (int round = 0; round < 3000; round++) {
-    double c[2][9];
-    vec3 at[SCREE_POINTS];
-    scree_point_block points;
-    int count = 1 + (int)scree_rng_below(&rng, SCREE_POINTS);
-    for (int t = 0; t < 2; t++) random_triangle(&rng, (int)scree_rng_below(&rng, 4), c[t]);
-    for (int i = 0; i < count; i++) {
-      double along = i % 3 == 1 ? 0 : scree_rng_uniform(&rng);
-      at[i] = i % 3 == 0 ? random_point(&rng, 2)
-                         : vec3_lerp(vec3_load(c[i % 2]), vec3_load(c[i % 2] + 3), along);
-    }
-    scree_point_block_set(&points, at, count);
-    for (uint32_t t = 0; t < 2; t++) scree_point_block_closest(&points, c[t], t);
-    double farthest = 0;
-    for (int i = 0; i < count; i++) {
-      vec3 nearest;
-      double first = scree_triangle_closest(c[0], at[i], &nearest),
-             second = scree_triangle_closest(c[1], at[i], &nearest);
-      assert_true(points.distance2[i] == fmin(first, second));
-      assert_int_equal(points.index[i], second < first);
-      farthest = fmax(farthest, fmin(first, second));
-    }
-    assert_true(scree_point_block_farthest(&points) == farthest);
-  }
-}
-
 /* ---- Nearest points ---- */
 
 static double brute_distance2(const scree_mesh *mesh, vec3 p) {
@@ -165,42 +135,10 @@ static void test_closest(void **state) {
   }
 }
 
-/* Sets of points, some of which lie side by side, find what each finds alone. */
-static void test_closest_points(void **state) {
-  (void)state;
-  scree_rng rng = {.seed = 23};
-  for (int i = 0; i < 200; i++) {
-    scree_mesh mesh = random_surface(&rng, i % 5);
-    scree_bvh bvh = build(&mesh);
-    for (int k = 0; k < 20; k++) {
-      vec3 at[SCREE_POINTS], middle = random_point(&rng, exp(2 * scree_rng_normal(&rng)));
-      int count = 1 + (int)scree_rng_below(&rng, SCREE_POINTS);
-      double spread = exp(3 * scree_rng_normal(&rng));
-      scree_point_block points;
-      for (int j = 0; j < count; j++) at[j] = vec3_add(middle, random_point(&rng, spread));
-      scree_point_block_set(&points, at, count);
-      scree_bvh_closest_block(&bvh, &points);
-      for (int j = 0; j < count; j++) {
-        double expected = brute_distance2(&mesh, at[j]);
-        vec3 nearest;
-        if (mesh.triangle_count == 0) continue;
-        CHECK_NEAR(points.distance2[j], expected, 4e-16 * expected);
-        double corners[9];
-        scree_bvh_corners(&bvh, points.index[j], corners);
-        assert_true(points.distance2[j] == scree_triangle_closest(corners, at[j], &nearest));
-      }
-    }
-    scree_bvh_free(&bvh);
-    scree_mesh_free(&mesh);
-  }
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_triangle),
-      cmocka_unit_test(test_side_by_side),
       cmocka_unit_test(test_closest),
-      cmocka_unit_test(test_closest_points),
   };
   scree_set_threads(
       1); /* thousands of tiny trees: waking threads would take longer than the work */

@@ -64,55 +64,6 @@ bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit) {
   return found;
 }
 
-/* ---- Of many points ---- */
-
-static scree_box box_of_block(const scree_point_block *points) {
-  scree_box b = scree_box_empty();
-  for (int i = 0; i < points->count; i++) {
-    vec3 p = {points->at[0][i], points->at[1][i], points->at[2][i]};
-    b = scree_box_join(b, (scree_box){p, p});
-  }
-  return b;
-}
-
-void scree_bvh_closest_block(const scree_bvh *bvh, scree_point_block *points) {
-  struct {
-    uint32_t node;
-    double apart2;
-  } stack[SCREE_TREE_STACK];
-  const scree_tree_node *nodes = bvh->tree.nodes;
-  int depth = 0;
-  scree_box bounds = box_of_block(points);
-  double farthest2 = scree_point_block_farthest(points);
-  vec3 middle = vec3_scale(vec3_add(bounds.low, bounds.high), 0.5);
-  if (bvh->tree.item_count == 0) return;
-  stack[depth].node = 0;
-  stack[depth++].apart2 = scree_boxes_apart2(&nodes[0].box, &bounds);
-  while (depth > 0) {
-    depth--;
-    if (stack[depth].apart2 >= farthest2) continue;
-    const scree_tree_node *node = &nodes[stack[depth].node];
-    if (node->count) {
-      if (!scree_point_block_near(points, &node->box)) continue;
-      for (uint32_t i = node->first; i < node->first + node->count; i++) {
-        double corners[9];
-        scree_bvh_corners(bvh, i, corners);
-        scree_point_block_closest(points, corners, i);
-      }
-      farthest2 = scree_point_block_farthest(points);
-      continue;
-    }
-    uint32_t near = node->first, far = near + 1;
-    if (scree_box_distance2(&nodes[far].box, middle) <
-        scree_box_distance2(&nodes[near].box, middle))
-      near++, far--;
-    double near2 = scree_boxes_apart2(&nodes[near].box, &bounds),
-           far2 = scree_boxes_apart2(&nodes[far].box, &bounds);
-    if (far2 < farthest2) stack[depth].node = far, stack[depth++].apart2 = far2;
-    if (near2 < farthest2) stack[depth].node = near, stack[depth++].apart2 = near2;
-  }
-}
-
 /* ---- Rays ---- */
 
 /* How far, in barycentric coordinates, a ray may pass beside a triangle and still meet it: so that

@@ -37,10 +37,6 @@ static inline void scree_bvh_corners(const scree_bvh *bvh, size_t index, double 
  * near triangles: one of them, depending on the bound. */
 bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit);
 
-/* The same for many points at once: those of the set that have a nearer triangle get it. Saves most
- * where the points lie as near to each other as the triangles are large. */
-void scree_bvh_closest_block(const scree_bvh *bvh, scree_point_block *points);
-
 /* The distance from `from` along the unit vector `along` to the first facet beyond `least`,
  * INFINITY where there is none. *facing is the cosine of that facet's outward normal with the ray:
  * positive where the ray leaves the body. A ray through an edge meets at least one of its facets.

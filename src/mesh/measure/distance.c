@@ -31,7 +31,6 @@
 #include <string.h>
 
 enum {
-  TOGETHER = 16,           /* points that go down the tree side by side */
   BLOCK = 512,             /* vertices or facets that share a start */
   CHUNK = 256 * BLOCK,     /* between two reports of progress */
   HEAP_MOST = 1 << 16,     /* parts of a block's facets that wait to be cut */
@@ -100,19 +99,9 @@ double scree_surface_nearest(const scree_surface *surface, vec3 p, uint32_t *nea
 void scree_surface_nearest_points(const scree_surface *surface, const vec3 *points, size_t count,
                                   double *distances, uint32_t *nearest) {
   uint32_t near = 0;
-  scree_point_block together;
-  for (size_t first = 0; first < count; first += (size_t)together.count) {
-    size_t left = count - first;
-    scree_point_block_set(&together, points + first, left < TOGETHER ? (int)left : TOGETHER);
-    double corners[9];
-    scree_bvh_corners(&surface->bvh, near, corners);
-    scree_point_block_closest(&together, corners, near);
-    scree_bvh_closest_block(&surface->bvh, &together);
-    for (int i = 0; i < together.count; i++) {
-      distances[first + (size_t)i] = sqrt(together.distance2[i]);
-      nearest[first + (size_t)i] = (uint32_t)together.index[i];
-    }
-    near = nearest[first + (size_t)together.count - 1];
+  for (size_t i = 0; i < count; i++) {
+    distances[i] = scree_surface_nearest(surface, points[i], &near);
+    nearest[i] = near;
   }
 }
 
