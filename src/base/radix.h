@@ -1,4 +1,4 @@
-/* Sorting of numbers, and by a number of 32 bits. */
+/* Sorting of numbers, and by a number of 32 bits; finding in what is sorted. */
 #pragma once
 
 #include <stddef.h>
@@ -18,3 +18,15 @@ void scree_sort_keys(uint64_t *keys, size_t count);
 void scree_sort_numbers(double *values, size_t count);
 /* Of ascending numbers, between neighbours as on a straight line; NaN of none. */
 double scree_quantile(const double *ascending, size_t count, double share);
+
+/* Declares i: the first of [low, high) of which `before`, which speaks of i and holds up to some
+ * item alone, does not hold; high where there is none. */
+#define SCREE_FIND_FIRST(i, low, high, before)                                                     \
+  size_t i = (low);                                                                                \
+  for (size_t low_ = i, high_ = (high); low_ < high_; i = low_) {                                  \
+    i = low_ + (high_ - low_) / 2;                                                                 \
+    if (before)                                                                                    \
+      low_ = i + 1;                                                                                \
+    else                                                                                           \
+      high_ = i;                                                                                   \
+  }

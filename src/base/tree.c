@@ -296,37 +296,36 @@ static void make_node_boxes(builder *b) {
   }
 }
 
+static void free_builder(builder *b) {
+  scree_free(b->boxes);
+  scree_free(b->scratch);
+}
+
 scree_status scree_tree_build(const scree_boxed *items, scree_tree *tree, scree_error *error) {
   size_t count = items->count;
-  scree_tree made = {.item_count = count};
+  SCREE_CLEANUP(scree_tree_free) scree_tree made = {.item_count = count};
+  SCREE_CLEANUP(free_builder)
   builder b = {.items = items, .out = &made, .slots = items->leaf > LEAST ? 1 : 2};
-  scree_status status = SCREE_OUT_OF_MEMORY;
   if (count == 0) {
     *tree = made;
     return SCREE_OK;
   }
-  SCREE_ALLOC_OR(b.boxes, count, error, done);
-  SCREE_ALLOC_OR(b.scratch, b.slots * count + (size_t)4 * SUBTREES + 1, error, done);
+  SCREE_TRY_ALLOC(b.boxes, count, error);
+  SCREE_TRY_ALLOC(b.scratch, b.slots * count + (size_t)4 * SUBTREES + 1, error);
   scree_parallel_for(count, ITEM_BLOCK, make_boxes, &b);
   build_top(&b);
   scree_parallel_for(b.subtree_count, 1, build_subtree, &b);
-  SCREE_ALLOC_OR(made.order, count, error, done);
+  SCREE_TRY_ALLOC(made.order, count, error);
   for (size_t i = 0; i < count; i++) made.order[i] = b.boxes[i].index;
   scree_free(b.boxes);
   b.boxes = NULL;
   made.node_count = count_nodes(&b);
-  SCREE_ALLOC_OR(made.nodes, made.node_count, error, done);
+  SCREE_TRY_ALLOC(made.nodes, made.node_count, error);
   lay_out(&b);
   make_node_boxes(&b);
-  status = SCREE_OK;
-done:
-  scree_free(b.boxes);
-  scree_free(b.scratch);
-  if (status == SCREE_OK)
-    *tree = made;
-  else
-    scree_tree_free(&made);
-  return status;
+  *tree = made;
+  made = (scree_tree){0};
+  return SCREE_OK;
 }
 
 /* ---- Cones ---- */

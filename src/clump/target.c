@@ -117,15 +117,8 @@ static vec3 unit_normal(const scree_target *body, size_t triangle) {
 
 /* The first triangle up to which there is so much area. */
 static size_t triangle_at(const scree_target *body, double area) {
-  size_t low = 0, high = body->mesh.triangle_count - 1;
-  while (low < high) {
-    size_t middle = (low + high) / 2;
-    if (body->area_below[middle] < area)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low;
+  SCREE_FIND_FIRST(i, 0, body->mesh.triangle_count - 1, body->area_below[i] < area)
+  return i;
 }
 
 /* Along the area in equal steps, within the triangle by Roberts' sequence (2018, R2). */

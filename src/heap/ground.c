@@ -8,6 +8,7 @@
 #include "base/alloc.h"
 #include "base/box.h"
 #include "base/eigen.h"
+#include "base/radix.h"
 #include "base/rng.h"
 #include "scree.h"
 
@@ -61,14 +62,7 @@ static scree_status draw_points(const scree_mesh *mesh, vec3 *points, vec3 *sum,
   for (size_t i = 0; i < POINTS; i++) {
     double wanted = area * scree_rng_uniform(&rng), u = sqrt(scree_rng_uniform(&rng)),
            v = scree_rng_uniform(&rng);
-    size_t low = 0, high = n - 1;
-    while (low < high) {
-      size_t middle = low + (high - low) / 2;
-      if (until[middle] > wanted)
-        high = middle;
-      else
-        low = middle + 1;
-    }
+    SCREE_FIND_FIRST(low, 0, n - 1, until[low] <= wanted)
     vec3 p[3];
     corners_of(mesh, low, p);
     points[i] = vec3_add(vec3_scale(p[0], 1 - u),

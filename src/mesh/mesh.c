@@ -17,15 +17,23 @@ void scree_mesh_scale(scree_mesh *mesh, double factor) {
   for (size_t i = 0; i < 3 * mesh->vertex_count; i++) mesh->positions[i] *= factor;
 }
 
-scree_status scree_mesh_copy(const scree_mesh *mesh, scree_mesh *copy, scree_error *error) {
-  SCREE_SCRATCH(double, positions, 3 * mesh->vertex_count, error);
-  SCREE_SCRATCH(uint32_t, triangles, 3 * mesh->triangle_count, error);
-  if (mesh->vertex_count) /* an empty mesh may have no arrays */
-    memcpy(positions, mesh->positions, 3 * mesh->vertex_count * sizeof *positions);
-  if (mesh->triangle_count)
-    memcpy(triangles, mesh->triangles, 3 * mesh->triangle_count * sizeof *triangles);
-  *copy = (scree_mesh){positions, triangles, mesh->vertex_count, mesh->triangle_count};
+scree_status scree_mesh_make(size_t vertex_count, size_t triangle_count, scree_mesh *mesh,
+                             scree_error *error) {
+  SCREE_SCRATCH(double, positions, 3 * vertex_count, error);
+  SCREE_SCRATCH(uint32_t, triangles, 3 * triangle_count, error);
+  *mesh = (scree_mesh){positions, triangles, vertex_count, triangle_count};
   positions = NULL, triangles = NULL;
+  return SCREE_OK;
+}
+
+scree_status scree_mesh_copy(const scree_mesh *mesh, scree_mesh *copy, scree_error *error) {
+  scree_mesh made;
+  SCREE_TRY(scree_mesh_make(mesh->vertex_count, mesh->triangle_count, &made, error));
+  if (mesh->vertex_count) /* an empty mesh may have no arrays */
+    memcpy(made.positions, mesh->positions, 3 * mesh->vertex_count * sizeof *made.positions);
+  if (mesh->triangle_count)
+    memcpy(made.triangles, mesh->triangles, 3 * mesh->triangle_count * sizeof *made.triangles);
+  *copy = made;
   return SCREE_OK;
 }
 

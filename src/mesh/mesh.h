@@ -4,6 +4,10 @@
 #include "base/box.h"
 #include "base/error.h"
 
+/* Room for a mesh, not filled. */
+scree_status scree_mesh_make(size_t vertex_count, size_t triangle_count, scree_mesh *mesh,
+                             scree_error *error);
+
 /* SCREE_BAD_MESH where an index is out of range or a coordinate is not finite, SCREE_LIMIT where
  * corners cannot be numbered in 32 bits. O(N), parallel. */
 scree_status scree_mesh_verify(const scree_mesh *mesh, scree_error *error);

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/radix.h"
+#include "mesh/mesh.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -162,11 +163,11 @@ static scree_status sort_triangles(const scree_loose_mesh *loose, uint32_t *rank
 }
 
 scree_status scree_weld_sort(const scree_loose_mesh *loose, scree_mesh *mesh, scree_error *error) {
-  SCREE_CLEANUP(scree_mesh_free) scree_mesh made = {.triangle_count = loose->triangle_count};
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh made = {0};
   SCREE_SCRATCH(uint32_t, rank, loose->vertex_count, error);
-  for (size_t v = 0; v < loose->vertex_count; v++) made.vertex_count += is_used(loose, v);
-  SCREE_TRY_ALLOC(made.positions, 3 * made.vertex_count, error);
-  SCREE_TRY_ALLOC(made.triangles, 3 * made.triangle_count, error);
+  size_t used = 0;
+  for (size_t v = 0; v < loose->vertex_count; v++) used += is_used(loose, v);
+  SCREE_TRY(scree_mesh_make(used, loose->triangle_count, &made, error));
   SCREE_TRY(sort_vertices(loose, rank, &made, error));
   SCREE_TRY(sort_triangles(loose, rank, &made, error));
   *mesh = made;

@@ -203,24 +203,22 @@ static scree_status read_line(scree_text *t, spheres *s, const char *line, const
 }
 
 static scree_status read_spheres(scree_text *t, spheres *s) {
-  scree_status status = SCREE_OK;
-  while (t->p < t->end && status == SCREE_OK) {
+  while (t->p < t->end) {
     scree_text_skip_blanks(t);
     const char *line = t->p, *end = end_of_line(t), *comment = comment_in(line, end);
     if (comment == line && line < end) {
       if (*line == '#' && !read_body(t, s))
         return scree_text_fail(t, line, "must be the volume, centroid or inertia of a body");
-      if (!s->is_begun) status = read_names(t, s, line + strspn(line, "#%/ "), end, true);
+      if (!s->is_begun) SCREE_TRY(read_names(t, s, line + strspn(line, "#%/ "), end, true));
       t->p = line;
     } else if (line < end) {
-      status = read_line(t, s, line, comment);
+      SCREE_TRY(read_line(t, s, line, comment));
     }
     t->p = end;
     scree_text_skip_line(t);
   }
-  if (status == SCREE_OK && s->count == 0)
-    return scree_fail(t->error, SCREE_BAD_FILE, "%s: no spheres", t->name);
-  return status;
+  if (s->count == 0) return scree_fail(t->error, SCREE_BAD_FILE, "%s: no spheres", t->name);
+  return SCREE_OK;
 }
 
 /* ---- PFC ---- */

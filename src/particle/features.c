@@ -322,45 +322,40 @@ static void make_points_and_edges(extraction *x) {
   }
 }
 
+static void free_extraction(extraction *x) {
+  scree_free(x->halves);
+  scree_free(x->edges);
+  scree_free(x->bends);
+  scree_free(x->visited);
+}
+
 scree_status scree_particle_extract_features(scree_particle *p, bool is_wall, scree_error *error) {
   const scree_mesh *mesh = &p->mesh;
-  scree_status status = check_indices(mesh, error);
-  if (status) return status;
-  extraction x = {.particle = p};
-  status = SCREE_OUT_OF_MEMORY;
+  SCREE_TRY(check_indices(mesh, error));
   size_t halves = 3 * mesh->triangle_count;
   p->face_count = mesh->triangle_count;
-  SCREE_ALLOC_OR(p->faces, p->face_count, error, done);
-  SCREE_ALLOC_OR(p->face_signs, p->face_count, error, done);
-  SCREE_ALLOC_OR(p->points, mesh->vertex_count, error, done);
-  SCREE_ALLOC_OR(p->point_radii, mesh->vertex_count, error, done);
-  SCREE_ALLOC_OR(p->edges, halves, error, done);
-  SCREE_ALLOC_OR(x.halves, halves, error, done);
-  SCREE_ALLOC_OR(x.edges, halves, error, done);
-  SCREE_ALLOC_OR(x.bends, mesh->vertex_count, error, done);
-  SCREE_ALLOC_OR(x.visited, halves, error, done);
-  memset(x.bends, 0, mesh->vertex_count * sizeof *x.bends);
-  memset(x.visited, 0, halves * sizeof *x.visited);
-  status = make_faces(p, error);
+  SCREE_TRY_ALLOC(p->faces, p->face_count, error);
+  SCREE_TRY_ALLOC(p->face_signs, p->face_count, error);
+  SCREE_TRY_ALLOC(p->points, mesh->vertex_count, error);
+  SCREE_TRY_ALLOC(p->point_radii, mesh->vertex_count, error);
+  SCREE_TRY_ALLOC(p->edges, halves, error);
+  SCREE_CLEANUP(free_extraction) extraction x = {.particle = p};
+  SCREE_TRY_ALLOC(x.halves, halves, error);
+  SCREE_TRY_ALLOC(x.edges, halves, error);
+  SCREE_TRY_ALLOC_ZERO(x.bends, mesh->vertex_count, error);
+  SCREE_TRY_ALLOC_ZERO(x.visited, halves, error);
+  SCREE_TRY(make_faces(p, error));
   double inset = p->radius - p->measures.rounding;
-  if (!status && inset > 0) status = scree_particle_make_core(p, inset, error);
-  if (!status && p->core) status = make_faces(p, error);
-  if (status) goto done;
+  if (inset > 0) SCREE_TRY(scree_particle_make_core(p, inset, error));
+  if (p->core) SCREE_TRY(make_faces(p, error));
   list_halves(mesh, x.halves);
-  status = pair_halves(&x, is_wall, error);
-  if (status) goto done;
+  SCREE_TRY(pair_halves(&x, is_wall, error));
   number_sheets(&x);
-  status = make_corner_signs(p, error);
-  if (status) goto done;
+  SCREE_TRY(make_corner_signs(p, error));
   if (p->sheet) clear_rim_signs(&x);
   count_bends(&x);
   make_points_and_edges(&x);
-done:
-  scree_free(x.halves);
-  scree_free(x.edges);
-  scree_free(x.bends);
-  scree_free(x.visited);
-  return status;
+  return SCREE_OK;
 }
 
 static scree_box box_of_face(const void *particle, size_t i) {

@@ -70,13 +70,8 @@ static bool faces_keep_their_normals(const scree_particle *p, const double *move
 
 scree_status scree_particle_make_core(scree_particle *p, double by, scree_error *error) {
   const scree_mesh *mesh = &p->mesh;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  vertex_planes *vertices = NULL;
-  double *moved = NULL;
-  SCREE_ALLOC_OR(vertices, mesh->vertex_count, error, done);
-  SCREE_ALLOC_OR(moved, 3 * mesh->vertex_count, error, done);
-  status = SCREE_OK;
-  for (size_t v = 0; v < mesh->vertex_count; v++) vertices[v] = (vertex_planes){0};
+  SCREE_SCRATCH_ZERO(vertex_planes, vertices, mesh->vertex_count, error);
+  SCREE_SCRATCH(double, moved, 3 * mesh->vertex_count, error);
   add_planes(p, vertices);
   for (size_t v = 0; v < mesh->vertex_count; v++) vertices[v].normals = offset_of(&vertices[v]);
   for (int k = 0; k <= HALVINGS; k++, by *= 0.5) {
@@ -89,8 +84,5 @@ scree_status scree_particle_make_core(scree_particle *p, double by, scree_error 
     moved = NULL;
     break;
   }
-done:
-  scree_free(vertices);
-  scree_free(moved);
-  return status;
+  return SCREE_OK;
 }

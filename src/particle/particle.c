@@ -295,9 +295,9 @@ static scree_status fill_clump(scree_particle *p, const double *centres, const d
   p->measures.thickness = thinnest;
   set_bounding_radius(p);
   set_counts(p);
-  scree_status status = scree_particle_build_trees(p, error);
-  if (!status) scree_particle_find_inner(p);
-  return status;
+  SCREE_TRY(scree_particle_build_trees(p, error));
+  scree_particle_find_inner(p);
+  return SCREE_OK;
 }
 
 scree_status scree_particle_clump(const double *centres, const double *radii, size_t count,
@@ -345,9 +345,8 @@ static scree_status restore(scree_particle *p, const scree_mesh *mesh, const dou
                             const double *radii, size_t count, scree_error *error) {
   if (p->measures.kind == SCREE_PARTICLE_MESH) {
     p->radius = radius_of(&p->measures);
-    scree_status status = scree_mesh_copy(mesh, &p->mesh, error);
-    if (!status) status = scree_particle_extract_features(p, false, error);
-    if (status) return status;
+    SCREE_TRY(scree_mesh_copy(mesh, &p->mesh, error));
+    SCREE_TRY(scree_particle_extract_features(p, false, error));
   } else {
     SCREE_TRY_ALLOC(p->points, count, error);
     SCREE_TRY_ALLOC(p->point_radii, count, error);
@@ -356,9 +355,9 @@ static scree_status restore(scree_particle *p, const scree_mesh *mesh, const dou
     for (size_t i = 0; i < count; i++) p->point_radii[i] = radii[i];
   }
   set_counts(p);
-  scree_status status = scree_particle_build_trees(p, error);
-  if (!status) scree_particle_find_inner(p);
-  return status;
+  SCREE_TRY(scree_particle_build_trees(p, error));
+  scree_particle_find_inner(p);
+  return SCREE_OK;
 }
 
 scree_status scree_particle_restore(const scree_particle_measures *measures, const scree_mesh *mesh,
@@ -387,23 +386,17 @@ static void scale_measures(scree_particle_measures *m, double factor) {
 scree_status scree_particle_scaled(const scree_particle *from, double factor,
                                    scree_particle **particle, scree_error *error) {
   scree_particle_measures m = from->measures;
-  scree_mesh mesh = {0};
-  double *spheres = scree_alloc(from->point_count, 4 * sizeof *spheres);
-  if (!spheres) return scree_fail_memory(error, from->point_count, "a particle of another size");
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
+  SCREE_SCRATCH(double, spheres, 4 * from->point_count, error);
   double *radii = spheres + 3 * from->point_count;
   scale_measures(&m, factor);
   for (size_t i = 0; i < from->point_count; i++) {
     vec3_store(spheres + 3 * i, vec3_scale(from->points[i], factor));
     radii[i] = factor * from->point_radii[i];
   }
-  scree_status status = scree_mesh_copy(&from->mesh, &mesh, error);
-  if (status == SCREE_OK) {
-    scree_mesh_scale(&mesh, factor);
-    status = scree_particle_restore(&m, &mesh, spheres, radii, from->point_count, particle, error);
-  }
-  scree_mesh_free(&mesh);
-  scree_free(spheres);
-  return status;
+  SCREE_TRY(scree_mesh_copy(&from->mesh, &mesh, error));
+  scree_mesh_scale(&mesh, factor);
+  return scree_particle_restore(&m, &mesh, spheres, radii, from->point_count, particle, error);
 }
 
 void scree_particle_measure(const scree_particle *particle, scree_particle_measures *measures) {

@@ -120,7 +120,7 @@ static scree_status read_file(const scree_shape_spec *spec, double unit_m,
   scree_read_options o = scree_default_read_options();
   scree_repair_options repair = scree_default_repair_options();
   scree_repair_report report = {.before.usable = true};
-  scree_scan read;
+  SCREE_CLEANUP(scree_scan_free) scree_scan read = {0};
   double usual = o.unit_m;
   if (unit_m > 0) o.unit_m = unit_m;
   o.ignore_comment_unit = true;
@@ -130,14 +130,11 @@ static scree_status read_file(const scree_shape_spec *spec, double unit_m,
                                           : usual;
   s->scale = read.states_unit ? 1 : unit / usual;
   s->checksum = read.checksum;
-  scree_status status = scree_mesh_prepare(&read.mesh, spec->no_repair ? NULL : &repair, progress,
-                                           &read.mesh, &report, error);
-  if (status != SCREE_OK) {
-    scree_scan_free(&read);
-    return status;
-  }
+  SCREE_TRY(scree_mesh_prepare(&read.mesh, spec->no_repair ? NULL : &repair, progress, &read.mesh,
+                               &report, error));
   s->repaired = !report.before.usable;
   s->mesh = read.mesh;
+  read.mesh = (scree_mesh){0};
   return SCREE_OK;
 }
 
@@ -157,11 +154,10 @@ static scree_status read_scan(const scree_shape_spec *spec, const scree_progress
                               scree_error *error) {
   s->scale = 1;
   s->recommended = NAN;
-  scree_status status = spec->sample ? read_sample(spec, progress, s, error)
-                        : spec->file ? read_file(spec, 0, progress, s, error)
-                                     : scree_box_mesh(spec->box, &s->mesh, error);
-  if (status == SCREE_OK) status = scree_mesh_area_volume(&s->mesh, NULL, &s->volume, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(spec->sample ? read_sample(spec, progress, s, error)
+            : spec->file ? read_file(spec, 0, progress, s, error)
+                         : scree_box_mesh(spec->box, &s->mesh, error));
+  SCREE_TRY(scree_mesh_area_volume(&s->mesh, NULL, &s->volume, error));
   s->volume *= s->scale * s->scale * s->scale;
   if (s->volume > 0) return SCREE_OK;
   return scree_fail(error, SCREE_BAD_MESH, "the volume is %g m3: not an outward surface",
@@ -208,14 +204,12 @@ static scree_status decimate(const scree_shape_spec *spec, scan *s, bool keeps,
   scree_simplify_options o = scree_default_simplify_options();
   o.method = spec->method;
   if (target && !keeps) o.stop_count = target;
-  scree_status status = SCREE_OK;
   if (!s->curve)
-    status = scree_curve_build_scaled(&s->mesh, s->scale, &o, progress, &s->curve, error);
-  if (status == SCREE_OK && !target) {
-    status = choose(s, progress, error);
+    SCREE_TRY(scree_curve_build_scaled(&s->mesh, s->scale, &o, progress, &s->curve, error));
+  if (!target) {
+    SCREE_TRY(choose(s, progress, error));
     target = scree_choice_target(fmin(1, factor * s->recommended), triangles);
   }
-  if (status != SCREE_OK) return status;
   return scree_curve_mesh(s->curve, scree_curve_find(s->curve, target), level, error);
 }
 
@@ -225,15 +219,15 @@ static scree_status take_whole(const scree_shape_spec *spec, const scan *s,
                                const scree_progress *progress, scree_mesh *level,
                                scree_error *error) {
   if (s->scale == 1 || !strcmp(spec->file, "-")) {
-    scree_status status = scree_mesh_copy(&s->mesh, level, error);
-    if (status == SCREE_OK && s->scale != 1) scree_mesh_scale(level, s->scale);
-    return status;
+    SCREE_TRY(scree_mesh_copy(&s->mesh, level, error));
+    if (s->scale != 1) scree_mesh_scale(level, s->scale);
+    return SCREE_OK;
   }
   scan again = {0};
   double unit = s->scale * scree_default_read_options().unit_m;
-  scree_status status = read_file(spec, unit, progress, &again, error);
-  if (status == SCREE_OK) *level = again.mesh;
-  return status;
+  SCREE_TRY(read_file(spec, unit, progress, &again, error));
+  *level = again.mesh;
+  return SCREE_OK;
 }
 
 static scree_status from_level(const scree_shape_spec *spec, scree_mesh *level,
@@ -253,23 +247,21 @@ static scree_status from_level(const scree_shape_spec *spec, scree_mesh *level,
 static scree_status from_scan(const scree_shape_spec *spec, scan *s, bool keeps,
                               const scree_progress *progress, scree_shape_made *made,
                               scree_error *error) {
-  scree_mesh level = {0};
-  scree_status status;
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh level = {0};
   if (is_spheres(spec->level)) {
-    status = scree_particle_sphere(scree_cbrt(0.75 * s->volume / pi), &made->particle, error);
+    SCREE_TRY(scree_particle_sphere(scree_cbrt(0.75 * s->volume / pi), &made->particle, error));
   } else {
-    status = stays_whole(spec, s->mesh.triangle_count)
-                 ? take_whole(spec, s, progress, &level, error)
-                 : decimate(spec, s, keeps, progress, &level, error);
-    if (status == SCREE_OK) status = from_level(spec, &level, progress, &made->particle, error);
-    scree_mesh_free(&level);
+    SCREE_TRY(stays_whole(spec, s->mesh.triangle_count)
+                  ? take_whole(spec, s, progress, &level, error)
+                  : decimate(spec, s, keeps, progress, &level, error));
+    SCREE_TRY(from_level(spec, &level, progress, &made->particle, error));
   }
   made->scan_triangle_count = s->mesh.triangle_count;
   made->scan_volume = s->volume;
   made->recommended = s->recommended;
   made->repaired = s->repaired;
   made->checksum = s->checksum;
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status from_table(const scree_shape_spec *spec, scree_shape_made *made,
@@ -328,16 +320,14 @@ static scree_status make(const scree_shape_spec *spec, scree_shape_store *store,
                          const scree_progress *progress, scree_shape_made *made,
                          scree_error *error) {
   scree_shape_made result = {.recommended = NAN};
-  scree_status status;
   if (spec->sphere > 0) {
     result.scan_volume = pi / 6 * spec->sphere * spec->sphere * spec->sphere;
-    status = scree_particle_sphere(0.5 * spec->sphere, &result.particle, error);
+    SCREE_TRY(scree_particle_sphere(0.5 * spec->sphere, &result.particle, error));
   } else if (spec->table) {
-    status = from_table(spec, &result, error);
+    SCREE_TRY(from_table(spec, &result, error));
   } else {
-    status = make_from_scan(spec, store, progress, &result, error);
+    SCREE_TRY(make_from_scan(spec, store, progress, &result, error));
   }
-  if (status != SCREE_OK) return status;
   scree_particle_measures m;
   scree_particle_measure(result.particle, &m);
   result.triangle_count = m.triangle_count;

@@ -219,24 +219,21 @@ static bool compose_block(scree_lattice *lattice, const uint8_t *critical,
 static scree_status compose(scree_lattice *lattice, scree_error *error) {
   uint8_t critical[256];
   for (unsigned mask = 0; mask < 256; mask++) critical[mask] = (uint8_t)critical_corners(mask);
-  uint8_t *flagged = scree_alloc(lattice->block_count, 1);
-  if (!flagged) return scree_fail_memory(error, lattice->block_count, "the lattice's flags");
+  SCREE_SCRATCH(uint8_t, flagged, lattice->block_count, error);
   composing context = {lattice, critical, flagged};
-  scree_status status = SCREE_OK;
-  for (bool again = true; again && status == SCREE_OK;) {
+  for (bool again = true; again;) {
     again = false;
     scree_parallel_for(lattice->block_count, BLOCKS_PER_TASK, flag_blocks, &context);
-    for (size_t b = 0; b < lattice->block_count && status == SCREE_OK; b++) {
+    for (size_t b = 0; b < lattice->block_count; b++) {
       if (!flagged[b]) continue;
       again = true;
       if (!compose_block(lattice, critical, &lattice->blocks[b]))
-        status = scree_fail(error, SCREE_LIMIT,
-                            "a resolution of %g mm is too coarse for this sample's details",
-                            lattice->step * 1e3);
+        return scree_fail(error, SCREE_LIMIT,
+                          "a resolution of %g mm is too coarse for this sample's details",
+                          lattice->step * 1e3);
     }
   }
-  scree_free(flagged);
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- All of it ---- */
@@ -266,18 +263,14 @@ static scree_status place(const scree_shape *shape, double step, scree_lattice *
 
 scree_status scree_lattice_build(const scree_shape *shape, double step, scree_ticker *ticker,
                                  scree_lattice *lattice, scree_error *error) {
-  scree_lattice made = {0};
-  scree_status status = place(shape, step, &made, error);
-  if (status == SCREE_OK) status = make_blocks(&made, error);
-  if (status == SCREE_OK) {
-    scree_parallel_for(made.block_count, BLOCKS_PER_TASK, sample_blocks, &made);
-    status = compose(&made, error);
-  }
-  if (status == SCREE_OK && !scree_tick(ticker, "sampling the shape", 0.4))
-    status = scree_fail(error, SCREE_CANCELLED, "cancelled while sampling the shape");
-  if (status == SCREE_OK)
-    *lattice = made;
-  else
-    scree_lattice_free(&made);
-  return status;
+  SCREE_CLEANUP(scree_lattice_free) scree_lattice made = {0};
+  SCREE_TRY(place(shape, step, &made, error));
+  SCREE_TRY(make_blocks(&made, error));
+  scree_parallel_for(made.block_count, BLOCKS_PER_TASK, sample_blocks, &made);
+  SCREE_TRY(compose(&made, error));
+  if (!scree_tick(ticker, "sampling the shape", 0.4))
+    return scree_fail(error, SCREE_CANCELLED, "cancelled while sampling the shape");
+  *lattice = made;
+  made = (scree_lattice){0};
+  return SCREE_OK;
 }

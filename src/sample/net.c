@@ -14,6 +14,7 @@
 
 #include "base/alloc.h"
 #include "base/parallel.h"
+#include "mesh/mesh.h"
 #include "sample/lattice.h"
 
 #include <string.h>
@@ -372,56 +373,47 @@ static void make_triangles(net *n) {
 /* ---- All of it ---- */
 
 static scree_status allocate(net *n, scree_error *error) {
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(n->position, n->vertex_count, error, failed);
-  SCREE_ALLOC_OR(n->moved, n->vertex_count, error, failed);
-  SCREE_ALLOC_OR(n->normal, n->vertex_count, error, failed);
-  SCREE_ALLOC_OR(n->neighbour, n->vertex_count, error, failed);
-  SCREE_ALLOC_OR(n->held, n->vertex_count, error, failed);
-  SCREE_ALLOC_OR(n->fallen, 2 * n->quad_count, error, failed);
-  SCREE_ALLOC_OR(n->mesh.positions, 3 * n->vertex_count, error, failed);
-  SCREE_ALLOC_OR(n->mesh.triangles, 6 * n->quad_count, error, failed);
-  memset(n->held, 0, n->vertex_count);
-  n->mesh.vertex_count = n->vertex_count;
-  n->mesh.triangle_count = 2 * n->quad_count;
-  status = SCREE_OK;
-failed:
-  return status;
+  SCREE_TRY_ALLOC(n->position, n->vertex_count, error);
+  SCREE_TRY_ALLOC(n->moved, n->vertex_count, error);
+  SCREE_TRY_ALLOC(n->normal, n->vertex_count, error);
+  SCREE_TRY_ALLOC(n->neighbour, n->vertex_count, error);
+  SCREE_TRY_ALLOC_ZERO(n->held, n->vertex_count, error);
+  SCREE_TRY_ALLOC(n->fallen, 2 * n->quad_count, error);
+  return scree_mesh_make(n->vertex_count, 2 * n->quad_count, &n->mesh, error);
 }
 
 static scree_status build(net *n, double step, scree_ticker *ticker, scree_error *error) {
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(n->first_quad, n->lattice.block_count + 1, error, failed);
+  SCREE_TRY_ALLOC(n->first_quad, n->lattice.block_count + 1, error);
   scree_parallel_for(n->lattice.block_count, BLOCKS_PER_TASK, count_block, n);
-  status = number_blocks(n, step, error);
-  if (status == SCREE_OK) status = allocate(n, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(number_blocks(n, step, error));
+  SCREE_TRY(allocate(n, error));
   scree_parallel_for(n->lattice.block_count, BLOCKS_PER_TASK, place_vertices, n);
   if (!spread(n, ticker))
     return scree_fail(error, SCREE_CANCELLED, "cancelled while meshing the shape");
   make_triangles(n);
   for (size_t v = 0; v < n->vertex_count; v++)
     vec3_store(n->mesh.positions + 3 * v, n->position[v]);
-failed:
-  return status;
+  return SCREE_OK;
+}
+
+static void free_net(net *n) {
+  scree_mesh_free(&n->mesh);
+  scree_free(n->position);
+  scree_free(n->moved);
+  scree_free(n->normal);
+  scree_free(n->neighbour);
+  scree_free(n->held);
+  scree_free(n->fallen);
+  scree_free(n->first_quad);
+  scree_lattice_free(&n->lattice);
 }
 
 scree_status scree_net_mesh(const scree_shape *shape, double step, scree_ticker *ticker,
                             scree_mesh *mesh, scree_error *error) {
-  net n = {0};
-  scree_status status = scree_lattice_build(shape, step, ticker, &n.lattice, error);
-  if (status == SCREE_OK) status = build(&n, step, ticker, error);
-  if (status == SCREE_OK)
-    *mesh = n.mesh;
-  else
-    scree_mesh_free(&n.mesh);
-  scree_free(n.position);
-  scree_free(n.moved);
-  scree_free(n.normal);
-  scree_free(n.neighbour);
-  scree_free(n.held);
-  scree_free(n.fallen);
-  scree_free(n.first_quad);
-  scree_lattice_free(&n.lattice);
-  return status;
+  SCREE_CLEANUP(free_net) net n = {0};
+  SCREE_TRY(scree_lattice_build(shape, step, ticker, &n.lattice, error));
+  SCREE_TRY(build(&n, step, ticker, error));
+  *mesh = n.mesh;
+  n.mesh = (scree_mesh){0};
+  return SCREE_OK;
 }

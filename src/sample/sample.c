@@ -68,19 +68,14 @@ static scree_status make_shape(const scree_piece_mm *lines, size_t line_count, d
 
 static scree_status make_device(const scree_device *device, const scree_sample_options *options,
                                 scree_ticker *ticker, scree_mesh *mesh, scree_error *error) {
-  scree_mesh made;
-  scree_status status =
-      make_shape(device->lines, device->line_count, options->resolution, ticker, &made, error);
-  if (status != SCREE_OK) return status;
-  if (options->noise > 0) {
-    scree_scanner scanner = {options->noise, options->seed};
-    status = scree_scanner_apply(&scanner, &made, error);
-  }
-  if (status == SCREE_OK)
-    *mesh = made;
-  else
-    scree_mesh_free(&made);
-  return status;
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh made = {0};
+  SCREE_TRY(
+      make_shape(device->lines, device->line_count, options->resolution, ticker, &made, error));
+  scree_scanner scanner = {options->noise, options->seed};
+  if (options->noise > 0) SCREE_TRY(scree_scanner_apply(&scanner, &made, error));
+  *mesh = made;
+  made = (scree_mesh){0};
+  return SCREE_OK;
 }
 
 /* The least level whose edges are no longer than the resolution on average: an icosahedron's edge

@@ -209,29 +209,18 @@ static bool restrain(scan *s, uint8_t *halve) {
 
 scree_status scree_scanner_apply(const scree_scanner *scanner, scree_mesh *mesh,
                                  scree_error *error) {
-  scree_status status = SCREE_OUT_OF_MEMORY;
   scan s = {.scanner = scanner, .mesh = mesh};
-  uint8_t *halve = NULL;
-  SCREE_ALLOC_OR(s.normals, mesh->vertex_count, error, done);
-  SCREE_ALLOC_OR(s.moves, mesh->vertex_count, error, done);
-  SCREE_ALLOC_OR(s.edge, mesh->vertex_count, error, done);
-  halve = scree_alloc_zero(mesh->vertex_count, 1);
-  if (!halve) {
-    scree_fail_memory(error, mesh->vertex_count, "halve");
-    goto done;
-  }
+  SCREE_SCRATCH(vec3, normals, mesh->vertex_count, error);
+  SCREE_SCRATCH(vec3, moves, mesh->vertex_count, error);
+  SCREE_SCRATCH(double, edge, mesh->vertex_count, error);
+  SCREE_SCRATCH_ZERO(uint8_t, halve, mesh->vertex_count, error);
+  s.normals = normals, s.moves = moves, s.edge = edge;
   make_views(s.views);
   survey(&s);
   scree_parallel_for(mesh->vertex_count, 4096, displace, &s);
   for (int i = 0; i < HALVINGS && restrain(&s, halve); i++) {
   }
   for (size_t v = 0; v < mesh->vertex_count; v++)
-    vec3_store(mesh->positions + 3 * v, vec3_add(vec3_load(mesh->positions + 3 * v), s.moves[v]));
-  status = SCREE_OK;
-done:
-  scree_free(s.normals);
-  scree_free(s.moves);
-  scree_free(s.edge);
-  scree_free(halve);
-  return status;
+    vec3_store(mesh->positions + 3 * v, vec3_add(vec3_load(mesh->positions + 3 * v), moves[v]));
+  return SCREE_OK;
 }

@@ -2,20 +2,9 @@
 
 #include "base/alloc.h"
 #include "base/vec.h"
+#include "mesh/mesh.h"
 
 #include <string.h>
-
-static scree_status allocate(size_t vertex_count, size_t triangle_count, scree_mesh *mesh,
-                             scree_error *error) {
-  scree_mesh made = {.vertex_count = vertex_count, .triangle_count = triangle_count};
-  SCREE_ALLOC_OR(made.positions, 3 * vertex_count, error, failed);
-  SCREE_ALLOC_OR(made.triangles, 3 * triangle_count, error, failed);
-  *mesh = made;
-  return SCREE_OK;
-failed:
-  scree_mesh_free(&made);
-  return SCREE_OUT_OF_MEMORY;
-}
 
 /* ---- Box ---- */
 
@@ -31,7 +20,7 @@ static size_t box_vertex(size_t n, size_t i, size_t j, size_t k) {
 
 scree_status scree_sample_box(double edge, size_t cells, scree_mesh *mesh, scree_error *error) {
   size_t n = cells;
-  SCREE_TRY(allocate(2 * (n + 1) * (n + 1) + 4 * n * (n - 1), 12 * n * n, mesh, error));
+  SCREE_TRY(scree_mesh_make(2 * (n + 1) * (n + 1) + 4 * n * (n - 1), 12 * n * n, mesh, error));
   uint32_t *triangle = mesh->triangles;
   for (int face = 0; face < 6; face++) {
     int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -116,24 +105,15 @@ static void icosahedron(double radius, scree_mesh *mesh) {
 scree_status scree_sample_icosphere(double radius, int level, scree_mesh *mesh,
                                     scree_error *error) {
   size_t triangle_count = (size_t)20 << (2 * level), slot_count = 64;
-  scree_mesh made;
-  midpoints table = {0};
-  scree_status status = allocate(triangle_count / 2 + 2, triangle_count, &made, error);
-  if (status != SCREE_OK) return status;
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh made = {0};
   while (slot_count < triangle_count) slot_count *= 2; /* at most 3/8 of them midpoints */
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(table.keys, slot_count, error, done);
-  SCREE_ALLOC_OR(table.vertices, slot_count, error, done);
-  table.mask = slot_count - 1;
+  SCREE_TRY(scree_mesh_make(triangle_count / 2 + 2, triangle_count, &made, error));
+  SCREE_SCRATCH(uint64_t, keys, slot_count, error);
+  SCREE_SCRATCH(uint32_t, vertices, slot_count, error);
+  midpoints table = {keys, vertices, slot_count - 1};
   icosahedron(radius, &made);
   for (int i = 0; i < level; i++) subdivide(&table, radius, &made);
-  status = SCREE_OK;
-done:
-  if (status == SCREE_OK)
-    *mesh = made;
-  else
-    scree_mesh_free(&made);
-  scree_free(table.keys);
-  scree_free(table.vertices);
-  return status;
+  *mesh = made;
+  made = (scree_mesh){0};
+  return SCREE_OK;
 }

@@ -235,14 +235,12 @@ scree_status scree_facet_tree_build(const scree_mesh *mesh, scree_facet_tree *ou
                                     scree_error *error) {
   const scree_boxed facets = {mesh->triangle_count, scree_box_of_facet, mesh, SCREE_LEAF_FACETS,
                               SCREE_SPLIT_HALVES};
-  scree_facet_tree t = {.mesh = mesh};
-  scree_status status = scree_tree_build(&facets, &t.tree, error);
-  if (status == SCREE_OK) status = add_frames(&t, error);
-  if (status == SCREE_OK)
-    *out = t;
-  else
-    scree_facet_tree_free(&t);
-  return status;
+  SCREE_CLEANUP(scree_facet_tree_free) scree_facet_tree t = {.mesh = mesh};
+  SCREE_TRY(scree_tree_build(&facets, &t.tree, error));
+  SCREE_TRY(add_frames(&t, error));
+  *out = t;
+  t = (scree_facet_tree){0};
+  return SCREE_OK;
 }
 
 void scree_facet_tree_free(scree_facet_tree *tree) {

@@ -76,6 +76,6 @@ scree_status scree_import_take(scree_reading *r, scree_import_format format, con
              a.unit_name);
   }
   const double *corners = (const double *)(const void *)(bytes + sizeof a);
-  scree_status status = check_corners(r, corners, a.triangle_count);
-  return status == SCREE_OK ? scree_reading_weld(r, corners, a.triangle_count) : status;
+  SCREE_TRY(check_corners(r, corners, a.triangle_count));
+  return scree_reading_weld(r, corners, a.triangle_count);
 }

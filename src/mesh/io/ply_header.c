@@ -70,9 +70,7 @@ static scree_status read_element(scree_text *t, scree_ply_header *h) {
   for (size_t i = 0; i < length; i++)
     e.name[i] = word.begin[i] >= ' ' && word.begin[i] <= '~' ? word.begin[i] : '?';
   int64_t count;
-  scree_status status =
-      scree_text_integer(t, "the number of an element", 0, (int64_t)1 << 52, &count);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_text_integer(t, "the number of an element", 0, (int64_t)1 << 52, &count));
   e.count = (size_t)count;
   for (size_t i = 0; i < h->elements.count; i++)
     if (e.kind != SCREE_PLY_OTHER && h->elements.items[i].kind == e.kind)
@@ -98,14 +96,12 @@ static scree_status read_property(scree_text *t, scree_ply_header *h) {
   scree_ply_element *e = &h->elements.items[h->elements.count - 1];
   scree_ply_property p = {0};
   scree_text probe = *t;
-  scree_status status = SCREE_OK;
   if (scree_token_is(scree_text_next(&probe), "list")) {
     p.is_list = true;
     t->p = probe.p;
-    status = read_type(t, &p.count_type);
+    SCREE_TRY(read_type(t, &p.count_type));
   }
-  if (status == SCREE_OK) status = read_type(t, &p.type);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(read_type(t, &p.type));
   scree_token name = scree_text_next(t);
   p.role = role_of(e->kind, name, p.is_list);
   for (size_t i = e->first_property; i < h->properties.count; i++)
@@ -133,20 +129,18 @@ scree_status scree_ply_header_read(scree_text *t, scree_ply_header *h) {
   scree_token word;
   for (;;) {
     word = scree_text_next(t);
-    scree_status status = SCREE_OK;
     if (scree_token_is(word, "end_header")) break;
     if (scree_token_is(word, "format")) {
-      status = read_format(t, h);
+      SCREE_TRY(read_format(t, h));
       has_format = true;
     } else if (scree_token_is(word, "element"))
-      status = read_element(t, h);
+      SCREE_TRY(read_element(t, h));
     else if (scree_token_is(word, "property"))
-      status = read_property(t, h);
+      SCREE_TRY(read_property(t, h));
     else if (word.length == 0 || t->p == t->end)
-      status = scree_text_fail(t, t->end, "the file is cut off before `end_header`");
+      return scree_text_fail(t, t->end, "the file is cut off before `end_header`");
     else if (!scree_token_is(word, "comment") && !scree_token_is(word, "obj_info"))
-      status = fail_word(t, word, "expected format, element, property, comment or end_header");
-    if (status != SCREE_OK) return status;
+      return fail_word(t, word, "expected format, element, property, comment or end_header");
     scree_text_skip_line(t);
   }
   if (!has_format) return scree_text_fail(t, word.begin, "the header names no format");

@@ -192,24 +192,20 @@ scree_status scree_face_list_triangulate(scree_face_list *list, const double *po
   }
   if (most < 4) return SCREE_OK;
   scree_index_list *out = &list->triangles;
-  ring r = {0};
-  scree_status status = SCREE_OK;
-  if (!SCREE_RESERVE(out, out->count + 3 * triangle_count) || !ring_reserve(&r, most)) {
-    ring_free(&r);
+  SCREE_CLEANUP(ring_free) ring r = {0};
+  if (!SCREE_RESERVE(out, out->count + 3 * triangle_count) || !ring_reserve(&r, most))
     return scree_fail_memory(error, 3 * triangle_count * sizeof *out->items,
                              "the triangles of polygons");
-  }
-  for (size_t at = 0; at < polygons->count && status == SCREE_OK;) {
+  for (size_t at = 0; at < polygons->count;) {
     size_t count = polygons->items[at];
     if (ring_begin(&r, positions, polygons->items + at + 1, count) == 0)
       put_fan(&r, fan_start(&r, positions), out);
     else if (!clip_ears(&r, out))
-      status = scree_fail(error, SCREE_LIMIT,
-                          "%s: its polygons (of up to %zu corners) are too intricate to be cut "
-                          "into triangles in %llu steps",
-                          name, most, (unsigned long long)step_limit);
+      return scree_fail(error, SCREE_LIMIT,
+                        "%s: its polygons (of up to %zu corners) are too intricate to be cut "
+                        "into triangles in %llu steps",
+                        name, most, (unsigned long long)step_limit);
     at += 1 + count;
   }
-  ring_free(&r);
-  return status;
+  return SCREE_OK;
 }

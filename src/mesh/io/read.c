@@ -80,11 +80,11 @@ scree_status scree_reading_weld_faces(scree_reading *r, const double *positions,
     return scree_reading_fail(r, SCREE_BAD_FILE, "%s with no facets (%zu vertices)",
                               r->scan->format, position_count);
   SCREE_TRY(scree_face_list_triangulate(faces, positions, r->name, r->error));
-  scree_status status =
-      weld_source(r, positions, position_count, faces->triangles.items, faces->triangles.count / 3);
+  SCREE_TRY(weld_source(r, positions, position_count, faces->triangles.items,
+                        faces->triangles.count / 3));
   r->scan->facet_count += faces->lost_count;
   r->scan->degenerate_count += faces->lost_count;
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- sniffing ---- */
@@ -411,25 +411,22 @@ static scree_status check_options(const scree_read_options *o, scree_error *erro
 /* Reads what r names; its unit and scan are set here. */
 static scree_status parse(scree_reading *r, scree_scan *scan) {
   SCREE_TRY(check_options(r->options, r->error));
-  scree_scan made = {.byte_count = r->byte_count};
+  SCREE_CLEANUP(scree_scan_free) scree_scan made = {.byte_count = r->byte_count};
   r->scan = &made;
   r->unit_m = r->options->unit_m;
-  scree_status status = read_any(r);
+  SCREE_TRY(read_any(r));
   made.unit_m = r->unit_m;
-  if (status == SCREE_OK && made.mesh.triangle_count == 0)
-    status = scree_reading_fail(r, SCREE_BAD_MESH,
-                                "all %zu facets are degenerate: two corners of each coincide",
-                                made.facet_count);
-  if (status != SCREE_OK) {
-    scree_scan_free(&made);
-    return status;
-  }
+  if (made.mesh.triangle_count == 0)
+    return scree_reading_fail(r, SCREE_BAD_MESH,
+                              "all %zu facets are degenerate: two corners of each coincide",
+                              made.facet_count);
   made.checksum = scree_checksum_of(r->bytes, r->byte_count);
   if (r->beside.high | r->beside.low) {
     scree_checksum sums[2] = {made.checksum, r->beside};
     made.checksum = scree_checksum_of(sums, sizeof sums);
   }
   *scan = made;
+  made = (scree_scan){0};
   return SCREE_OK;
 }
 
@@ -516,16 +513,14 @@ static scree_status read_stream(const char *path, const scree_read_options *opti
 scree_status scree_scan_read(const char *path, const scree_read_options *options, scree_scan *scan,
                              scree_error *error) {
   scree_read_options used = options ? *options : scree_default_read_options();
-  char *bytes;
+  SCREE_CLEANUP(scree_free_at) char *bytes = NULL;
   size_t byte_count, whole_count;
-  bool done = false;
-  scree_status status = check_options(&used, error);
-  if (status == SCREE_OK && strcmp(path, "-") != 0)
-    status = read_stream(path, &used, scan, &done, error);
-  if (status != SCREE_OK || done) return status;
+  bool done = false, is_file = strcmp(path, "-") != 0;
+  SCREE_TRY(check_options(&used, error));
+  if (is_file) SCREE_TRY(read_stream(path, &used, scan, &done, error));
+  if (done) return SCREE_OK;
   SCREE_TRY(scree_file_read_judged(path, used.max_bytes, judge, &bytes, &byte_count, &whole_count,
                                    error));
-  bool is_file = strcmp(path, "-") != 0;
   scree_reading r = {.name = is_file ? path : "standard input",
                      .bytes = (const unsigned char *)bytes,
                      .byte_count = byte_count,
@@ -533,7 +528,5 @@ scree_status scree_scan_read(const char *path, const scree_read_options *options
                      .options = &used,
                      .error = error,
                      .path = is_file ? path : NULL};
-  status = parse(&r, scan);
-  scree_free(bytes);
-  return status;
+  return parse(&r, scan);
 }

@@ -98,14 +98,14 @@ static scree_status place_mesh(placing *p, const scree_3mf_object *o, const scre
   size_t first = p->placed.positions.count / 3;
   bool is_mirrored = scree_affine_mirrors(where);
   if (o->vertex_count == 0) return SCREE_OK;
-  scree_status status = scree_placed_add(p->r, &p->placed, where,
-                                         m->vertices.items + o->first_vertex, o->vertex_count / 3);
-  for (size_t i = 0; i < o->triangle_count && status == SCREE_OK; i++) {
+  SCREE_TRY(scree_placed_add(p->r, &p->placed, where, m->vertices.items + o->first_vertex,
+                             o->vertex_count / 3));
+  for (size_t i = 0; i < o->triangle_count; i++) {
     const scree_3mf_triangle *t = &m->triangles.items[o->first_triangle + i];
     if (t->role == SCREE_3MF_SOLID)
-      status = scree_placed_add_triangle(p->r, &p->placed, first, t->corner, is_mirrored);
+      SCREE_TRY(scree_placed_add_triangle(p->r, &p->placed, first, t->corner, is_mirrored));
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status place(placing *p, const scree_3mf_component *c, const scree_affine *outer,
@@ -126,16 +126,16 @@ static scree_status place(placing *p, const scree_3mf_component *c, const scree_
     return SCREE_OK;
   }
   scree_affine where = scree_affine_in(outer, &c->where);
-  scree_status status = place_mesh(p, o, &where);
-  for (size_t i = 0; i < o->component_count && status == SCREE_OK; i++) {
+  SCREE_TRY(place_mesh(p, o, &where));
+  for (size_t i = 0; i < o->component_count; i++) {
     const scree_3mf_component *inner = &m->components.items[o->first_component + i];
     scree_3mf_role role = role_of_component(m, o->id, inner->object_id);
     if (role)
       m->left_out[role]++;
     else
-      status = place(p, inner, &where, depth + 1);
+      SCREE_TRY(place(p, inner, &where, depth + 1));
   }
-  return status;
+  return SCREE_OK;
 }
 
 static void tell_left_out(scree_reading *r, const scree_3mf *m) {
@@ -185,31 +185,26 @@ static scree_status read_parts(scree_reading *r, scree_3mf *m) {
   static const char *const settings[] = {"Metadata/Slic3r_PE_model.config",
                                          "Metadata/model_settings.config"};
   scree_3mf_parse p = {.model = m, .start = start_relation, .part_name = "_rels/.rels"};
-  scree_status status = scree_3mf_parse_part(r, &p, false);
-  if (status == SCREE_OK && m->parts.count == 0) {
+  SCREE_TRY(scree_3mf_parse_part(r, &p, false));
+  if (m->parts.count == 0) {
     scree_3mf_part root = {"3D/3dmodel.model"};
-    if (!SCREE_PUSH(&m->parts, root)) status = scree_fail_memory(r->error, sizeof root, "a part");
+    if (!SCREE_PUSH(&m->parts, root)) return scree_fail_memory(r->error, sizeof root, "a part");
   }
-  for (size_t i = 0; i < m->parts.count && status == SCREE_OK; i++)
-    status = scree_3mf_read_part(r, m, i);
-  for (size_t i = 0; i < sizeof settings / sizeof *settings && status == SCREE_OK; i++) {
+  for (size_t i = 0; i < m->parts.count; i++) SCREE_TRY(scree_3mf_read_part(r, m, i));
+  for (size_t i = 0; i < sizeof settings / sizeof *settings; i++) {
     p = (scree_3mf_parse){.model = m, .start = start_setting, .part_name = settings[i]};
-    status = scree_3mf_parse_part(r, &p, false);
+    SCREE_TRY(scree_3mf_parse_part(r, &p, false));
   }
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_read_3mf(scree_reading *r) {
-  scree_3mf m = {.unit_name = "millimeter"};
+  SCREE_CLEANUP(scree_3mf_free) scree_3mf m = {.unit_name = "millimeter"};
   snprintf(r->scan->format, sizeof r->scan->format, "3MF");
-  scree_status status = read_parts(r, &m);
-  if (status == SCREE_OK) {
-    r->unit_m = scree_unit_of_root(m.unit_name);
-    r->scan->states_unit = true;
-    snprintf(r->scan->format, sizeof r->scan->format, "3MF, %s", m.unit_name);
-    mark_volumes(&m);
-    status = place_build(r, &m);
-  }
-  scree_3mf_free(&m);
-  return status;
+  SCREE_TRY(read_parts(r, &m));
+  r->unit_m = scree_unit_of_root(m.unit_name);
+  r->scan->states_unit = true;
+  snprintf(r->scan->format, sizeof r->scan->format, "3MF, %s", m.unit_name);
+  mark_volumes(&m);
+  return place_build(r, &m);
 }

@@ -157,8 +157,7 @@ static scree_status decode_text(model *m, cgltf_buffer *b, size_t index) {
 
 static scree_status load_buffers(model *m) {
   cgltf_data *d = m->data;
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < d->buffers_count && status == SCREE_OK; i++) {
+  for (size_t i = 0; i < d->buffers_count; i++) {
     cgltf_buffer *b = &d->buffers[i];
     if (i == 0 && !b->uri && d->bin) {
       if (d->bin_size < b->size)
@@ -167,12 +166,12 @@ static scree_status load_buffers(model *m) {
                                   m->r->scan->format, b->size, d->bin_size);
       b->data = (void *)(uintptr_t)d->bin;
     } else if (b->uri && !strncmp(b->uri, "data:", 5)) {
-      status = decode_text(m, b, i);
+      SCREE_TRY(decode_text(m, b, i));
     } else if (b->uri) {
-      status = read_beside(m, b, i);
+      SCREE_TRY(read_beside(m, b, i));
     } /* else: what nothing that is read may need */
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- Accessors ---- */
@@ -304,13 +303,12 @@ static scree_status place_triangles(model *m, const cgltf_primitive *p, size_t f
   size_t vertex_count = m->vertices.count / 3;
   size_t count = p->indices ? p->indices->count : vertex_count;
   elements e = {0};
-  scree_status status = SCREE_OK;
   if (p->indices && (p->indices->is_sparse || !elements_of(p->indices, 1, &e)))
     return fail(m, SCREE_BAD_FILE, bad);
   size_t triangles = p->type == cgltf_primitive_type_triangles ? count / 3
                      : count < 3                               ? 0
                                                                : count - 2;
-  for (size_t i = 0; i < triangles && status == SCREE_OK; i++) {
+  for (size_t i = 0; i < triangles; i++) {
     size_t at[3];
     uint32_t corners[3];
     corners_of(p->type, i, at);
@@ -321,9 +319,9 @@ static scree_status place_triangles(model *m, const cgltf_primitive *p, size_t f
       if (!(index >= 0 && index < (double)vertex_count)) return fail(m, SCREE_BAD_FILE, bad);
       corners[c] = (uint32_t)index;
     }
-    status = scree_placed_add_triangle(m->r, &m->placed, first, corners, is_mirrored);
+    SCREE_TRY(scree_placed_add_triangle(m->r, &m->placed, first, corners, is_mirrored));
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status place_primitive(model *m, const cgltf_primitive *p, const scree_affine *where) {
@@ -332,11 +330,10 @@ static scree_status place_primitive(model *m, const cgltf_primitive *p, const sc
     if (p->attributes[i].type == cgltf_attribute_type_position) positions = p->attributes[i].data;
   if (!positions || p->type < cgltf_primitive_type_triangles) return SCREE_OK; /* no surface */
   size_t first = m->placed.positions.count / 3;
-  scree_status status = load_positions(m, positions);
-  if (status == SCREE_OK && m->vertices.count)
-    status = scree_placed_add(m->r, &m->placed, where, m->vertices.items, m->vertices.count / 3);
-  if (status == SCREE_OK) status = place_triangles(m, p, first, scree_affine_mirrors(where));
-  return status;
+  SCREE_TRY(load_positions(m, positions));
+  if (m->vertices.count)
+    SCREE_TRY(scree_placed_add(m->r, &m->placed, where, m->vertices.items, m->vertices.count / 3));
+  return place_triangles(m, p, first, scree_affine_mirrors(where));
 }
 
 /* cgltf's matrix of a node is in single precision. */
@@ -363,27 +360,25 @@ static scree_affine placement_of(const cgltf_node *n) {
 static scree_status place_node(model *m, const cgltf_node *n, const scree_affine *outer,
                                int depth) {
   scree_affine inner = placement_of(n), where = scree_affine_in(outer, &inner);
-  scree_status status = SCREE_OK;
   if (depth > MOST_DEPTH)
     return scree_reading_fail(m->r, SCREE_LIMIT, "as %s: nodes lie more than %d deep in each other",
                               m->r->scan->format, MOST_DEPTH);
-  for (size_t i = 0; n->mesh && i < n->mesh->primitives_count && status == SCREE_OK; i++)
-    status = place_primitive(m, &n->mesh->primitives[i], &where);
-  for (size_t i = 0; i < n->children_count && status == SCREE_OK; i++)
-    status = place_node(m, n->children[i], &where, depth + 1);
-  return status;
+  for (size_t i = 0; n->mesh && i < n->mesh->primitives_count; i++)
+    SCREE_TRY(place_primitive(m, &n->mesh->primitives[i], &where));
+  for (size_t i = 0; i < n->children_count; i++)
+    SCREE_TRY(place_node(m, n->children[i], &where, depth + 1));
+  return SCREE_OK;
 }
 
 /* The scene that the file shows, its first where it says none; without scenes all nodes. */
 static scree_status place_scene(model *m) {
   const cgltf_data *d = m->data;
   const cgltf_scene *scene = d->scene ? d->scene : d->scenes_count ? d->scenes : NULL;
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; scene && i < scene->nodes_count && status == SCREE_OK; i++)
-    status = place_node(m, scene->nodes[i], &scree_affine_none, 0);
-  for (size_t i = 0; !scene && i < d->nodes_count && status == SCREE_OK; i++)
-    if (!d->nodes[i].parent) status = place_node(m, &d->nodes[i], &scree_affine_none, 0);
-  return status;
+  for (size_t i = 0; scene && i < scene->nodes_count; i++)
+    SCREE_TRY(place_node(m, scene->nodes[i], &scree_affine_none, 0));
+  for (size_t i = 0; !scene && i < d->nodes_count; i++)
+    if (!d->nodes[i].parent) SCREE_TRY(place_node(m, &d->nodes[i], &scree_affine_none, 0));
+  return SCREE_OK;
 }
 
 static scree_status explain(model *m, cgltf_result result) {

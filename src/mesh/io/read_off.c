@@ -102,12 +102,10 @@ static scree_status read_header(scree_text *t, off *o) {
   if (scree_token_is(scree_text_next(&probe), "binary"))
     return scree_fail(t->error, SCREE_UNSUPPORTED,
                       "%s: line 1: binary OFF is not read; save it as text", t->name);
-  scree_status status =
-      read_count(t, "the number of vertices", VERTEX_LEAST_BYTES, &o->vertex_count);
-  if (status == SCREE_OK)
-    status = read_count(t, "the number of faces", FACE_LEAST_BYTES, &o->face_count);
-  if (status == SCREE_OK) skip_edge_count(t);
-  return status;
+  SCREE_TRY(read_count(t, "the number of vertices", VERTEX_LEAST_BYTES, &o->vertex_count));
+  SCREE_TRY(read_count(t, "the number of faces", FACE_LEAST_BYTES, &o->face_count));
+  skip_edge_count(t);
+  return SCREE_OK;
 }
 
 static scree_status read_vertex(scree_text *t, off *o, int64_t vertex) {
@@ -117,17 +115,17 @@ static scree_status read_vertex(scree_text *t, off *o, int64_t vertex) {
 static scree_status read_face(scree_text *t, off *o, int64_t face) {
   int64_t corner_count, corner;
   (void)face;
-  scree_status status = read_count(t, "the number of corners", CORNER_LEAST_BYTES, &corner_count);
+  SCREE_TRY(read_count(t, "the number of corners", CORNER_LEAST_BYTES, &corner_count));
   o->face.count = 0;
-  for (int64_t i = 0; i < corner_count && status == SCREE_OK; i++) {
-    status = scree_text_integer(t, "a corner of a face", 0, o->vertex_count - 1, &corner);
-    if (status == SCREE_OK && !SCREE_PUSH(&o->face, (uint32_t)corner))
-      status = scree_fail_memory(t->error, o->face.capacity * sizeof(uint32_t), "a face of an OFF");
+  for (int64_t i = 0; i < corner_count; i++) {
+    SCREE_TRY(scree_text_integer(t, "a corner of a face", 0, o->vertex_count - 1, &corner));
+    if (!SCREE_PUSH(&o->face, (uint32_t)corner))
+      return scree_fail_memory(t->error, o->face.capacity * sizeof(uint32_t), "a face of an OFF");
   }
-  if (status == SCREE_OK && !scree_face_list_add(&o->faces, o->face.items, o->face.count))
-    status = scree_fail_memory(t->error, o->faces.triangles.capacity * sizeof(uint32_t),
-                               "the faces of an OFF");
-  return status;
+  if (!scree_face_list_add(&o->faces, o->face.items, o->face.count))
+    return scree_fail_memory(t->error, o->faces.triangles.capacity * sizeof(uint32_t),
+                             "the faces of an OFF");
+  return SCREE_OK;
 }
 
 static bool has_line_end(const char *begin, const char *end) {

@@ -158,8 +158,7 @@ static scree_status add_corner(ply *p, double value, const char *at) {
 static scree_status read_list(ply *p, const scree_ply_property *property) {
   double count = 0, value = 0;
   const char *at = value_start(p);
-  scree_status status = next_value(p, property->count_type, &count);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(next_value(p, property->count_type, &count));
   size_t least = is_ascii(p) ? 2 : scree_ply_type_size(property->type);
   size_t room = (size_t)(p->text.end - p->text.p) / least + is_ascii(p);
   if (!(count >= 0 && count <= (double)room && count == floor(count))) {
@@ -167,16 +166,16 @@ static scree_status read_list(ply *p, const scree_ply_property *property) {
     return fail_at(p, "a list of %.0f values does not fit the rest of the file", count);
   }
   p->corners.count = property->role == SCREE_PLY_CORNERS ? 0 : p->corners.count;
-  for (size_t i = 0; i < (size_t)count && status == SCREE_OK; i++) {
+  for (size_t i = 0; i < (size_t)count; i++) {
     if (property->role != SCREE_PLY_CORNERS) {
-      status = skip_value(p, property->type);
+      SCREE_TRY(skip_value(p, property->type));
       continue;
     }
     at = value_start(p);
-    status = next_value(p, property->type, &value);
-    if (status == SCREE_OK) status = add_corner(p, value, at);
+    SCREE_TRY(next_value(p, property->type, &value));
+    SCREE_TRY(add_corner(p, value, at));
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status read_property(ply *p, const scree_ply_property *property) {
@@ -277,8 +276,7 @@ static scree_status finish_line(ply *p, const char *begin) {
 }
 
 static scree_status read_element(ply *p) {
-  scree_status status = check_element(p);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(check_element(p));
   if (p->element->kind == SCREE_PLY_VERTEX) {
     p->positions = scree_alloc(p->vertex_count, 3 * sizeof(double));
     if (!p->positions)
@@ -287,14 +285,14 @@ static scree_status read_element(ply *p) {
   }
   const scree_ply_property *properties = properties_of(p);
   size_t row_count = p->element->property_count ? p->element->count : 0;
-  for (p->row = 0; p->row < row_count && status == SCREE_OK; p->row++) {
+  for (p->row = 0; p->row < row_count; p->row++) {
     const char *begin = value_start(p);
-    for (size_t i = 0; i < p->element->property_count && status == SCREE_OK; i++)
-      status = read_property(p, &properties[i]);
-    if (status == SCREE_OK) status = finish_row(p);
-    if (status == SCREE_OK && is_ascii(p)) status = finish_line(p, begin);
+    for (size_t i = 0; i < p->element->property_count; i++)
+      SCREE_TRY(read_property(p, &properties[i]));
+    SCREE_TRY(finish_row(p));
+    if (is_ascii(p)) SCREE_TRY(finish_line(p, begin));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* The number of vertices must be known before faces, wherever they stand. */

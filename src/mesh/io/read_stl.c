@@ -235,30 +235,28 @@ static scree_status expect_word(scree_text *t, const char *word) {
 }
 
 static scree_status skip_normal(scree_text *t) {
-  scree_status status = expect_word(t, "normal");
-  for (int i = 0; i < 3 && status == SCREE_OK; i++) {
+  SCREE_TRY(expect_word(t, "normal"));
+  for (int i = 0; i < 3; i++) {
     scree_token token = scree_text_next(t); /* any word: exporters write NaN in many ways */
     if (token.length == 0 || scree_token_is(token, "outer"))
-      status = fail_expected(t, token.begin, "three numbers of the normal");
+      return fail_expected(t, token.begin, "three numbers of the normal");
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status read_facet(scree_text *t, corner_list *corners) {
-  scree_status status = skip_normal(t);
-  if (status == SCREE_OK) status = expect_word(t, "outer");
-  if (status == SCREE_OK) status = expect_word(t, "loop");
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(skip_normal(t));
+  SCREE_TRY(expect_word(t, "outer"));
+  SCREE_TRY(expect_word(t, "loop"));
   if (!SCREE_RESERVE(corners, corners->count + 9))
     return scree_fail_memory(t->error, corners->capacity * sizeof(double), "the facets of an STL");
-  for (int i = 0; i < 3 && status == SCREE_OK; i++) {
-    status = expect_word(t, "vertex");
-    if (status == SCREE_OK) status = scree_text_position(t, corners->items + corners->count);
+  for (int i = 0; i < 3; i++) {
+    SCREE_TRY(expect_word(t, "vertex"));
+    SCREE_TRY(scree_text_position(t, corners->items + corners->count));
     corners->count += 3;
   }
-  if (status == SCREE_OK) status = expect_word(t, "endloop");
-  if (status == SCREE_OK) status = expect_word(t, "endfacet");
-  return status;
+  SCREE_TRY(expect_word(t, "endloop"));
+  return expect_word(t, "endfacet");
 }
 
 static scree_status fail_behind(const scree_text *t, const char *at) {
@@ -299,9 +297,7 @@ static scree_status read_solids(scree_reading *r, scree_text *t, corner_list *co
 scree_status scree_read_stl_ascii(scree_reading *r) {
   snprintf(r->scan->format, sizeof r->scan->format, "STL ASCII");
   scree_text text = scree_reading_text(r);
-  corner_list corners = {0};
-  scree_status status = read_solids(r, &text, &corners);
-  if (status == SCREE_OK) status = scree_reading_weld(r, corners.items, corners.count / 9);
-  scree_free(corners.items);
-  return status;
+  SCREE_CLEANUP(scree_free_at) corner_list corners = {0};
+  SCREE_TRY(read_solids(r, &text, &corners));
+  return scree_reading_weld(r, corners.items, corners.count / 9);
 }

@@ -96,10 +96,8 @@ scree_status scree_text_coordinate(scree_text *t, int axis, double *value) {
 }
 
 scree_status scree_text_position(scree_text *t, double position[3]) {
-  scree_status status = SCREE_OK;
-  for (int i = 0; i < 3 && status == SCREE_OK; i++)
-    status = scree_text_coordinate(t, i, &position[i]);
-  return status;
+  for (int i = 0; i < 3; i++) SCREE_TRY(scree_text_coordinate(t, i, &position[i]));
+  return SCREE_OK;
 }
 
 static size_t line_of(const scree_text *t, const char *at) {

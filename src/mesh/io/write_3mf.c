@@ -1,6 +1,6 @@
 /* A 3MF (3MF Core Specification 1.3): a zip archive of three XML parts, the model among them.
  *
- * The parts are stored, not compressed, so that no library is needed. A zip says the length and the
+ * The parts are stored, not compressed. A zip says the length and the
  * CRC-32 of a member before its bytes, so each part is made twice: once to be counted, once to be
  * written; the stream need not be one that goes back. */
 #include "mesh/io/write.h"
@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <zlib.h>
 
 enum {
   PART_COUNT = 3,
@@ -33,23 +34,12 @@ typedef struct part {
 } part;
 
 static void put(sink *out, const char *text) {
-  static const uint32_t quarter[16] = {/* CRC-32 of four bits */
-                                       0x00000000, 0x1db71064, 0x3b6e20c8, 0x26d930ac,
-                                       0x76dc4190, 0x6b6b51f4, 0x4db26158, 0x5005713c,
-                                       0xedb88320, 0xf00f9344, 0xd6d6a3e8, 0xcb61b38c,
-                                       0x9b64c2b0, 0x86d3d2d4, 0xa00ae278, 0xbdbdf21c};
   size_t length = strlen(text);
   if (out->stream) {
     fwrite(text, 1, length, out->stream);
     return;
   }
-  uint32_t crc = ~out->crc;
-  for (size_t i = 0; i < length; i++) {
-    crc ^= (unsigned char)text[i];
-    crc = crc >> 4 ^ quarter[crc & 15];
-    crc = crc >> 4 ^ quarter[crc & 15];
-  }
-  out->crc = ~crc;
+  out->crc = (uint32_t)crc32(out->crc, (const unsigned char *)text, (unsigned)length);
   out->count += length;
 }
 

@@ -109,18 +109,6 @@ static ball bounding_ball(const scree_mesh *mesh) {
 
 /* ---- The largest ball inside ---- */
 
-/* The winding number of the surface about p: the sum of solid angles. */
-static double winding(const scree_mesh *mesh, vec3 p) {
-  double sum = 0;
-  for (size_t t = 0; t < mesh->triangle_count; t++) {
-    vec3 a = vec3_sub(scree_mesh_corner(mesh, t, 0), p),
-         b = vec3_sub(scree_mesh_corner(mesh, t, 1), p),
-         c = vec3_sub(scree_mesh_corner(mesh, t, 2), p);
-    sum += scree_half_solid_angle(a, b, c);
-  }
-  return sum / (2 * pi);
-}
-
 typedef struct cube {
   vec3 centre;
   double half, bound; /* no point in it is farther from the surface */
@@ -173,11 +161,13 @@ static double distance_from(const scree_bvh *tree, vec3 p) {
 static bool look(const scree_mesh *mesh, const scree_bvh *tree, cube c, cubes *heap, ball *best) {
   double d = distance_from(tree, c.centre), radius = sqrt(best->radius2), reach = c.half * sqrt(3);
   if (!c.inside && d > reach) { /* the surface does not pass through it */
-    c.inside = winding(mesh, c.centre) > 0.5;
+    c.inside = scree_winding_about(mesh, 0, mesh->triangle_count, c.centre) > 0.5;
     if (!c.inside) return true;
   }
   c.bound = d + reach;
-  if (d > radius && (c.inside || winding(mesh, c.centre) > 0.5)) *best = (ball){c.centre, d * d};
+  if (d > radius &&
+      (c.inside || scree_winding_about(mesh, 0, mesh->triangle_count, c.centre) > 0.5))
+    *best = (ball){c.centre, d * d};
   return c.bound <= radius * (1 + inscribed_accuracy) || push_cube(heap, c);
 }
 
@@ -261,22 +251,15 @@ static void add_edge(const scree_mesh *mesh, uint32_t h, uint32_t g, corner *cor
   corners[scree_half_edge_to(mesh, h)].mean += length * angle / 4;
 }
 
-static scree_status sum_corners(const scree_mesh *mesh, corner **corners, scree_error *error) {
-  scree_adjacency adjacency;
-  scree_status status = scree_adjacency_build(mesh, &adjacency, error);
-  if (status != SCREE_OK) return status;
-  *corners = scree_alloc_zero(mesh->vertex_count, sizeof **corners);
-  if (*corners) {
-    add_facets(mesh, *corners);
-    for (size_t e = 0; e < adjacency.edge_count; e++) {
-      uint32_t h = adjacency.edges[e], g = adjacency.ring[h];
-      if (g != h && adjacency.ring[g] == h) add_edge(mesh, h, g, *corners);
-    }
-  } else {
-    status = scree_fail_memory(error, mesh->vertex_count * sizeof **corners, "curvatures");
+static scree_status sum_corners(const scree_mesh *mesh, corner *corners, scree_error *error) {
+  SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
+  SCREE_TRY(scree_adjacency_build(mesh, &adjacency, error));
+  add_facets(mesh, corners);
+  for (size_t e = 0; e < adjacency.edge_count; e++) {
+    uint32_t h = adjacency.edges[e], g = adjacency.ring[h];
+    if (g != h && adjacency.ring[g] == h) add_edge(mesh, h, g, corners);
   }
-  scree_adjacency_free(&adjacency);
-  return status;
+  return SCREE_OK;
 }
 
 static void set_curvatures(const corner *corners, size_t count, scree_descriptors *d) {
@@ -315,7 +298,6 @@ static void set_form(const scree_measures *m, scree_descriptors *d) {
 scree_status scree_mesh_describe(const scree_mesh *mesh, const scree_measures *measures,
                                  scree_descriptors *descriptors, scree_error *error) {
   scree_descriptors d = {0};
-  corner *corners = NULL;
   ball inside;
   SCREE_TRY(scree_mesh_verify(mesh, error));
   if (!measures->closed || measures->inward || !measures->has_volume)
@@ -330,11 +312,9 @@ scree_status scree_mesh_describe(const scree_mesh *mesh, const scree_measures *m
   SCREE_TRY(inscribed_ball(mesh, &inside, error));
   d.inscribed_radius = sqrt(inside.radius2);
   vec3_store(d.inscribed_centre, inside.centre);
-  scree_status status = sum_corners(mesh, &corners, error);
-  if (status == SCREE_OK) {
-    set_curvatures(corners, mesh->vertex_count, &d);
-    *descriptors = d;
-  }
-  scree_free(corners);
-  return status;
+  SCREE_SCRATCH_ZERO(corner, corners, mesh->vertex_count, error);
+  SCREE_TRY(sum_corners(mesh, corners, error));
+  set_curvatures(corners, mesh->vertex_count, &d);
+  *descriptors = d;
+  return SCREE_OK;
 }

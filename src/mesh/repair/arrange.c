@@ -20,6 +20,7 @@
 #include "mesh/repair/arrange.h"
 
 #include "base/array.h"
+#include "base/radix.h"
 #include "mesh/adjacency.h"
 #include "mesh/index/intersect.h"
 #include "mesh/repair/arrange_sites.h"
@@ -493,16 +494,10 @@ static void order_facet_lists(arranger *a) {
 
 /* The edge's first point, or the list's end. */
 static size_t find_edge(const arranger *a, uint32_t low, uint32_t high) {
-  size_t from = 0, to = a->edge_points.count;
-  while (from < to) {
-    size_t middle = from + (to - from) / 2;
-    const edge_point *p = &a->edge_points.items[middle];
-    if (p->low < low || (p->low == low && p->high < high))
-      from = middle + 1;
-    else
-      to = middle;
-  }
-  return from;
+  const edge_point *p = a->edge_points.items;
+  SCREE_FIND_FIRST(i, 0, a->edge_points.count,
+                   p[i].low < low || (p[i].low == low && p[i].high < high))
+  return i;
 }
 
 /* Appends the vertices on the edge, in order from x to y. */

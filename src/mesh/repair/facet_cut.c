@@ -12,6 +12,7 @@
 #include "mesh/repair/facet_cut.h"
 
 #include "base/array.h"
+#include "base/radix.h"
 #include "mesh/index/winding.h"
 #include "mesh/predicates.h"
 
@@ -488,19 +489,11 @@ static bool list_names(scree_facet_cutter *c) {
 }
 
 static int corner_named(const scree_facet_cutter *c, uint32_t id) {
-  size_t low = 0, high = c->names.count;
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (c->names.items[middle].id < id)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  bool found = low < c->names.count && c->names.items[low].id == id;
+  const name *n = c->names.items;
+  SCREE_FIND_FIRST(i, 0, c->names.count, n[i].id < id)
   /* a vertex that was left out has no triangle */
-  return found && c->corners.items[c->names.items[low].corner].hint != NONE
-             ? c->names.items[low].corner
-             : NONE;
+  bool found = i < c->names.count && n[i].id == id;
+  return found && c->corners.items[n[i].corner].hint != NONE ? n[i].corner : NONE;
 }
 
 static void insert_all(scree_facet_cutter *c) {

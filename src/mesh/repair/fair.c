@@ -124,33 +124,16 @@ static scree_status take_rim(patch *p, scree_error *error) {
   return SCREE_OK;
 }
 
-typedef struct side {
-  uint32_t low, high, facet, corner;
-} side;
-
-static int compare_sides(const void *a, const void *b) {
-  const side *x = a, *y = b;
-  if (x->low != y->low) return x->low < y->low ? -1 : 1;
-  if (x->high != y->high) return x->high < y->high ? -1 : 1;
-  return (x->facet > y->facet) - (x->facet < y->facet);
-}
-
 /* Joins the facets along their common sides. */
 static scree_status join_facets(patch *p, scree_error *error) {
-  size_t count = 3 * p->facets.count;
-  SCREE_SCRATCH(side, sides, count, error);
-  for (uint32_t i = 0; i < count; i++) {
-    const facet *f = &p->facets.items[i / 3];
-    uint32_t a = f->vertex[i % 3], b = f->vertex[(i + 1) % 3];
-    sides[i] = (side){a < b ? a : b, a < b ? b : a, i / 3, i % 3};
-  }
-  qsort(sides, count, sizeof *sides, compare_sides);
-  for (size_t i = 0; i + 1 < count; i++) {
-    const side *x = &sides[i], *y = &sides[i + 1];
-    if (x->low != y->low || x->high != y->high) continue;
-    p->facets.items[x->facet].next[x->corner] = y->facet;
-    p->facets.items[y->facet].next[y->corner] = x->facet;
-  }
+  size_t count = p->facets.count;
+  SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
+  SCREE_SCRATCH(uint32_t, corners, 3 * count, error);
+  scree_mesh mesh = {NULL, corners, p->rim_count, count};
+  for (size_t i = 0; i < 3 * count; i++) corners[i] = p->facets.items[i / 3].vertex[i % 3];
+  SCREE_TRY(scree_adjacency_build(&mesh, &adjacency, error));
+  for (uint32_t h = 0; h < 3 * count; h++)
+    if (adjacency.ring[h] != h) p->facets.items[h / 3].next[h % 3] = adjacency.ring[h] / 3;
   return SCREE_OK;
 }
 
@@ -166,12 +149,12 @@ static int compare_names(const void *a, const void *b) {
 /* The mesh's facets from first_facet on, with the rim's vertices by their places. */
 static scree_status take_facets(patch *p, scree_error *error) {
   const scree_mesh *m = &p->r->mesh;
-  name *names = NULL;
-  SCREE_TRY_ALLOC(names, p->rim_count, error);
+  SCREE_SCRATCH(name, names, p->rim_count, error);
   for (uint32_t i = 0; i < p->rim_count; i++) names[i] = (name){p->filling->vertex[i], i};
   qsort(names, p->rim_count, sizeof *names, compare_names);
-  bool room = SCREE_RESERVE(&p->facets, m->triangle_count - p->filling->first_facet);
-  for (size_t t = p->filling->first_facet; room && t < m->triangle_count; t++) {
+  if (!SCREE_RESERVE(&p->facets, m->triangle_count - p->filling->first_facet))
+    return scree_repair_no_memory(error);
+  for (size_t t = p->filling->first_facet; t < m->triangle_count; t++) {
     facet f = {.next = {NONE, NONE, NONE}};
     for (size_t k = 0; k < 3; k++) {
       name wanted = {m->triangles[3 * t + k], 0};
@@ -180,8 +163,6 @@ static scree_status take_facets(patch *p, scree_error *error) {
     }
     p->facets.items[p->facets.count++] = f;
   }
-  scree_free(names);
-  if (!room) return scree_repair_no_memory(error);
   return join_facets(p, error);
 }
 

@@ -13,6 +13,7 @@
  * that is coarse there is better than one that crosses itself. */
 #include "base/alloc.h"
 #include "base/array.h"
+#include "base/radix.h"
 #include "mesh/repair/repair.h"
 
 #include <float.h>
@@ -49,23 +50,20 @@ static vec3 normal_across(const loop *l, size_t i) {
   return vec3_unit(scree_facet_normal(m, t));
 }
 
+static uint64_t edge_key(uint32_t a, uint32_t b) {
+  return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+}
+
+static uint64_t key_of(const scree_mesh *mesh, uint32_t h) {
+  return edge_key(scree_half_edge_from(mesh, h), scree_half_edge_to(mesh, h));
+}
+
 /* Edges are sorted by lower, then higher vertex. */
 bool scree_repair_edge_exists(const scree_mesh *mesh, const scree_adjacency *adjacency, uint32_t a,
                               uint32_t b) {
-  uint64_t want = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-  size_t low = 0, high = adjacency->edge_count;
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    uint32_t h = adjacency->edges[middle];
-    uint32_t u = scree_half_edge_from(mesh, h), v = scree_half_edge_to(mesh, h);
-    uint64_t key = u < v ? (uint64_t)u << 32 | v : (uint64_t)v << 32 | u;
-    if (key == want) return true;
-    if (key < want)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return false;
+  const uint64_t key = edge_key(a, b);
+  SCREE_FIND_FIRST(i, 0, adjacency->edge_count, key_of(mesh, adjacency->edges[i]) < key)
+  return i < adjacency->edge_count && key_of(mesh, adjacency->edges[i]) == key;
 }
 
 static bool edge_exists(const loop *l, size_t i, size_t j) {

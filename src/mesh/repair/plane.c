@@ -8,6 +8,7 @@
  * thousandth of the size. */
 #include "base/array.h"
 #include "base/eigen.h"
+#include "base/radix.h"
 #include "base/rng.h"
 #include "mesh/repair/repair.h"
 
@@ -45,15 +46,8 @@ static scree_status collect_rim(const scree_mesh *mesh, rim *out, scree_error *e
 
 static vec3 draw(const rim *r, scree_rng *rng) {
   double at = scree_rng_uniform(rng) * r->items[r->count - 1].up_to;
-  size_t low = 0, high = r->count - 1;
-  while (low < high) {
-    size_t middle = (low + high) / 2;
-    if (r->items[middle].up_to > at)
-      high = middle;
-    else
-      low = middle + 1;
-  }
-  return r->items[low].middle;
+  SCREE_FIND_FIRST(i, 0, r->count - 1, r->items[i].up_to <= at)
+  return r->items[i].middle;
 }
 
 static scree_cut_plane plane_of(vec3 normal, vec3 on) {

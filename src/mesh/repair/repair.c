@@ -229,11 +229,10 @@ static scree_status measure(const scree_mesh *mesh, const scree_check *check, do
 static scree_status report_untouched(const scree_mesh *mesh, scree_repair_report *report,
                                      scree_error *error) {
   report->after = report->before;
-  scree_status status =
-      measure(mesh, &report->before, &report->area_before, &report->volume_after, error);
+  SCREE_TRY(measure(mesh, &report->before, &report->area_before, &report->volume_after, error));
   report->area_after = report->area_before;
   report->volume_before = report->before.volume_known ? report->before.volume : NAN;
-  return status;
+  return SCREE_OK;
 }
 
 /* Of the result, as a share. */

@@ -3,6 +3,7 @@
 #include "mesh/repair/rim.h"
 
 #include "base/array.h"
+#include "base/radix.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -78,18 +79,6 @@ static int compare_junctions(const void *a, const void *b) {
   return (x->vertex > y->vertex) - (x->vertex < y->vertex);
 }
 
-static size_t first_from(const scree_rim *b, double at) {
-  size_t low = 0, high = b->vertex_count;
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (b->vertices[middle].at < at)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low;
-}
-
 static bool find_on_edge(const scree_mesh *m, const scree_rim *b, const scree_junction_rule *rule,
                          uint32_t h, size_t *work, scree_junctions *found) {
   uint32_t from = scree_half_edge_from(m, h), to = scree_half_edge_to(m, h);
@@ -99,8 +88,9 @@ static bool find_on_edge(const scree_mesh *m, const scree_rim *b, const scree_ju
   double near = fmin(rule->distance, rule->share * length);
   double at_a = m->positions[3 * (size_t)from + (size_t)b->axis],
          at_b = m->positions[3 * (size_t)to + (size_t)b->axis];
-  double end = fmax(at_a, at_b) + near;
-  for (size_t i = first_from(b, fmin(at_a, at_b) - near); i < b->vertex_count; i++) {
+  double begin = fmin(at_a, at_b) - near, end = fmax(at_a, at_b) + near;
+  SCREE_FIND_FIRST(i, 0, b->vertex_count, b->vertices[i].at < begin)
+  for (; i < b->vertex_count; i++) {
     uint32_t v = b->vertices[i].vertex;
     if (b->vertices[i].at > end || ++*work > rule->most) break;
     if (v == from || v == to || v == apex) continue;

@@ -492,17 +492,9 @@ scree_status scree_wall_mend(const scree_mesh *soup, scree_mesh *wall, scree_wal
 
 int scree_piece_winding(const scree_pieces *pieces, size_t index, vec3 p) {
   const scree_piece *piece = &pieces->items[index];
-  const double two_pi = 6.283185307179586;
-  double sum = 0;
-  if (p.x < piece->low.x || p.y < piece->low.y || p.z < piece->low.z || p.x > piece->high.x ||
-      p.y > piece->high.y || p.z > piece->high.z)
-    return 0;
-  for (size_t t = piece->first; t < piece->first + piece->count; t++) {
-    vec3 c[3];
-    for (int k = 0; k < 3; k++) c[k] = vec3_sub(scree_mesh_corner(&pieces->mesh, t, k), p);
-    sum += scree_half_solid_angle(c[0], c[1], c[2]);
-  }
-  return (int)floor(sum / two_pi + 0.5);
+  const scree_box box = {piece->low, piece->high};
+  if (scree_box_distance2(&box, p) > 0) return 0;
+  return (int)floor(scree_winding_about(&pieces->mesh, piece->first, piece->count, p) + 0.5);
 }
 
 void scree_piece_turn(scree_pieces *pieces, size_t index) {
