@@ -165,6 +165,9 @@ static point_listing points_against(listing *l, bool forth) {
 
 static void list_sphere(listing *l, uint32_t i) {
   vec3 p = into_b(l, l->a->points[i]);
+  double far = l->a->point_radii[i] + l->pair->law.smoothing + l->skin;
+  scree_box near = scree_box_grown(scree_box_of(p, p), far);
+  if (!scree_box_meets(&near, &l->b->box)) return; /* which holds the radii */
   for (uint32_t j = 0; j < l->b->point_count; j++)
     put_to_sleep(l, SCREE_FEATURE_POINT_POINT, i, j,
                  vec3_distance(p, l->b->points[j]) - l->a->point_radii[i] - l->b->point_radii[j] -

@@ -222,6 +222,11 @@ static inline double scree_smooth_slope(double from, double to, double x) {
   return t <= 0 || t >= 1 ? 0 : 6 * t * (1 - t) / (to - from);
 }
 
+/* Whether edges of one of the two may lie inside the other: other pairs know no depth, and never
+ * part. b: NULL for none. */
+static inline bool scree_knows_depths(const scree_particle *a, const scree_particle *b) {
+  return a->face_count && b && scree_has_features(b);
+}
 /* depth.c: adds contacts for edges inside the other body where features may feel less; notes bodies
  * that lie in each other from the start. First what is to be found, then finding it, in one piece
  * or with many threads: entries, each an edge or a point. */

@@ -444,11 +444,9 @@ void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scr
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   scree_depth_question *question = &scratch->question;
   *question = (scree_depth_question){false, false, 0};
-  if (!b || !a->face_count || !scree_has_features(b))
-    pair->depenetrating = false; /* no depth is known */
   if (!b) return;
   question->start = scree_pair_is_new(pair);
-  if (!a->face_count || !scree_has_features(b)) return;
+  if (!scree_knows_depths(a, b)) return;
   double least = pair->depth - way_since(a, scratch);
   if (!question->start && part_still(pair, least)) {
     pair->depth = least;

@@ -318,9 +318,9 @@ static void fade(double spring, scree_contact_point *contact, load_sums *sums) {
  * may be wedged. And so they are where edges lie inside and are pressed beyond the overlap limit.
  */
 static void judge(const scree_world *world, scree_pair *pair, const scree_contact_list *contacts) {
-  const scree_particle *b = scree_pair_shape_b(world, pair);
-  bool jammed =
-           pair->overlap > 0.5 * pair->law.reach && scree_lasting(pair) == 1 && !(b && b->sheet),
+  const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
+  if (!scree_knows_depths(a, b)) return;
+  bool jammed = pair->overlap > 0.5 * pair->law.reach && scree_lasting(pair) == 1 && !b->sheet,
        pressed = pair->overlap > pair->law.limit && pair->depth > 0;
   if (!jammed && !pressed && !contacts->items[contacts->count - 1].of_depth)
     return; /* depths come last */

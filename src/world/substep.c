@@ -131,8 +131,7 @@ uint32_t scree_substep_count(const scree_world *world, const scree_pair *pair,
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   const double reach = pair->law.reach;
   if (!(pair->list.travel > followed_way * reach)) return 1; /* than which none moves farther */
-  if (!a->face_count || !b || !scree_has_features(b) || pair->depenetrating)
-    return 1; /* nothing is blended */
+  if (!scree_knows_depths(a, b) || pair->depenetrating) return 1; /* nothing is blended */
   if (pair->wall && scree_wall_is_belt(&world->walls.items[pair->b])) return 1;
   double farthest = 0;
   for (size_t i = 0; i < scratch->contacts.count; i++) {

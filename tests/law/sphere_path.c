@@ -1,9 +1,11 @@
-/* Pairs of spheres against the pairs of features: a clump of one sphere takes the general path.
+/* Pairs of spheres against the pairs of features: a clump of one sphere takes the general path, and
+ * clumps are held against all pairs of their spheres.
  * Both are hit at random, on each other, planes, discs, cylinders and belts, by all laws; and both
  * fall asleep, wake, roll and stick alike. */
 #include "support/law.h"
 
 #include "base/rng.h"
+#include "base/vec.h"
 
 static const double radius = 0.01;
 
@@ -189,7 +191,138 @@ static void pressed_bed(void **state) {
   LAW_BELOW("spheres", "ledger of a bed under a ball, Hertz", bed_ledger(SCREE_LAW_HERTZ), 1e-4);
 }
 
+/* ---- clumps ---- */
+
+enum { MOST_SPHERES = 24 };
+
+/* Spheres of random sizes in a ball. */
+static scree_particle *random_clump(scree_rng *rng) {
+  scree_error error;
+  scree_particle *clump;
+  double centres[3 * MOST_SPHERES], radii[MOST_SPHERES];
+  size_t count = 1 + (size_t)between(rng, 0, MOST_SPHERES - 1);
+  for (size_t i = 0; i < count; i++) {
+    for (int k = 0; k < 3; k++) centres[3 * i + k] = radius * between(rng, -0.5, 0.5);
+    radii[i] = radius * between(rng, 0.15, 0.5);
+  }
+  CHECK_OK(scree_particle_clump(centres, radii, count, NULL, &clump, &error), error);
+  return clump;
+}
+
+static vec3 sphere_of(const scree_particle *clump, const scree_body *body, size_t i, double *r) {
+  double centre[3];
+  const double *q = body->orientation;
+  scree_particle_point(clump, i, centre, r);
+  mat3 turned = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  return vec3_add(vec3_load(body->position), mat3_mul_vec(&turned, vec3_load(centre)));
+}
+
+/* The largest overlap of all pairs of spheres; below 0 where the clumps are apart. */
+static double deepest(const scree_world *world, scree_particle *const clumps[2]) {
+  scree_particle_measures m[2];
+  scree_body bodies[2];
+  double most = -INFINITY, r, s;
+  for (size_t i = 0; i < 2; i++) {
+    scree_world_get_body(world, i, &bodies[i]);
+    scree_particle_measure(clumps[i], &m[i]);
+  }
+  for (size_t i = 0; i < m[0].point_count; i++)
+    for (size_t j = 0; j < m[1].point_count; j++) {
+      vec3 p = sphere_of(clumps[0], &bodies[0], i, &r), q = sphere_of(clumps[1], &bodies[1], j, &s);
+      most = fmax(most, r + s - vec3_distance(p, q));
+    }
+  return most;
+}
+
+/* Two clumps that spin hit each other; steps in which they touch. In every step their overlap is
+ * that of the deepest pair of spheres, or a smooth maximum of several. */
+static size_t hit_of_clumps(scree_rng *rng) {
+  scree_error error;
+  scree_world *world;
+  scree_world_options options = scree_default_world_options();
+  scree_material material = scree_default_material();
+  scree_particle *clumps[2];
+  scree_observation o;
+  double size = INFINITY;
+  size_t touched = 0;
+  options.gravity[2] = 0;
+  CHECK_OK(scree_world_create(&options, &world, &error), error);
+  CHECK_OK(scree_world_add_material(world, &material, NULL, &error), error);
+  for (int i = 0; i < 2; i++) {
+    scree_particle_measures m;
+    scree_body body = scree_default_body();
+    clumps[i] = random_clump(rng);
+    scree_particle_measure(clumps[i], &m);
+    size = fmin(size, m.size);
+    body.position[2] = (i ? -1 : 1) * m.bounding_radius;
+    body.velocity[2] = (i ? 1 : -1) * between(rng, 0.2, 1);
+    for (int k = 0; k < 3; k++) body.angular_velocity[k] = between(rng, -60, 60);
+    CHECK_OK(scree_world_add_body(world, clumps[i], 0, &body, NULL, &error), error);
+  }
+  for (double end = 2 * radius; scree_world_time(world) < end;) { /* at 1 m/s */
+    double most = deepest(world, clumps);
+    CHECK_OK(scree_world_step(world, 1, &error), error);
+    scree_world_observe(world, &o);
+    if (most > 0) {
+      double flat = (most + options.smoothing * size) / (1 - options.sharing);
+      assert_true(o.largest_overlap >= most * (1 - 1e-9) && o.largest_overlap <= flat);
+      touched++;
+    } else if (most < -options.smoothing * size) {
+      assert_int_equal(o.pair_count, 0);
+    }
+  }
+  scree_world_free(world);
+  for (int i = 0; i < 2; i++) scree_particle_free(clumps[i]);
+  return touched;
+}
+
+static void clumps_as_all_their_spheres(void **state) {
+  (void)state;
+  scree_rng rng = {19, 0, 0};
+  size_t touched = 0;
+  for (int try = 0; try < 40; try++) touched += hit_of_clumps(&rng) > 0;
+  assert_true(touched > 20);
+}
+
+/* A ring of spheres holds a ball: no depth is known of spheres, and nothing has to part. */
+static void a_grip_is_no_depth(void **state) {
+  (void)state;
+  for (size_t count = 2; count <= 6; count++) {
+    scree_error error;
+    scree_world *world;
+    scree_world_options options = scree_default_world_options();
+    scree_material material = scree_default_material();
+    scree_particle *ring, *ball;
+    scree_body body = scree_default_body();
+    scree_observation o;
+    double centres[18], radii[6];
+    for (size_t i = 0; i < count; i++) {
+      double angle = 6.28318530717958647693 * (double)i / (double)count;
+      centres[3 * i] = 1.995 * radius * cos(angle);
+      centres[3 * i + 1] = 1.995 * radius * sin(angle);
+      centres[3 * i + 2] = 0;
+      radii[i] = radius;
+    }
+    options.gravity[2] = 0;
+    CHECK_OK(scree_world_create(&options, &world, &error), error);
+    CHECK_OK(scree_world_add_material(world, &material, NULL, &error), error);
+    CHECK_OK(scree_particle_sphere(radius, &ball, &error), error);
+    CHECK_OK(scree_particle_clump(centres, radii, count, ball, &ring, &error), error);
+    CHECK_OK(scree_world_add_body(world, ring, 0, &body, NULL, &error), error);
+    CHECK_OK(scree_world_add_body(world, ball, 0, &body, NULL, &error), error);
+    CHECK_OK(scree_world_step(world, 500, &error), error);
+    scree_world_observe(world, &o);
+    assert_int_equal(o.contact_count, count);
+    assert_int_equal(o.depenetration_count, 0);
+    scree_world_free(world);
+    scree_particle_free(ball);
+    scree_particle_free(ring);
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(as_features), cmocka_unit_test(pressed_bed)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(as_features), cmocka_unit_test(pressed_bed),
+                                     cmocka_unit_test(clumps_as_all_their_spheres),
+                                     cmocka_unit_test(a_grip_is_no_depth)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
