@@ -57,7 +57,7 @@ boundary f f f
 newton off
 communicate single vel yes
 units si
-region box block -0.2 0.2 -0.2 0.2 -0.02 0.2 units box
+region box block -0.5 0.5 -0.5 0.5 -0.02 0.2 units box
 create_box 2 box
 neighbor 0.001 bin
 neigh_modify delay 0
@@ -89,7 +89,7 @@ I
   echo 'set group all diameter 0.006 density 2500'
   [ "$1" != roll ] || echo 'velocity all set 0.5 0 0 units box'
   echo 'fix motion all nve/sphere'
-  echo 'thermo_modify lost ignore' # what has fallen out of the box
+  echo 'thermo_modify lost ignore' # what leaves the box does not count
   echo "dump places all custom 1000000 $scenes/places.txt id x y z"
   local write="undump places
 dump places all custom 1 $scenes/places.txt id x y z
