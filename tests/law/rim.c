@@ -6,6 +6,7 @@
 
 #include "base/rng.h"
 #include "base/vec.h"
+#include "particle/closest.h"
 #include "support/shapes.h"
 
 enum { SIDES = 24, CUTS = 64, SAMPLES = 16 };
@@ -140,13 +141,17 @@ static bool is_rim(const scree_mesh *mesh, uint32_t from, uint32_t to) {
   return true;
 }
 
-static double distance_to_rim(const placed *sheet, vec3 x) {
-  double best = INFINITY;
+/* From an edge of a body. */
+static double distance_to_rim(const placed *sheet, vec3 a, vec3 way) {
+  double best = INFINITY, length = vec3_norm(way), s, t;
+  vec3 along = vec3_unit(way);
   const uint32_t *corners = sheet->mesh->triangles;
   for (size_t i = 0; i < 3 * sheet->mesh->triangle_count; i++) {
     uint32_t from = corners[i], to = corners[i % 3 == 2 ? i - 2 : i + 1];
-    if (is_rim(sheet->mesh, from, to))
-      best = fmin(best, distance_to_segment(sheet->at[from], sheet->at[to], x));
+    if (!is_rim(sheet->mesh, from, to)) continue;
+    vec3 start = sheet->at[from], rim = vec3_sub(sheet->at[to], start), rim_along = vec3_unit(rim);
+    scree_closest_on_segments(a, along, length, start, rim_along, vec3_norm(rim), &s, &t);
+    best = fmin(best, vec3_distance(vec3_mad(a, along, s), vec3_mad(start, rim_along, t)));
   }
   return best;
 }
@@ -163,8 +168,8 @@ static int ascending(const void *x, const void *y) {
   return (a > b) - (a < b);
 }
 
-/* An edge that passes through the sheet is as deep in it as it reaches out on either side, or as
- * the passage is from the rim. */
+/* An edge that passes through the sheet is as deep in it as it reaches out on either side, or as it
+ * is from the rim: moved by that it is off the sheet. */
 static double depth_of_edge(vec3 a, vec3 way, const placed *sheet) {
   double cut[CUTS + 2] = {0}, deepest = 0;
   size_t n = 1;
@@ -175,7 +180,7 @@ static double depth_of_edge(vec3 a, vec3 way, const placed *sheet) {
   for (size_t i = 1; i < n; i++) {
     double reach = fmin(farthest(sheet, a, way, cut[i - 1], cut[i]),
                         farthest(sheet, a, way, cut[i], cut[i + 1]));
-    deepest = fmax(deepest, fmin(reach, distance_to_rim(sheet, vec3_mad(a, way, cut[i]))));
+    deepest = fmax(deepest, fmin(reach, distance_to_rim(sheet, a, way)));
   }
   return deepest;
 }
