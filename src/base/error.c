@@ -2,6 +2,7 @@
 
 #include <stdarg.h>
 #include <stdlib.h>
+#include <string.h>
 
 const char *scree_version(void) {
   return SCREE_VERSION;
@@ -24,6 +25,14 @@ void scree_make_printable(char *text, char instead) {
     else if (first == 0xc2 && second >= 0x80 && second < 0xa0) /* U+0080 to U+009F */
       c[0] = c[1] = instead;
   }
+}
+
+void scree_add_text(char *text, size_t size, const char *format, ...) {
+  size_t used = strlen(text);
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text + used, size - used, format, arguments);
+  va_end(arguments);
 }
 
 scree_status scree_fail_text(scree_error *error, scree_status status, const char *format, ...) {

@@ -17,6 +17,11 @@ static inline scree_status scree_status_after(scree_status told, scree_status st
   return status;
 }
 
+/* Adds a printf-formatted text to what stands in a buffer of `size` bytes, as far as there is room.
+ */
+void scree_add_text(char *text, size_t size, const char *format, ...) SCREE_PRINTF(3, 4);
+#define SCREE_ADD_TEXT(buffer, ...) scree_add_text((buffer), sizeof(buffer), __VA_ARGS__)
+
 /* A call that fails ends the function with its status. For functions that hold nothing by then. */
 #define SCREE_TRY(call)                                                                            \
   do {                                                                                             \

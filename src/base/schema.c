@@ -99,10 +99,7 @@ const char *scree_nearest_name(const char *word, const char *const *names, size_
 scree_status scree_fail_name(const scree_reader *reader, const scree_place *place, const char *what,
                              const char *name, const char *const *names, size_t count) {
   char list[400] = "";
-  for (size_t i = 0; i < count; i++) {
-    size_t used = strlen(list);
-    snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", names[i]);
-  }
+  for (size_t i = 0; i < count; i++) SCREE_ADD_TEXT(list, "%s%s", *list ? ", " : "", names[i]);
   const char *nearest = scree_nearest_name(name, names, count);
   if (nearest)
     return scree_fail_place(reader, place, "no %s '%.64s'; did you mean '%s'?", what, name,
@@ -117,9 +114,8 @@ static scree_status fail_unknown(const scree_reader *r, const scree_yaml *item,
   char list[600] = "";
   size_t count = 0;
   for (size_t i = 0; i < kind->field_count && count < 64; i++) {
-    size_t used = strlen(list);
     names[count++] = kind->fields[i].key;
-    snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", kind->fields[i].key);
+    SCREE_ADD_TEXT(list, "%s%s", *list ? ", " : "", kind->fields[i].key);
   }
   const char *nearest = scree_nearest_name(item->key, names, count);
   scree_place place = {NULL, r->path, item->key_line, item->key_column};

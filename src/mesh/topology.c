@@ -8,8 +8,8 @@
  * genus g follows from Euler-Poincare, V - E + F = 2 (shells - g). */
 #include "mesh/topology.h"
 #include "base/array.h"
-#include "base/sum.h"
 #include "mesh/mesh.h"
+#include "mesh/repair/shells.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -166,37 +166,6 @@ static scree_status count_vertices(counter *c, scree_error *error) {
   return SCREE_OK;
 }
 
-/* Signed volumes about one of each shell's own corners; an open shell has none (NaN). */
-static void count_inward(counter *c, uint32_t *parent, scree_sum *volume) {
-  const scree_mesh *mesh = c->mesh;
-  for (size_t t = 0; t < mesh->triangle_count; t++) {
-    if (!scree_takes_part(c->adjacency, t)) continue;
-    uint32_t root = scree_find_root(parent, (uint32_t)t);
-    vec3 origin = scree_mesh_corner(mesh, root, 0), p = scree_mesh_corner(mesh, t, 0);
-    vec3 normal =
-        vec3_triangle_normal(p, scree_mesh_corner(mesh, t, 1), scree_mesh_corner(mesh, t, 2));
-    scree_sum_add(&volume[root], vec3_dot(vec3_sub(p, origin), normal));
-  }
-  for (size_t e = 0; e < c->adjacency->edge_count; e++) {
-    uint32_t h = c->adjacency->edges[e];
-    if (c->adjacency->ring[h] == h) volume[scree_find_root(parent, h / 3)].sum = NAN;
-  }
-  for (size_t t = 0; t < mesh->triangle_count; t++)
-    if (scree_takes_part(c->adjacency, t) && parent[t] == t) {
-      c->found->shell_count++;
-      c->found->inward_shell_count += scree_sum_value(volume[t]) < 0;
-    }
-}
-
-static scree_status count_shells(counter *c, scree_error *error) {
-  size_t triangle_count = c->mesh->triangle_count;
-  SCREE_SCRATCH(uint32_t, parent, triangle_count, error);
-  SCREE_SCRATCH_ZERO(scree_sum, volume, triangle_count, error);
-  scree_join_over_edges(c->mesh, c->adjacency, false, parent);
-  count_inward(c, parent, volume);
-  return SCREE_OK;
-}
-
 /* Every vertex met first is a piece of its own; every edge that joins two pieces takes one away. */
 static scree_status count_boundaries(counter *c, scree_error *error) {
   const uint32_t none = UINT32_MAX;
@@ -241,9 +210,8 @@ scree_status scree_topology_count(const scree_mesh *mesh, const scree_adjacency 
 }
 
 scree_status scree_topology_finish(const scree_mesh *mesh, const scree_adjacency *adjacency,
-                                   bool with_shells, scree_topology *topology, scree_error *error) {
+                                   scree_topology *topology, scree_error *error) {
   counter c = {.mesh = mesh, .adjacency = adjacency, .found = topology};
-  if (with_shells) SCREE_TRY(count_shells(&c, error));
   SCREE_TRY(count_boundaries(&c, error));
   conclude(topology);
   return SCREE_OK;
@@ -252,12 +220,17 @@ scree_status scree_topology_finish(const scree_mesh *mesh, const scree_adjacency
 scree_status scree_mesh_topology(const scree_mesh *mesh, scree_topology *topology,
                                  scree_error *error) {
   SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
+  SCREE_CLEANUP(scree_shells_free) scree_shells shells = {0};
   SCREE_TRY(scree_mesh_verify(mesh, error));
   SCREE_TRY(scree_adjacency_build(mesh, &adjacency, error));
   scree_topology found = {0};
   for (size_t part = 0; part < SCREE_TOPOLOGY_PARTS; part++)
     SCREE_TRY(scree_topology_count(mesh, &adjacency, part, &found, error));
-  SCREE_TRY(scree_topology_finish(mesh, &adjacency, true, &found, error));
+  SCREE_TRY(scree_shells_find(mesh, &adjacency, &shells, error));
+  found.shell_count = shells.count;
+  for (size_t i = 0; i < shells.count; i++)
+    found.inward_shell_count += shells.items[i].closed && shells.items[i].volume < 0;
+  SCREE_TRY(scree_topology_finish(mesh, &adjacency, &found, error));
   *topology = found;
   return SCREE_OK;
 }

@@ -8,7 +8,7 @@
 enum { SCREE_TOPOLOGY_PARTS = 3 };
 scree_status scree_topology_count(const scree_mesh *mesh, const scree_adjacency *adjacency,
                                   size_t part, scree_topology *topology, scree_error *error);
-/* Once all parts are done: the rest. Without shells, their counts stay 0 and the genus means
- * nothing. */
+/* Once all parts are done: the rest. Where shells are not counted by then the genus means nothing.
+ */
 scree_status scree_topology_finish(const scree_mesh *mesh, const scree_adjacency *adjacency,
-                                   bool with_shells, scree_topology *topology, scree_error *error);
+                                   scree_topology *topology, scree_error *error);

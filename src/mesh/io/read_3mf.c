@@ -140,21 +140,18 @@ static scree_status place(placing *p, const scree_3mf_component *c, const scree_
 
 static void tell_left_out(scree_reading *r, const scree_3mf *m) {
   const size_t *counts = m->left_out;
-  char *out = r->scan->warning;
-  const size_t size = sizeof r->scan->warning;
-  size_t used = 0;
-  if (counts[SCREE_3MF_NEGATIVE])
-    used += (size_t)snprintf(
-        out, size, "%zu negative volume%s left out: what the slicer cuts away is there",
-        counts[SCREE_3MF_NEGATIVE], counts[SCREE_3MF_NEGATIVE] == 1 ? " is" : "s are");
-  size_t others = counts[SCREE_3MF_MODIFIER] + counts[SCREE_3MF_SUPPORT];
-  if (others && used < size)
-    used += (size_t)snprintf(out + used, size - used, "%s%zu modifier%s or support%s left out",
-                             used ? "; " : "", others, others == 1 ? "" : "s",
-                             others == 1 ? " is" : "s are");
-  if (m->unread && used < size)
-    snprintf(out + used, size - used, "%sits %s, which it can do without, is not read",
-             used ? "; " : "", m->unread);
+  size_t negative = counts[SCREE_3MF_NEGATIVE],
+         others = counts[SCREE_3MF_MODIFIER] + counts[SCREE_3MF_SUPPORT];
+  if (negative)
+    SCREE_ADD_TEXT(r->scan->warning,
+                   "%zu negative volume%s left out: what the slicer cuts away is there", negative,
+                   negative == 1 ? " is" : "s are");
+  if (others)
+    SCREE_ADD_TEXT(r->scan->warning, "%s%zu modifier%s or support%s left out", negative ? "; " : "",
+                   others, others == 1 ? "" : "s", others == 1 ? " is" : "s are");
+  if (m->unread)
+    SCREE_ADD_TEXT(r->scan->warning, "%sits %s, which it can do without, is not read",
+                   negative || others ? "; " : "", m->unread);
 }
 
 static scree_status place_build(scree_reading *r, scree_3mf *m) {

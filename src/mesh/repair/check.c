@@ -187,7 +187,7 @@ static scree_status find_connection(const scree_mesh *mesh, const scree_adjacenc
     if (error) *error = c.error[walk];
     return c.status[walk];
   }
-  SCREE_TRY(scree_topology_finish(mesh, adjacency, false, &c.topology, error));
+  SCREE_TRY(scree_topology_finish(mesh, adjacency, &c.topology, error));
   take_topology(&c.topology, check);
   check->defects[SCREE_DEFECT_SHARP_EDGE] = c.sharp_count;
   return SCREE_OK;
@@ -225,22 +225,8 @@ static scree_status examine(const scree_mesh *mesh, const scree_check_options *o
 
 /* ---- The verdict ---- */
 
-typedef struct text {
-  char *at;
-  size_t left;
-} text;
-
-static void add_text(text *t, const char *words) {
-  size_t length = strlen(words);
-  if (length >= t->left) length = t->left - 1;
-  memcpy(t->at, words, length);
-  t->at += length;
-  t->left -= length;
-  *t->at = 0;
-}
-
 /* "1 non manifold edge", "12 boundary edges": the name is a plural. */
-static void add_count(text *t, size_t count, const char *name) {
+static void add_count(scree_check *check, size_t count, const char *name) {
   static const struct {
     const char *several, *one;
   } endings[] = {{"vertices", "vertex"}, {"ies", "y"}, {"s", ""}};
@@ -254,47 +240,42 @@ static void add_count(text *t, size_t count, const char *name) {
   }
   for (char *c = words; *c; c++)
     if (*c == '_') *c = ' ';
-  add_text(t, words);
+  SCREE_ADD_TEXT(check->verdict, "%s", words);
 }
 
-static void add_defects(text *t, const scree_check *check, bool grave) {
-  bool first = true;
+static void add_defects(scree_check *check, bool grave) {
+  const char *between = "";
   if (grave && check->too_many_pairs) {
-    char words[64];
-    snprintf(words, sizeof words, "more than %d meeting pairs", SCREE_PAIR_LIMIT);
-    add_text(t, words);
-    first = false;
+    SCREE_ADD_TEXT(check->verdict, "more than %d meeting pairs", SCREE_PAIR_LIMIT);
+    between = ", ";
   }
   for (int i = 0; i < SCREE_DEFECT_COUNT; i++) {
     if (!check->defects[i] || defects[i].grave != grave) continue;
-    if (!first) add_text(t, ", ");
-    first = false;
-    add_count(t, check->defects[i], defects[i].name);
+    SCREE_ADD_TEXT(check->verdict, "%s", between);
+    between = ", ";
+    add_count(check, check->defects[i], defects[i].name);
   }
 }
 
 static void conclude(scree_check *check) {
-  text t = {check->verdict, sizeof check->verdict};
   bool grave = check->too_many_pairs, noted = false;
   for (int i = 0; i < SCREE_DEFECT_COUNT; i++) {
     grave |= check->defects[i] && defects[i].grave;
     noted |= check->defects[i] && !defects[i].grave;
   }
   check->usable = !grave && check->triangle_count > 0;
-  if (check->triangle_count == 0) {
-    add_text(&t, "not usable as a particle: no facets");
-  } else if (grave) {
-    add_text(&t, "not usable as a particle: ");
-    add_defects(&t, check, true);
-  } else {
-    add_text(&t, "usable as a particle: closed, manifold, outward");
-    add_text(&t, check->intersections_known ? ", nowhere meeting itself"
-                                            : "; self-intersections were not looked for");
-  }
-  if (noted) {
-    add_text(&t, "; with ");
-    add_defects(&t, check, false);
-  }
+  SCREE_ADD_TEXT(check->verdict, "%s",
+                 check->triangle_count == 0 ? "not usable as a particle: no facets"
+                 : grave                    ? "not usable as a particle: "
+                                            : "usable as a particle: closed, manifold, outward");
+  if (check->triangle_count && grave) add_defects(check, true);
+  if (check->usable)
+    SCREE_ADD_TEXT(check->verdict, "%s",
+                   check->intersections_known ? ", nowhere meeting itself"
+                                              : "; self-intersections were not looked for");
+  if (!noted) return;
+  SCREE_ADD_TEXT(check->verdict, "; with ");
+  add_defects(check, false);
 }
 
 scree_status scree_mesh_check(const scree_mesh *mesh, const scree_check_options *options,
