@@ -81,12 +81,16 @@ heaps() {
 
 polyhedra() {
   heaps polyhedra 5 scree yade scree:0.1 scree:0.7
-  heaps polyhedra 2 yade-contacts
+  heaps polyhedra 3 yade-contacts
+  heaps polyhedra 20 scree
   [ -s "$results/polyhedra-slide.csv" ] || ! command -v "${YADE:-yade}" >/dev/null ||
     "$here/codes/polyhedra.py" slide scree yade yade:0.1 yade-contacts >"$results/polyhedra-slide.csv"
 }
 
-clumps() { heaps clumps 10 liggghts scree; }
+clumps() {
+  heaps clumps 10 liggghts scree
+  heaps clumps 4 liggghts-dashpot
+}
 
 paper() { "$here/paper/claims.py" >"$results/paper-claims.csv"; }
 

@@ -2,6 +2,8 @@
 """The scripts of bench/evidence on inputs whose answers are known: statistics against counting and random samples, a table
 that was broken off, a drawn picture, a camera over one sphere, a cube dropped on a slope of three sheets, and rates by Beverloo's law.
 usage: check.py ROOT, with SCREE_LIBRARY and PYTHONPATH"""
+import contextlib
+import io
 import math
 import os
 import pathlib
@@ -194,6 +196,14 @@ def bodies():
     place = SimpleNamespace(tolist=lambda: [[1.0, 0.0, 2.0], [3.0, 0.0, 4.0]])
     scene = SimpleNamespace(bodies=lambda: SimpleNamespace(position=place), sensors={"pile.volume_deg": 30})
     check(all(abs(a - b) < 1e-9 for a, b in zip(heaps.measured(scene), (1000, 3000, 30))), "radius and height of two bodies")
+    path = HOME / "heaps.csv"
+    rows = [("a", 1, "scree", 1, 10, 20), ("a", 2, "scree", 3, 10, 22), ("a", 1, "other", 5, 10, math.nan), ("a", 2, "other", 7, 12, 30)]
+    path.write_text(",".join(heaps.COLUMNS) + "\n" + "".join(",".join(map(str, [*row, 0])) + "\n" for row in rows))
+    with contextlib.redirect_stdout(io.StringIO()) as told:
+        heaps.compare(path)
+    # 6 +- 1 beside 2 +- 1; an angle that one heap has not is left out
+    check("a,other,2,radius_mm,6,1,4,1.4,2.8,200.0" in told.getvalue().splitlines() and "other,2,angle" not in told.getvalue(),
+          f"heaps beside each other: {told.getvalue()}")
 
 
 def intervals():

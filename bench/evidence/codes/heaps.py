@@ -15,15 +15,17 @@ def measured(scene):
 
 
 def compare(path):
-    """Standard errors of differences are those of pairs with the same seed. An angle that a heap has not leaves the mean out."""
+    """Standard errors of the differences are those of independent heaps. What some heap has not is left out."""
     groups = {}
     for row in read(path):
-        groups.setdefault((row["shape"], row["variant"]), {})[row["seed"]] = row
-    print("shape,variant,seeds,what,mean,error,less_scree,error")
+        groups.setdefault((row["shape"], row["variant"]), []).append(row)
+    print("shape,variant,heaps,what,mean,error,less_scree,error,errors,percent")
     for (shape, variant), rows in groups.items():
         for what in COLUMNS[3:6]:
-            ours = groups[shape, "scree"]
-            values = [float(row[what]) for row in rows.values()]
-            both = [float(rows[seed][what]) - float(ours[seed][what]) for seed in rows if seed in ours]
-            cells = [c for v in (values, both) for c in (mean(v), deviation(v) / math.sqrt(len(v)) if len(v) > 1 else math.nan)]
-            print(",".join([shape, variant, str(len(rows)), what, *(f"{c:.3g}" for c in cells)]))
+            own, ours = ([float(r[what]) for r in group] for group in (rows, groups[shape, "scree"]))
+            if any(map(math.isnan, own + ours)) or min(len(own), len(ours)) < 2:
+                continue
+            (m, error), (m0, error0) = ((mean(v), deviation(v) / math.sqrt(len(v))) for v in (own, ours))
+            line = f"{shape},{variant},{len(own)},{what},{m:.3g},{error:.2g}"
+            apart = math.hypot(error, error0)
+            print(line + ("" if variant == "scree" else f",{m - m0:.2g},{apart:.2g},{(m - m0) / apart:.1f},{100 * (m - m0) / m0:.1f}"))
