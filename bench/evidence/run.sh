@@ -80,8 +80,9 @@ heaps() {
 }
 
 polyhedra() {
-  heaps polyhedra 5 scree yade scree:0.1 scree:0.7
-  heaps polyhedra 3 yade-contacts
+  heaps polyhedra 3 yade yade-contacts scree:0.7
+  heaps polyhedra 2 yade:0.1
+  heaps polyhedra 12 scree:0.1
   heaps polyhedra 20 scree
   [ -s "$results/polyhedra-slide.csv" ] || ! command -v "${YADE:-yade}" >/dev/null ||
     "$here/codes/polyhedra.py" slide scree yade yade:0.1 yade-contacts >"$results/polyhedra-slide.csv"
