@@ -35,33 +35,37 @@ _Static_assert(sizeof(void *) != 8 ||
 #define CODE_REALS(codec, record)                                                                  \
   scree_code_reals(codec, (double *)(record), sizeof *(record) / sizeof(double))
 
+/* Such records one after another. */
+#define CODE_EACH(codec, type, ...)                                                                \
+  do {                                                                                             \
+    type *const each[] = {__VA_ARGS__};                                                            \
+    for (size_t i = 0; i < sizeof each / sizeof *each; i++) CODE_REALS(codec, each[i]);            \
+  } while (0)
+
+/* A kind or small number, at most `most`. */
+static uint32_t coded(scree_codec *c, uint32_t value, uint32_t most) {
+  scree_code_u32(c, &value);
+  if (value > most) c->failed = true;
+  return value;
+}
+
 static void code_options(scree_codec *c, scree_world_options *o) {
-  uint32_t law = (uint32_t)o->law;
   scree_code_reals(c, o->gravity, 3);
-  scree_code_u32(c, &law);
-  o->law = (scree_law)law;
-  double *reals[] = {&o->steps_per_contact, &o->time_step,     &o->stiffness_factor,
-                     &o->tangential_ratio,  &o->size,          &o->smoothing,
-                     &o->sharing,           &o->overlap_limit, &o->skin,
-                     &o->floor_height};
-  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+  o->law = (scree_law)coded(c, (uint32_t)o->law, UINT32_MAX);
+  CODE_EACH(c, double, &o->steps_per_contact, &o->time_step, &o->stiffness_factor,
+            &o->tangential_ratio, &o->size, &o->smoothing, &o->sharing, &o->overlap_limit, &o->skin,
+            &o->floor_height);
   scree_code_reals(c, o->period, 3);
   scree_code_reals(c, o->period_from, 3);
 }
 
 static void code_measures(scree_codec *c, scree_particle_measures *m) {
-  uint32_t kind = (uint32_t)m->kind;
-  scree_code_u32(c, &kind);
-  if (kind > SCREE_PARTICLE_CLUMP) c->failed = true;
-  m->kind = (scree_particle_kind)kind;
-  scree_code_real(c, &m->volume);
-  scree_code_real(c, &m->size);
+  m->kind = (scree_particle_kind)coded(c, (uint32_t)m->kind, SCREE_PARTICLE_CLUMP);
+  CODE_EACH(c, double, &m->volume, &m->size);
   scree_code_reals(c, m->centre, 3);
   scree_code_reals(c, m->orientation, 4);
   scree_code_reals(c, m->inertia, 3);
-  scree_code_real(c, &m->bounding_radius);
-  scree_code_real(c, &m->thickness);
-  scree_code_real(c, &m->rounding);
+  CODE_EACH(c, double, &m->bounding_radius, &m->thickness, &m->rounding);
 }
 
 /* When loading, *mesh is filled and is to be freed, whatever comes. */
@@ -82,12 +86,8 @@ static void code_mesh(scree_codec *c, scree_mesh *mesh) {
 }
 
 static void code_given_wall(scree_codec *c, scree_wall *w) {
-  uint32_t kind = (uint32_t)w->kind, material = (uint32_t)w->material;
-  scree_code_u32(c, &kind);
-  scree_code_u32(c, &material);
-  if (kind > SCREE_WALL_MESH) c->failed = true;
-  w->kind = (scree_wall_kind)kind;
-  w->material = material;
+  w->kind = (scree_wall_kind)coded(c, (uint32_t)w->kind, SCREE_WALL_MESH);
+  w->material = coded(c, (uint32_t)w->material, UINT32_MAX);
   scree_code_bool(c, &w->two_sided);
   scree_code_reals(c, w->position, 3);
   scree_code_reals(c, w->axis, 3);
@@ -101,15 +101,11 @@ static void code_given_wall(scree_codec *c, scree_wall *w) {
 }
 
 static void code_wall_motion(scree_codec *c, scree_motion_state *m) {
-  scree_code_u32(c, &m->law);
-  if (m->law > SCREE_MOTION_CRANK) c->failed = true;
+  m->law = coded(c, m->law, SCREE_MOTION_CRANK);
   scree_code_bool(c, &m->turns);
-  scree_code_vec3(c, &m->axis);
-  scree_code_vec3(c, &m->through);
-  scree_code_vec3(c, &m->span);
-  double *reals[] = {&m->speed,  &m->amplitude, &m->frequency, &m->phase, &m->rod,
-                     &m->radius, &m->start,     &m->from,      &m->until, &m->origin};
-  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+  CODE_EACH(c, vec3, &m->axis, &m->through, &m->span);
+  CODE_EACH(c, double, &m->speed, &m->amplitude, &m->frequency, &m->phase, &m->rod, &m->radius,
+            &m->start, &m->from, &m->until, &m->origin);
   scree_code_count(c, &m->row_count, 3 * sizeof(double));
   bool table = m->law == SCREE_MOTION_POSITIONS || m->law == SCREE_MOTION_SPEEDS;
   if (table != (m->row_count > 0)) c->failed = true;
@@ -118,17 +114,11 @@ static void code_wall_motion(scree_codec *c, scree_motion_state *m) {
 static void code_wall_state(scree_codec *c, scree_world_wall *w) {
   CODE_REALS(c, &w->frame);
   CODE_REALS(c, &w->orientation);
-  scree_code_real(c, &w->travel);
-  scree_code_real(c, &w->path);
-  scree_code_real(c, &w->path_at_build);
-  scree_code_real(c, &w->reach);
-  scree_code_real(c, &w->slack);
-  vec3 *vectors[] = {&w->force,        &w->torque,       &w->surface_velocity,
-                     &w->surface_spin, &w->surface_loop, &w->start_position};
-  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) scree_code_vec3(c, vectors[i]);
+  CODE_EACH(c, double, &w->travel, &w->path, &w->path_at_build, &w->reach, &w->slack);
+  CODE_EACH(c, vec3, &w->force, &w->torque, &w->surface_velocity, &w->surface_spin,
+            &w->surface_loop, &w->start_position);
   CODE_REALS(c, &w->start_orientation);
-  scree_code_real(c, &w->power);
-  scree_code_real(c, &w->energy);
+  CODE_EACH(c, double, &w->power, &w->energy);
   scree_code_count(c, &w->motion_count, 8 * sizeof(double));
 }
 
@@ -145,9 +135,7 @@ static void code_further(scree_codec *c, scree_feature_pair *i, scree_further *f
 }
 
 static void code_feature(scree_codec *c, scree_feature_pair *i, scree_further *further) {
-  uint32_t kind = i->kind;
-  scree_code_u32(c, &kind);
-  if (kind > SCREE_FEATURE_POINT_WALL) c->failed = true;
+  const uint32_t kind = coded(c, i->kind, SCREE_FEATURE_POINT_WALL);
   if (c->loading) i->kind = (uint8_t)kind;
   scree_code_u32(c, &i->a);
   scree_code_u32(c, &i->b);
@@ -186,11 +174,8 @@ static void code_watch(scree_codec *c, scree_watch *w) {
   code_floats(c, w->came, 3);
   code_floats(c, &w->speed, 1);
   code_floats(c, &w->since, 1);
-  for (int i = 0; i < SCREE_INNER_PLACES; i++) {
-    uint32_t through = w->through[i];
-    scree_code_u32(c, &through);
-    w->through[i] = (uint8_t)through;
-  }
+  for (int i = 0; i < SCREE_INNER_PLACES; i++)
+    w->through[i] = (uint8_t)coded(c, w->through[i], UINT32_MAX);
   scree_code_bool(c, &w->taken);
 }
 
@@ -215,33 +200,16 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
   scree_code_bool(c, &p->followed);
   CODE_REALS(c, &n->law);
   CODE_REALS(c, &p->list);
-  double *reals[] = {&n->wake,
-                     &n->asleep_since,
-                     &p->elastic,
-                     &p->tangential_elastic,
-                     &p->age,
-                     &p->overlap,
-                     &p->largest,
-                     &p->depth,
-                     &p->kick,
-                     &p->foreseen,
-                     &p->found,
-                     &p->later_dashpot,
-                     &p->later_tangential};
-  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+  CODE_EACH(c, double, &n->wake, &n->asleep_since, &p->elastic, &p->tangential_elastic, &p->age,
+            &p->overlap, &p->largest, &p->depth, &p->kick, &p->foreseen, &p->found,
+            &p->later_dashpot, &p->later_tangential);
   code_floats(c, &p->elastic_since, 1);
   code_floats(c, &p->belt_power, 1);
-  scree_code_vec3(c, &p->rolled);
-  scree_code_vec3(c, &p->separation);
-  scree_code_vec3(c, &p->pushed);
-  CODE_REALS(c, &p->wrench);
-  CODE_REALS(c, &p->owed);
-  CODE_REALS(c, &p->ahead);
+  CODE_EACH(c, vec3, &p->rolled, &p->separation, &p->pushed);
+  CODE_EACH(c, scree_pair_wrench, &p->wrench, &p->owed, &p->ahead);
   code_watch(c, &p->watch);
-  uint32_t substeps = p->substeps;
-  scree_code_u32(c, &substeps);
-  if (substeps < 1 || substeps > SCREE_MOST_SUBSTEPS) c->failed = true;
-  p->substeps = (uint8_t)substeps;
+  p->substeps = (uint8_t)coded(c, p->substeps, SCREE_MOST_SUBSTEPS);
+  if (p->substeps < 1) c->failed = true;
   CODE_REALS(c, &p->spring);
   scree_kept_wrench *kept[] = {&p->dashpot, &p->tangential, &p->others[0], &p->others[1]};
   for (int i = 0; i < 4; i++) code_floats(c, (float *)kept[i], 6);
@@ -258,17 +226,15 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
   CODE_REALS(c, &n->asleep_turned);
 }
 
-/* Body i, in the arrays. */
-static void code_body(scree_codec *c, const scree_world *world, size_t i) {
+static void code_body(scree_codec *c, const scree_world *world, size_t body) {
   const scree_bodies *b = &world->bodies;
-  CODE_REALS(c, &b->frame[i]);
-  CODE_REALS(c, &b->orientation[i]);
-  vec3 *vectors[] = {&b->momentum[i], &b->inertia[i], &b->force[i], &b->torque[i]};
-  for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++) scree_code_vec3(c, vectors[k]);
-  double *reals[] = {&b->mass[i], &b->travel[i], &b->path[i], &world->body_path_at_build[i]};
-  for (size_t k = 0; k < sizeof reals / sizeof *reals; k++) scree_code_real(c, reals[k]);
-  scree_code_bool(c, &b->removed[i]);
-  CODE_REALS(c, &b->balance[i]);
+  CODE_REALS(c, &b->frame[body]);
+  CODE_REALS(c, &b->orientation[body]);
+  CODE_EACH(c, vec3, &b->momentum[body], &b->inertia[body], &b->force[body], &b->torque[body]);
+  CODE_EACH(c, double, &b->mass[body], &b->travel[body], &b->path[body],
+            &world->body_path_at_build[body]);
+  scree_code_bool(c, &b->removed[body]);
+  CODE_REALS(c, &b->balance[body]);
 }
 
 /* What the world counts, and how it ended. */
@@ -281,8 +247,7 @@ typedef struct tail_record {
 } tail_record;
 
 static void code_tail(scree_codec *c, tail_record *t) {
-  double *reals[] = {&t->time, &t->time_step, &t->largest_overlap, &t->margin};
-  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+  CODE_EACH(c, double, &t->time, &t->time_step, &t->largest_overlap, &t->margin);
   scree_code_u64(c, &t->step_count);
   scree_code_u64(c, &t->depenetration_count);
   scree_code_bool(c, &t->pairs_stale);
