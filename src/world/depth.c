@@ -16,7 +16,6 @@
 
 #include "particle/closest.h"
 
-/* Bodies that lie deeper in each other from the start, of the limit, are refused. */
 /* Points of a mesh are looked for in the other from the start: corners, drawn towards the centre.
  */
 static const double drawn_in[] = {0.9, 0.5, 0};
@@ -205,22 +204,17 @@ static double border_distance(const scree_face *face, vec3 start, vec3 along, do
 static double line_distance(const scree_particle *to, const line *l, double reach) {
   const scree_tree *tree = &to->face_tree;
   vec3 ends[2] = {at_of(l, l->from), at_of(l, l->to)};
-  uint32_t stack[SCREE_TREE_STACK];
-  int depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const scree_tree_node *node = &tree->nodes[stack[--depth]];
+  scree_tree_walk walk;
+  scree_tree_start(&walk, tree);
+  for (const scree_tree_node *node; (node = scree_tree_next(&walk));) {
     scree_box within = scree_box_grown(scree_box_of(ends[0], ends[1]), reach);
-    if (!scree_box_meets(&within, &node->box)) continue;
+    if (!scree_box_meets(&within, &node->box) || scree_tree_enter(&walk, node)) continue;
     for (uint32_t k = 0; k < node->count; k++) {
       uint32_t face = tree->order[node->first + k];
       for (int e = 0; e < 2; e++) reach = scree_smaller(reach, face_distance(to, face, ends[e]));
       reach = scree_smaller(reach,
                             border_distance(&to->faces[face], ends[0], l->along, l->to - l->from));
     }
-    if (node->count) continue;
-    stack[depth++] = node->first + 1;
-    stack[depth++] = node->first;
   }
   return reach;
 }
@@ -295,24 +289,20 @@ static double contact_side(const side *sd, scree_pair *pair, double above, scree
   const scree_tree *tree = &sd->from->edge_tree;
   scree_box within = scree_box_grown(sd->to->face_tree.nodes[0].box, -above);
   double deepest = above;
-  uint32_t stack[SCREE_TREE_STACK];
-  int depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const scree_tree_node *node = &tree->nodes[stack[--depth]];
+  scree_tree_walk walk;
+  scree_tree_start(&walk, tree);
+  for (const scree_tree_node *node; (node = scree_tree_next(&walk));) {
     scree_box box = scree_box_moved(&node->box, &sd->rotation, sd->shift);
     if (!scree_box_meets(&box, &within)) continue;
     vec3 centre = vec3_scale(vec3_add(box.low, box.high), 0.5);
     double radius = 0.5 * vec3_distance(node->box.low, node->box.high);
-    if (is_outside(sd->to, centre, radius, scree_max(-above, 0))) continue;
+    if (is_outside(sd->to, centre, radius, scree_max(-above, 0)) || scree_tree_enter(&walk, node))
+      continue;
     for (uint32_t k = 0; k < node->count; k++) {
       const scree_edge *edge = &sd->from->edges[tree->order[node->first + k]];
       scree_depth deep = find_deepest(sd, edge, above);
       deepest = scree_max(deepest, contact_edge(sd, pair, edge, above, &deep, scratch));
     }
-    if (node->count) continue;
-    stack[depth++] = node->first + 1;
-    stack[depth++] = node->first;
   }
   return deepest;
 }

@@ -4,6 +4,7 @@
  * midpoint rule in the body's frame (compare Buss 2000, "Accurate and efficient simulation of
  * rigid-body rotations", and Dullweber et al. 1997 for the splitting it stands beside). */
 #include "world/integrate.h"
+#include "world/materials.h"
 #include "world/stages.h"
 #include "world/walls.h"
 
@@ -78,9 +79,7 @@ static double coming_travel(scree_world *world, size_t i) {
 
 /* Most a body may move in a step; pairs have a limit of their own (contact.c). */
 static double travel_limit(const scree_world *world, size_t i) {
-  double size =
-      world->options.size > 0 ? world->options.size : world->bodies.particle[i]->measures.size;
-  return world->options.overlap_limit * size;
+  return world->options.overlap_limit * scree_size_in(world, world->bodies.particle[i]);
 }
 
 typedef struct gathering {

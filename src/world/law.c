@@ -245,11 +245,10 @@ static overlap_slope find_slope(const scree_world *world, const scree_pair *pair
  * have no less. */
 static double damping_at(const scree_world *world, const scree_pair *pair,
                          const scree_frame *relative, const overlap_slope *slope) {
-  double pace = pair->law.contact_time / 3.14159265358979323846,
-         reduced = pair->law.stiffness * pace * pace,
-         inverse =
-             inverse_mass(world, pair, relative, &slope->whole) / (slope->weight * slope->weight);
-  double damping = pair->law.damping * sqrt(scree_min(1, 1 / (inverse * reduced)));
+  double inverse =
+             inverse_mass(world, pair, relative, &slope->whole) / (slope->weight * slope->weight),
+         share = scree_min(1, 1 / (inverse * scree_reduced_mass(&pair->law))),
+         damping = pair->law.damping * sqrt(share);
   return pair->law.hertz > 0 ? damping * sqrt(sqrt(pair->overlap)) : damping;
 }
 
@@ -341,8 +340,9 @@ static void judge(const scree_world *world, scree_pair *pair, const scree_contac
 /* The couple of rolling resistance. */
 static void roll(scree_pair *pair, const slider *sliding, const scree_frame *relative,
                  double *energy, load_sums *sums) {
+  if (!(pair->law.rolling > 0)) return;
   double size = vec3_norm(sums->normal.force);
-  if (!(pair->law.rolling > 0 && size > 0)) return;
+  if (!(size > 0)) return;
   vec3 n = vec3_scale(sums->normal.force, 1 / size),
        turning = vec3_mad(relative->spin, n, -vec3_dot(relative->spin, n)),
        seen = vec3_mad(sliding->spin, n, -vec3_dot(sliding->spin, n)),
@@ -456,9 +456,7 @@ static scree_powers part(const scree_world *world, scree_pair *pair, const scree
   slider law = make_slider(world, pair, relative, scratch->drift);
   vec3 seen = vec3_add(law.velocity, vec3_cross(law.spin, at)),
        v = vec3_add(relative->velocity, vec3_cross(relative->spin, at));
-  double pace = pair->law.contact_time / 3.14159265358979323846,
-         mass = pair->law.stiffness * pace * pace,
-         brake = depenetration_damping * mass / world->time_step *
+  double brake = depenetration_damping * scree_reduced_mass(&pair->law) / world->time_step *
                  (scree_depenetration_speed(&pair->law) - vec3_dot(seen, way)),
          push = scree_max(0, brake + held_with(world, pair, way, scratch)),
          most = pair->law.stiffness * scree_min(pair->overlap, pair->law.limit),

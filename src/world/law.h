@@ -23,6 +23,12 @@ static inline double scree_energy_between(const scree_pair *pair, double x, doub
   return 0.5 * (at_x.energy + at_y.energy) - 0.25 * (at_x.force - at_y.force) * (x - y);
 }
 
+/* Of both bodies. */
+static inline double scree_reduced_mass(const scree_pair_law *law) {
+  const double pace = law->contact_time / 3.14159265358979323846;
+  return law->stiffness * pace * pace;
+}
+
 /* How far the contact is no impact any more, from 0 to 1: the tangential dashpot. An oblique impact
  * follows the spring and slider alone; what rests on each other is calmed. */
 static inline double scree_lasting(const scree_pair *pair) {

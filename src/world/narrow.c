@@ -175,20 +175,14 @@ static bool is_on_its_side(const probe *x, vec3 offset, uint32_t face, vec3 *out
 static bool find_facing(const probe *x, double reach, bool behind, surface_contact *out) {
   const scree_particle *surface = x->surface;
   const vec3 p = x->p;
-  const scree_tree_node *nodes = surface->face_tree.nodes;
-  uint32_t stack[SCREE_TREE_STACK];
-  int depth = 0;
+  scree_tree_walk walk;
   double best2 = reach * reach, best_height = 0, least_aside2 = INFINITY;
   bool any = false;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const scree_tree_node *node = &nodes[stack[--depth]];
-    if (scree_box_distance2(&node->box, p) > (least_aside2 > 0 ? reach * reach : best2)) continue;
-    if (node->count == 0) {
-      stack[depth++] = node->first + 1;
-      stack[depth++] = node->first;
+  scree_tree_start(&walk, &surface->face_tree);
+  for (const scree_tree_node *node; (node = scree_tree_next(&walk));) {
+    if (scree_box_distance2(&node->box, p) > (least_aside2 > 0 ? reach * reach : best2) ||
+        scree_tree_enter(&walk, node))
       continue;
-    }
     for (uint32_t k = 0; k < node->count; k++) {
       uint32_t f = surface->face_tree.order[node->first + k];
       const scree_face *face = &surface->faces[f];

@@ -9,10 +9,6 @@
 #include "base/alloc.h"
 #include "base/array.h"
 
-static double size_of(const scree_world *world, const scree_particle *particle) {
-  return world->options.size > 0 ? world->options.size : particle->measures.size;
-}
-
 double scree_thin_overlap(const scree_particle *particle) {
   /* rays grazing a notch find walls thinner than they are: never below four contact radii */
   const scree_particle_measures *m = &particle->measures;
@@ -22,7 +18,7 @@ double scree_thin_overlap(const scree_particle *particle) {
 /* 1/r of a sphere; of any other body, 2/L. */
 static double curvature_of(const scree_world *world, const scree_particle *particle) {
   bool sphere = particle->measures.kind == SCREE_PARTICLE_SPHERE;
-  return sphere ? 1 / particle->point_radii[0] : 2 / size_of(world, particle);
+  return sphere ? 1 / particle->point_radii[0] : 2 / scree_size_in(world, particle);
 }
 
 /* 1/(I + m r^2) of a sphere that rolls, about where it touches. */
@@ -59,13 +55,13 @@ static double pull_of(const scree_world *world, const scree_material_contact *co
 static void set_up(const scree_world *world, scree_neighbours *n) {
   const scree_bodies *bodies = &world->bodies;
   const scree_particle *a = bodies->particle[n->a], *b = scree_shape_of(world, n->b, n->wall);
-  double size = size_of(world, a), mass = bodies->mass[n->a], thin = scree_thin_overlap(a);
+  double size = scree_size_in(world, a), mass = bodies->mass[n->a], thin = scree_thin_overlap(a);
   size_t material_a = bodies->material[n->a], material_b;
   if (n->wall) {
     material_b = world->walls.items[n->b].given.material;
   } else {
     material_b = bodies->material[n->b];
-    size = scree_min(size, size_of(world, b));
+    size = scree_min(size, scree_size_in(world, b));
     mass = mass * bodies->mass[n->b] / (mass + bodies->mass[n->b]);
     thin = scree_min(thin, scree_thin_overlap(b));
   }

@@ -62,8 +62,7 @@ typedef struct body_kind {
 enum { MOST_KINDS = 256 };
 
 static double size_of(const scree_world *world, size_t body) {
-  return world->options.size > 0 ? world->options.size
-                                 : world->bodies.particle[body]->measures.size;
+  return scree_size_in(world, world->bodies.particle[body]);
 }
 
 static size_t list_kinds(const scree_world *world, body_kind *kinds) {
