@@ -126,6 +126,8 @@ SCREE_API scree_status scree_mesh_check(const scree_mesh *mesh, const scree_chec
   X(CUT_INTERSECTION, "cut_intersecting_facets",                                                   \
     "facet cut out where the surface met itself or had too sharp an edge",                         \
     "facets cut out where the surface met itself or had too sharp an edge")                        \
+  X(BLUNT, "blunted_edges", "sharp edge made blunt by a strip of facets",                          \
+    "sharp edges made blunt by strips of facets")                                                  \
   X(MERGE_SHELL, "merged_shells", "shell that met others united with them",                        \
     "shells that met others united with them")                                                     \
   X(FILL_HOLE, "filled_holes", "hole filled", "holes filled")                                      \

@@ -562,6 +562,77 @@ static void sharp_edges(void **state) {
   scree_mesh_free(&mesh);
 }
 
+/* A plate of any outline whose faces come together within a twentieth of its radius. */
+static scree_mesh blade(uint32_t rim, double height, scree_rng *rng) {
+  scree_mesh m = shape_make(3 * rim + 2, 6 * (size_t)rim);
+  for (uint32_t i = 0; i < rim; i++) {
+    double angle = 2 * acos(-1) * i / rim, radius = 0.9 + 0.2 * scree_rng_uniform(rng),
+           x = radius * cos(angle), y = radius * sin(angle);
+    vec3_store(m.positions + 9 * (size_t)i, (vec3){x, y, 0});
+    vec3_store(m.positions + 9 * (size_t)i + 3, (vec3){0.95 * x, 0.95 * y, height});
+    vec3_store(m.positions + 9 * (size_t)i + 6, (vec3){0.95 * x, 0.95 * y, -height});
+    const uint32_t a = 3 * i, b = 3 * ((i + 1) % rim), top = 3 * rim, bottom = top + 1,
+                   corners[18] = {a, b, b + 1, a, b + 1, a + 1, a + 1, b + 1, top,
+                                  b, a, a + 2, b, a + 2, b + 2, b + 2, a + 2, bottom};
+    memcpy(m.triangles + 18 * (size_t)i, corners, sizeof corners);
+  }
+  vec3_store(m.positions + 9 * (size_t)rim, (vec3){0, 0, height});
+  vec3_store(m.positions + 9 * (size_t)rim + 3, (vec3){0, 0, -height});
+  return m;
+}
+
+/* A point over a base with thin arms: its ridges are sharp and meet there. */
+static scree_mesh arrow(uint32_t arms) {
+  scree_mesh m = shape_make(2 * arms + 2, 4 * (size_t)arms);
+  for (uint32_t i = 0; i < 2 * arms; i++) {
+    double angle = acos(-1) * i / arms, radius = i % 2 ? 0.02 : 1;
+    vec3_store(m.positions + 3 * (size_t)i, (vec3){radius * cos(angle), radius * sin(angle), 0});
+    const uint32_t j = (i + 1) % (2 * arms), corners[6] = {i, j, 2 * arms, j, i, 2 * arms + 1};
+    memcpy(m.triangles + 6 * (size_t)i, corners, sizeof corners);
+  }
+  vec3_store(m.positions + 6 * (size_t)arms, (vec3){0, 0, 1});
+  vec3_store(m.positions + 6 * (size_t)arms + 3, (vec3){0, 0, 0});
+  return m;
+}
+
+static void expect_blunt(const scree_mesh *mesh, size_t edge_count, double volume_change) {
+  scree_measures before = measures_of(mesh);
+  scree_repair_options options = scree_default_repair_options();
+  options.volume_change = volume_change;
+  outcome o = repair_with(mesh, &options);
+  assert_int_equal(o.report.before.defects[SCREE_DEFECT_SHARP_EDGE], edge_count);
+  assert_int_equal(o.report.done[SCREE_REPAIR_BLUNT], edge_count);
+  assert_int_equal(o.report.done[SCREE_REPAIR_CUT_INTERSECTION], 0);
+  expect_same(&o, &before, volume_change);
+  free_outcome(&o);
+}
+
+/* Rims all round are made blunt, of bodies and of cavities, and edges that meet at a point. */
+static void sharp_rims(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 71};
+  for (int k = 0; k < 30; k++) {
+    uint32_t rim = 20 + (uint32_t)scree_rng_below(&rng, 100);
+    scree_mesh plate = blade(rim, 2e-4 + 4e-4 * scree_rng_uniform(&rng), &rng);
+    expect_blunt(&plate, rim, 0.01);
+    if (k < 10) {
+      scree_mesh box = shape_box(3, 3, 0.05), both;
+      for (size_t t = 0; t < plate.triangle_count; t++) shape_flip(&plate, t);
+      shape_move(&plate, (vec3){1.5, 1.5, 0.02});
+      both = shape_join(&box, &plate);
+      expect_blunt(&both, rim, 0.01);
+      scree_mesh_free(&both);
+      scree_mesh_free(&box);
+    }
+    scree_mesh_free(&plate);
+  }
+  for (uint32_t arms = 3; arms < 7; arms++) {
+    scree_mesh mesh = arrow(arms);
+    expect_blunt(&mesh, arms, 0.15);
+    scree_mesh_free(&mesh);
+  }
+}
+
 /* Filled from the smallest on, as long as all of them stay below the share. */
 static void small_cavities(void **state) {
   (void)state;
@@ -783,6 +854,7 @@ int main(void) {
                                      cmocka_unit_test(parts_that_meet_are_one),
                                      cmocka_unit_test(spike),
                                      cmocka_unit_test(sharp_edges),
+                                     cmocka_unit_test(sharp_rims),
                                      cmocka_unit_test(small_cavities),
                                      cmocka_unit_test(same_whatever_order),
                                      cmocka_unit_test(moved_turned_scaled),

@@ -7,8 +7,8 @@
  * edges of many facets are sorted out by it, open scraps go, holes are filled, and vertices with
  * several fans are split last, because filling joins fans. Once the surface is closed and manifold,
  * shells are put in order. Then the exact check looks for facets that meet; those of one shell are
- * cut out with their neighbourhood, wider each time, shells that meet each other are merged, and
- * the round starts over.
+ * cut out with their neighbourhood, wider each time, shells that meet each other are merged, sharp
+ * edges that are too many to cut out are made blunt, and the round starts over.
  *
  * Every round ends with a weld, so vertices and facets are always in canonical order and the result
  * does not depend on the order of the input. Nothing is called repaired that the check has not
@@ -253,6 +253,7 @@ static scree_status refuse_loss(const scree_repair *r, scree_error *error) {
 /* How often the dear stages have run. */
 typedef struct tries {
   int cuts, merges;
+  bool blunted;
   bool refused;      /* merging was ... */
   size_t refused_at; /* ... when so much had been done: as long as no more is, it would be again */
 } tries;
@@ -277,6 +278,11 @@ static scree_status untangle(scree_repair *r, tries *n, bool *settled, scree_err
   if (cut_count == 0 && o->merge_shells && n->merges < MERGE_ROUNDS) {
     n->merges++;
     SCREE_TRY(try_merge(r, n, false, &merged, error));
+  }
+  if (cut_count == 0 && !merged && o->cut_intersections && !n->blunted) {
+    n->blunted = true; /* of an open sheet that was filled, both sides may be the same */
+    if (r->report.before.defects[SCREE_DEFECT_BOUNDARY_EDGE] == 0)
+      SCREE_TRY(scree_repair_blunt(r, &cut_count, error));
   }
   *settled = cut_count == 0 && !merged;
   if (*settled && !r->apart) { /* without the small ones, or all but the largest, it may do */

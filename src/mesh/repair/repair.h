@@ -107,6 +107,8 @@ scree_status scree_repair_outward(scree_repair *r, scree_error *error);
 /* Cuts out facets that meet others of their shell or have a sharp edge, with `rings` rings of
  * neighbours; *cut_count 0 where nothing could be cut. */
 scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, scree_error *error);
+/* blunt.c: parts the sides of sharp edges, where these form rims; *blunted: how many. */
+scree_status scree_repair_blunt(scree_repair *r, size_t *blunted, scree_error *error);
 /* repair_merge.c: shells that meet become one surface, where every edge is used equally often both
  * ways; *merged is false, and r->unmerged may tell why, where they do not. `early`, before other
  * stages: not where a shell only meets itself, unless the options say so. */
