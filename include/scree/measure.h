@@ -88,13 +88,12 @@ SCREE_API scree_status scree_mesh_describe(const scree_mesh *mesh, const scree_m
 /* How the facets hang together. A facet that names a vertex twice has no place in the surface: it
  * counts as degenerate and nowhere else. */
 typedef struct scree_topology {
-  size_t vertex_count;        /* used by a facet */
-  size_t unused_vertex_count; /* not used by any */
-  size_t edge_count;          /* undirected */
-  size_t facet_count;         /* those that take part: all but those naming a vertex twice */
-  size_t shell_count;         /* sets of facets connected through shared edges */
-  size_t
-      inward_shell_count; /* of consistent winding and negative volume: cavities, or inside out */
+  size_t vertex_count;              /* used by a facet */
+  size_t unused_vertex_count;       /* not used by any */
+  size_t edge_count;                /* undirected */
+  size_t facet_count;               /* those that take part: all but those naming a vertex twice */
+  size_t shell_count;               /* sets of facets connected through shared edges */
+  size_t inward_shell_count;        /* wound alike, with volume below 0: cavities or inside out */
   size_t boundary_edge_count;       /* edges of one facet */
   size_t boundary_count;            /* connected sets of boundary edges: holes and rims */
   size_t non_manifold_edge_count;   /* edges of three or more facets */
