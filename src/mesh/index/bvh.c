@@ -35,7 +35,7 @@ scree_status scree_bvh_build(const scree_mesh *mesh, scree_bvh *bvh, scree_error
   SCREE_TRY(scree_tree_build(&triangles, &made.tree, error));
   SCREE_TRY(copy_mesh(mesh, made.tree.order, &made.mesh, error));
   *bvh = made;
-  made = (scree_bvh){0};
+  memset(&made, 0, sizeof made); /* it is the caller's now */
   return SCREE_OK;
 }
 
