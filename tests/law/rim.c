@@ -13,7 +13,9 @@ enum { SIDES = 24, CUTS = 64, SAMPLES = 16 };
 static const double pi = 3.14159265358979;
 static const double half_width = 0.06, tall = 0.12, radius = 0.05, thickness = 3e-3;
 static const double stiffness = 1e7;
-static const double in_wall = 0.006; /* of the size: no body may be left deeper in a sheet */
+/* Of the size: no body may be left deeper in a sheet than sharp corners reach out of their cores.
+ */
+static const double in_wall = 0.004;
 static int more = 1;
 
 typedef enum wall_kind { FLAT, ROUND, TUBE, WALLS } wall_kind; /* two meshes, and a cylinder */
