@@ -122,17 +122,18 @@ export class Tree {
     if (d3 >= 0 && d4 <= d3) return to(1, 0);
     const d5 = d1 - uv, d6 = d2 - vv; // at the third
     if (d6 >= 0 && d5 <= d6) return to(0, 1);
+    // a triangle whose corners meet or lie on a line, as coordinates rounded to a grid make, ends at its edges or corners
     const c = d1 * d4 - d3 * d2;
-    if (c <= 0 && d1 >= 0 && d3 <= 0) return to(d1 / (d1 - d3), 0);
+    if (c <= 0 && d1 > 0 && d3 < 0) return to(d1 / (d1 - d3), 0);
     const b = d5 * d2 - d1 * d6;
-    if (b <= 0 && d2 >= 0 && d6 <= 0) return to(0, d2 / (d2 - d6));
+    if (b <= 0 && d2 > 0 && d6 < 0) return to(0, d2 / (d2 - d6));
     const a = d3 * d6 - d5 * d4;
-    if (a <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    if (a <= 0 && d4 - d3 > 0 && d5 - d6 > 0) {
       const w = (d4 - d3) / (d4 - d3 + (d5 - d6));
       return to(1 - w, w);
     }
-    const whole = 1 / (a + b + c);
-    return to(b * whole, c * whole);
+    const whole = a + b + c;
+    return whole > 0 ? to(b / whole, c / whole) : Math.min(to(0, 0), to(1, 0), to(0, 1));
   }
 }
 
