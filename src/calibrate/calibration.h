@@ -153,6 +153,7 @@ double scree_rounds_seconds(const scree_calibration *c);
 typedef struct scree_answers {
   size_t experiment_count;
   size_t *run_counts;        /* of each experiment */
+  size_t *waiting;           /* of those that the model is fitted to, not ended yet */
   double **x, **answers;     /* run_counts x parameters; run_counts x answer_count, NAN: none */
   double *costs, seconds;    /* of a run, without a clock; processor time of all */
   size_t done, failed, open; /* open: not ended yet */

@@ -17,6 +17,7 @@ void scree_answers_free(scree_answers *g) {
   for (size_t i = 0; i < g->failure_count; i++) scree_free(g->failures[i]);
   scree_free(g->failures);
   scree_free(g->run_counts);
+  scree_free(g->waiting);
   scree_free(g->x);
   scree_free(g->answers);
   scree_free(g->costs);
@@ -88,7 +89,9 @@ static scree_status gather_experiment(const scree_calibration *c, size_t e, scre
   for (size_t i = 0; status == SCREE_OK && i < c->run_count; i++) {
     if (c->runs[i].experiment != e) continue;
     memcpy(g->x[e] + n * d, c->runs[i].x, d * sizeof(double));
+    size_t open = g->open;
     status = take_record(g, e, study, n, &work, error);
+    if (c->runs[i].round < scree_rounds_fitted(c)) g->waiting[e] += g->open - open;
     n++;
   }
   g->costs[e] = work > 0 ? work / (double)count : 1;
@@ -113,10 +116,11 @@ scree_status scree_gather(const scree_calibration *c, scree_answers *gathered, s
   scree_status status = SCREE_OUT_OF_MEMORY;
   size_t n = c->experiment_count;
   g.run_counts = scree_alloc_zero(n, sizeof *g.run_counts);
+  g.waiting = scree_alloc_zero(n, sizeof *g.waiting);
   g.x = scree_alloc_zero(n, sizeof *g.x);
   g.answers = scree_alloc_zero(n, sizeof *g.answers);
   g.costs = scree_alloc_zero(n, sizeof *g.costs);
-  if (g.run_counts && g.x && g.answers && g.costs)
+  if (g.run_counts && g.waiting && g.x && g.answers && g.costs)
     status = SCREE_OK;
   else
     scree_fail_memory(error, 0, "answers");

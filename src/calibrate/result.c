@@ -389,8 +389,8 @@ static scree_status describe_answer(analysis *a, size_t quantity, draws *d) {
       .check_high = NAN,
       .unexplained = NAN};
   if (!out->name || !out->experiment || !out->answer) return fail_memory(a);
-  out->missing =
-      scree_rounds_until(a->c, q->experiment, scree_rounds_fitted(a->c)) - out->run_count;
+  out->missing = scree_rounds_until(a->c, q->experiment, scree_rounds_fitted(a->c)) -
+                 a->gathered.waiting[q->experiment] - out->run_count;
   if (a->r->sample_count == 0) return SCREE_OK;
   if (q->x) return describe_curve(a, quantity, d, out);
   describe_scalar(a, r, a->model.first[quantity], d, out);

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/platform.h"
+#include "base/unit.h"
 #include "cli/options.h"
 #include "cli/terminal.h"
 
@@ -237,6 +238,24 @@ static int parse_length(const cli_verb *verb, const cli_option *option, const ch
   return in_range(option, *metres) ? 0 : out_of_range(verb, option, text);
 }
 
+/* The unit in which the number is meant: the value's name in the help, where that is one. */
+static const char *unit_of(const cli_option *option) {
+  static const char *const wanted[][2] = {{"KG/M3", "kg/m3"}, {"PA", "Pa"}, {"DEG", "deg"}};
+  for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
+    if (!strcmp(option->value_name, wanted[i][0])) return wanted[i][1];
+  return "";
+}
+
+static int parse_real(const cli_verb *verb, const cli_option *option, const char *text,
+                      double *value) {
+  const char *wanted = unit_of(option), *rest = parse_decimal(text, value);
+  if (rest) rest += strspn(rest, " ");
+  if (!rest || (*rest && scree_unit_convert(rest, wanted, value) != SCREE_UNIT_FITS))
+    return cli_misuse(verb, "--%s %s: not a number%s%s%s", option->name, text,
+                      *wanted ? " in " : "", wanted, cli_comma_hint(text));
+  return in_range(option, *value) ? 0 : out_of_range(verb, option, text);
+}
+
 static int parse_fraction(const cli_verb *verb, const cli_option *option, const char *text,
                           double *value) {
   if (!cli_fraction_from_text(text, value))
@@ -297,11 +316,9 @@ static int store(const cli_verb *verb, const cli_option *option, const char *tex
   case CLI_COUNT:
     return parse_count(verb, option, text, value);
   case CLI_REAL:
-    if (!cli_real_from_text(text, &real))
-      return cli_misuse(verb, "--%s %s: not a number%s", option->name, text, cli_comma_hint(text));
-    if (!in_range(option, real)) return out_of_range(verb, option, text);
-    *(double *)value = real;
-    return 0;
+    result = parse_real(verb, option, text, &real);
+    if (result == 0) *(double *)value = real;
+    return result;
   case CLI_LENGTH:
     result = parse_length(verb, option, text, &real);
     if (result == 0) *(double *)value = real;

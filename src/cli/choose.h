@@ -54,6 +54,9 @@ void choose_print(FILE *out, const choose_run *run);
 /* All that is worth a warning, a line each. */
 void choose_print_warnings(FILE *out, const choose_run *run);
 
+/* The figure's file, the first of its kinds that this build writes. */
+const char *choose_first_figure(void);
+
 /* Refuses early where a file that will be written exists; makes the folder to write into. */
 scree_status choose_prepare_folder(choose_run *run, scree_error *error);
 /* The meshes of one object, and its levels for the report. */

@@ -82,6 +82,10 @@ static int first_figure(void) {
   return scree_build_has(SCREE_BUILD_PICTURES) ? 0 : PICTURE_COUNT;
 }
 
+const char *choose_first_figure(void) {
+  return FIGURES[first_figure()];
+}
+
 static bool in_set(const char *before) {
   return !strcmp(before, "set/");
 }

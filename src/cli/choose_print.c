@@ -106,10 +106,10 @@ void choose_print(FILE *out, const choose_run *run) {
   if (folder)
     fprintf(
         out,
-        "In %s: report.html, %s, figure.png, choice.json\n"
+        "In %s: report.html, %s, %s, choice.json\n"
         "*.mass.json: mass, centre, inertia at %g kg/m3; scree export places a mesh otherwise\n",
         cli_printable(folder, shown), run->count > 1 ? "*.stl (own choice), set/*.stl" : "*.stl",
-        run->arguments->density);
+        choose_first_figure(), run->arguments->density);
   else
     fprintf(out, "Nothing was written: -o DIR writes the meshes and a report.\n");
   print_other_errors(out, run);

@@ -156,7 +156,7 @@ static void print_forecast(scree_scene_forecast f) {
   if (f.seconds < 60)
     printf("seconds");
   else if (f.seconds < 5400)
-    printf("about %.0f minutes", f.seconds / 60);
+    printf("about %.0f minute%s", f.seconds / 60, f.seconds < 90 ? "" : "s");
   else
     printf("about %.3g hours", f.seconds / 3600);
   printf(" on one core");

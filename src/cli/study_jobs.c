@@ -118,10 +118,17 @@ int study_run_crew(const study_crew *crew, bool worker) {
   const char *backend = crew->call->backend;
   scree_study_options o = study_work_options(a);
   bool launched = getenv("OMPI_COMM_WORLD_RANK") || getenv("PMI_RANK");
+  int code;
   if (worker || crew->jobs == 1 || launched) {
     scree_error error;
     scree_status status = crew->work(crew->call, crew->folder, &o, crew->call->progress, &error);
-    return status == SCREE_OK ? 0 : cli_fail(&error);
+    code = status == SCREE_OK ? 0 : cli_fail(&error);
+  } else if (backend && strncmp(backend, "cuda", 4) == 0) {
+    code = study_run_lanes(crew);
+  } else {
+    code = study_run_jobs(crew);
   }
-  return backend && strncmp(backend, "cuda", 4) == 0 ? study_run_lanes(crew) : study_run_jobs(crew);
+  if (cli_interrupted() && !worker && !launched)
+    fputs("scree: the same command goes on from there\n", stderr);
+  return code;
 }

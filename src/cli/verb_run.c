@@ -49,7 +49,13 @@ static scree_status simulate(cli_scene_run *r, scree_error *error) {
   SCREE_TRY(r->output ? cli_check_scene_output(r, error) : SCREE_OK);
   if (r->output && r->overwrite && !r->resume)
     SCREE_TRY(cli_clear_scene_output(r->call, r->output, error));
-  return cli_run_scene(r, error);
+  SCREE_TRY(cli_run_scene(r, error));
+  char shown[CLI_PRINTABLE_BYTES];
+  if (r->output && !r->json)
+    printf("  look at           %s/report.html\n", cli_printable(r->output, shown));
+  else if (!r->json)
+    puts("  Nothing was kept: -o DIR writes states, tables and a report.");
+  return SCREE_OK;
 }
 
 /* ---- the call ---- */
@@ -68,7 +74,8 @@ static int check_call(const cli_call *call) {
     return cli_misuse(call->verb, "needs a SCENE.yaml, or --resume with -o DIR; --template NAME "
                                   "prints one to start from");
   if (!scene && (a->set.count || a->print))
-    return cli_misuse(call->verb, "--set and --print need a SCENE.yaml");
+    return cli_misuse(call->verb, "--set and --print need a SCENE.yaml; --change changes the scene that the "
+                                  "folder has");
   if (a->change.count && (!a->resume || scene))
     return cli_misuse(call->verb, "--change needs --resume, and no SCENE.yaml: it changes the "
                                   "scene that the folder has");

@@ -237,20 +237,45 @@ scree_status scree_scene_file_shrink(const scree_scene_file *file, double larges
 
 /* ---- several, of which the first that cannot be is told ---- */
 
+static const scree_field *field_named(const struct scree_record *record, const char *key,
+                                      size_t length) {
+  for (size_t i = 0; i < record->field_count; i++)
+    if (strlen(record->fields[i].key) == length && !strncmp(record->fields[i].key, key, length))
+      return &record->fields[i];
+  return NULL;
+}
+
+/* Of a thing, the part that it has and that has the field, with a point behind; "": itself, or none. */
+static void part_with(const scree_yaml *item, const struct scree_record *record, const char *rest,
+                      char part[64]) {
+  size_t length = strcspn(rest, ".");
+  *part = 0;
+  if (field_named(record, rest, length)) return;
+  for (size_t i = 0; i < item->item_count; i++) {
+    const char *key = item->items[i].key;
+    const scree_field *f = key ? field_named(record, key, strlen(key)) : NULL;
+    if (f && f->kind == SCREE_FIELD_RECORD && field_named(f->record, rest, length))
+      snprintf(part, 64, "%.60s.", key);
+  }
+}
+
 /* Where a field that is none of a scene may have been meant: in the thing that its first word
  * names, or in every thing of a kind that has it. */
 static bool find_meant(const scree_scene_file *file, const char *field, char *meant, size_t size) {
   size_t length = strcspn(field, ".");
+  const char *rest = field[length] ? field + length + 1 : NULL;
+  char part[64];
   for (size_t i = 0; i < scree_plan_record.field_count; i++) {
     const scree_field *f = &scree_plan_record.fields[i];
     const scree_yaml *group = scree_yaml_find(&file->root, f->key);
     if (f->kind != SCREE_FIELD_NAMED || !group) continue;
-    for (size_t k = 0; field[length] && k < group->item_count; k++)
-      if (is_called(&group->items[k], field, length))
-        return snprintf(meant, size, "%s.%.150s", f->key, field) > 0;
-    for (size_t k = 0; !field[length] && k < f->record->field_count; k++)
-      if (!strcmp(f->record->fields[k].key, field))
-        return snprintf(meant, size, "%s.NAME.%.150s", f->key, field) > 0;
+    if (!rest && field_named(f->record, field, length))
+      return snprintf(meant, size, "%s.NAME.%.150s", f->key, field) > 0;
+    for (size_t k = 0; rest && k < group->item_count; k++) {
+      if (!is_called(&group->items[k], field, length)) continue;
+      part_with(&group->items[k], f->record, rest, part);
+      return snprintf(meant, size, "%s.%.*s.%s%.150s", f->key, (int)length, field, part, rest) > 0;
+    }
   }
   return false;
 }

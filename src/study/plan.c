@@ -329,8 +329,8 @@ static scree_status read_answers(const reader *r, const scree_yaml *node) {
     SCREE_TRY(read_answer(r, &node->items[i], answer));
     if (study->scene_text && !answer->outline &&
         !scree_study_has_column(study, answer->column, &answer->unit))
-      return fail_at(r, &node->items[i], "no column '%s' in the scene; its sensors are %s",
-                     answer->column, scree_study_sensor_names(study));
+      return fail_at(r, &node->items[i], "no column '%s' in the scene%s", answer->column,
+                     scree_study_column_hint(study, answer->column));
     study->answer_count++;
   }
   return SCREE_OK;

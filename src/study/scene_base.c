@@ -3,6 +3,7 @@
  * study as its own text. */
 #include "base/file.h"
 #include "base/platform.h"
+#include "base/schema.h"
 #include "study/outline.h"
 #include "study/record.h"
 
@@ -242,19 +243,32 @@ bool scree_study_has_column(const scree_study *study, const char *column, const 
   return found;
 }
 
-const char *scree_study_sensor_names(scree_study *study) {
-  static const char none[] = "not known";
+const char *scree_study_column_hint(scree_study *study, const char *column) {
+  enum { MOST = 200 };
   scree_scene_file *file;
-  char name[96] = "?", list[400] = "";
-  if (scree_study_scene(study, NULL, &file, NULL) != SCREE_OK) return none;
-  for (size_t i = 0; *name && scree_scene_file_column(file, i, name, NULL, NULL) == SCREE_OK; i++) {
-    size_t used = strlen(list);
-    if (strchr(name, '.'))
-      snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", name);
+  char names[MOST][96], list[400] = "; there are";
+  const char *known[MOST];
+  size_t count = 0;
+  if (scree_study_scene(study, NULL, &file, NULL) != SCREE_OK) return "";
+  for (size_t i = 0; count < MOST; i++) {
+    if (scree_scene_file_column(file, i, names[count], NULL, NULL) != SCREE_OK || !*names[count])
+      break;
+    known[count] = names[count];
+    count += strchr(names[count], '.') != NULL;
   }
   scree_scene_file_free(file);
+  const char *nearest = scree_nearest_name(column, known, count);
+  if (nearest) snprintf(list, sizeof list, "; did you mean '%s'?", nearest);
+  for (size_t i = 0; !nearest && i < count; i++) {
+    size_t used = strlen(list);
+    if (used + strlen(names[i]) + 40 > sizeof list) {
+      snprintf(list + used, sizeof list - used, " and %zu more", count - i);
+      break;
+    }
+    snprintf(list + used, sizeof list - used, "%s %s", i ? "," : "", names[i]);
+  }
   const char *kept = scree_arena_text(&study->arena, list);
-  return kept ? kept : none;
+  return kept ? kept : "";
 }
 
 static size_t column_of(const scree_scene *scene, const char *name) {

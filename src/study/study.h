@@ -146,10 +146,10 @@ scree_status scree_study_try(const scree_study *study, const char *key, const ch
 scree_status scree_study_stock(const scree_study *study, size_t run, const scree_scene_file *file,
                                scree_shape_store *store, double *triangle_count,
                                scree_error *error);
-/* Whether the base has such a column, and its unit, known from its sensors and shapes; the sensors'
- * names. */
+/* Whether the base has such a column, and its unit, known from its sensors and shapes. */
 bool scree_study_has_column(const scree_study *study, const char *column, const char **unit);
-const char *scree_study_sensor_names(scree_study *study);
+/* Of a column that it has not: the one that was meant, or those that there are, to end a sentence. */
+const char *scree_study_column_hint(scree_study *study, const char *column);
 /* The scene's text into the study's folder. */
 scree_status scree_study_keep_scene(const scree_study *study, scree_error *error);
 
