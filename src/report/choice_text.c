@@ -198,7 +198,7 @@ static void say_recommended(sentences *s, const scree_choice_report *report,
       LENGTH(c, scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF)), PLACE(at[0], step),
       PLACE(at[1], step), PLACE(at[2], step), walls,
       CHANGE(scree_fidelity_change(f, row, SCREE_CHANGE_INERTIA)),
-      CHANGE(scree_fidelity_change(f, row, SCREE_CHANGE_AREA)));
+      CHANGE(pick->area / c->area - 1));
   say_widths(s, "", c);
   say_limit(s, report, c);
   if (pick->triangle_count > c->paper.triangle_count)
@@ -311,8 +311,8 @@ static void warn_of_losses(sentences *s, const scree_choice_report *report, cons
          length = scree_fidelity_scan(f, SCREE_SCAN_LENGTH);
   if (noise > NOTABLE_NOISE * length * scree_choice_tolerance(c, report->options, SCREE_ERROR_MEAN))
     say(s,
-        "Scan noise of %s mm takes part in the mean distance: the count is more than the shape "
-        "needs.",
+        "Scan noise of %s mm takes part in the mean distance and in the area: the count is more "
+        "than the shape needs.",
         NUMBER(1e3 * noise, 2));
   double foil = foil_thickness(c);
   if (foil > 0)
