@@ -73,6 +73,8 @@ static double wanted_of(const scree_scene *scene, const scree_scene_inlet *inlet
 /* Of a body's size: contacts that give way by less than the first are stiffer than flows can tell;
  * the second is usual. */
 static const double stiff_share = 3e-4, usual_share = 1e-2;
+/* Cylinders of fewer particles across are told; the paper's has five. */
+static const double narrow = 4.999;
 
 typedef struct remarks {
   size_t wanted, count;
@@ -93,6 +95,21 @@ static void remark_inlets(const scree_scene *scene, remarks *r) {
                "%s: of %.0f bodies about %.0f will find room: a larger region, a longer time, a "
                "higher velocity, or layers",
                scene->inlets[i].plan->place.path, wanted, can);
+  }
+}
+
+/* A cylinder that is filled and lifted: narrow ones jam. */
+static void remark_cylinders(const scree_scene *scene, remarks *r) {
+  for (size_t i = 0; i < scene->plan.inlets.count; i++) {
+    const scree_scene_inlet *inlet = &scene->inlets[i];
+    double volume, mass, width = 2 * inlet->layers.radius;
+    mean_body(scene, inlet, &volume, &mass);
+    double size = cbrt(1.9098593171027440 * volume); /* 6 / pi */
+    if (inlet->plan->layers && width > 0 && width < narrow * size && is_asked(r))
+      snprintf(r->text, SCREE_REMARK,
+               "%s: the cylinder is %.3g m wide, %.2g particles: below five they may hang in it, "
+               "below ten its wall shares in the angle",
+               inlet->plan->place.path, width, width / size);
   }
 }
 
@@ -178,6 +195,7 @@ bool scree_scene_remark(const scree_scene *scene, size_t index, char text[SCREE_
   remark_densities(scene, &r);
   remark_units(scene, &r);
   remark_inlets(scene, &r);
+  remark_cylinders(scene, &r);
   remark_frames(scene, &r);
   return r.count > index;
 }
