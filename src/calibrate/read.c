@@ -187,8 +187,7 @@ static scree_status check_parameter(const reader *r, const scree_plan_parameter 
   if (isnan(p->from) || isnan(p->to))
     return scree_fail_place(&r->in, &p->place, "needs a range, from and to, or values");
   if (!(p->from < p->to))
-    return scree_fail_place(&r->in, &p->place, "from: %g must be below to: %g", p->from,
-                            p->to);
+    return scree_fail_place(&r->in, &p->place, "from: %g must be below to: %g", p->from, p->to);
   if (p->scale && !(p->from > 0))
     return scree_fail_place(&r->in, &p->place, "from %g must be above 0 on a log scale", p->from);
   return SCREE_OK;

@@ -74,8 +74,9 @@ static int check_call(const cli_call *call) {
     return cli_misuse(call->verb, "needs a SCENE.yaml, or --resume with -o DIR; --template NAME "
                                   "prints one to start from");
   if (!scene && (a->set.count || a->print))
-    return cli_misuse(call->verb, "--set and --print need a SCENE.yaml; --change changes the scene that the "
-                                  "folder has");
+    return cli_misuse(call->verb,
+                      "--set and --print need a SCENE.yaml; --change changes the scene that the "
+                      "folder has");
   if (a->change.count && (!a->resume || scene))
     return cli_misuse(call->verb, "--change needs --resume, and no SCENE.yaml: it changes the "
                                   "scene that the folder has");

@@ -245,7 +245,8 @@ static const scree_field *field_named(const struct scree_record *record, const c
   return NULL;
 }
 
-/* Of a thing, the part that it has and that has the field, with a point behind; "": itself, or none. */
+/* Of a thing, the part that it has and that has the field, with a point behind; "": itself, or
+ * none. */
 static void part_with(const scree_yaml *item, const struct scree_record *record, const char *rest,
                       char part[64]) {
   size_t length = strcspn(rest, ".");

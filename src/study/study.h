@@ -148,7 +148,8 @@ scree_status scree_study_stock(const scree_study *study, size_t run, const scree
                                scree_error *error);
 /* Whether the base has such a column, and its unit, known from its sensors and shapes. */
 bool scree_study_has_column(const scree_study *study, const char *column, const char **unit);
-/* Of a column that it has not: the one that was meant, or those that there are, to end a sentence. */
+/* Of a column that it has not: the one that was meant, or those that there are, to end a sentence.
+ */
 const char *scree_study_column_hint(scree_study *study, const char *column);
 /* The scene's text into the study's folder. */
 scree_status scree_study_keep_scene(const scree_study *study, scree_error *error);
