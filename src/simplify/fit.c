@@ -59,7 +59,7 @@ static scree_status build_level(fit *f, const scree_curve *curve, const scree_me
     if (numbering[v] != SCREE_NONE) name[numbering[v]] = v;
   for (size_t v = 0; v < s->vertex_count; v++) s->vertex[v].origin = name[s->vertex[v].origin];
   scree_free(name);
-  s->area = curve->area / (s->scale * s->scale);
+  s->area = scan->area;
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
@@ -85,7 +85,9 @@ static double six_volumes(const scree_halfmesh *s) {
 static scree_status fit_start(fit *f, const scree_curve *curve, const scree_mesh *level,
                               const uint32_t *numbering, scree_error *error) {
   *f = (fit){0};
-  scree_status status = scree_halfmesh_build(curve->mesh, NULL, &f->samples.scan, error);
+  scree_halfmesh *scan = &f->samples.scan;
+  scree_status status = scree_halfmesh_build(curve->mesh, NULL, scan, error);
+  if (status == SCREE_OK) scan->area = curve->area / (scan->scale * scan->scale);
   if (status == SCREE_OK) status = scree_samples_start(&f->samples, error);
   if (status == SCREE_OK) status = build_level(f, curve, level, numbering, error);
   if (status == SCREE_OK) status = scree_surface_tree_make(&f->s, &f->tree, error);

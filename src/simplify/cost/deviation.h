@@ -40,7 +40,7 @@ static inline bool scree_has_samples(const scree_samples *samples) {
   return samples->far != NULL;
 }
 
-/* With the reference surface set, finds its tree and its extent. */
+/* With the reference surface set, its area too, finds its tree and its extent. */
 scree_status scree_samples_start(scree_samples *samples, scree_error *error);
 /* Makes samples of all its vertices that the surface, whose tree is tight, has left. */
 scree_status scree_samples_find(const scree_halfmesh *surface, const scree_surface_tree *tree,
