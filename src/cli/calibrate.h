@@ -10,4 +10,4 @@ int calibrate_run(const cli_call *call);
 #define CALIBRATION                                                                                \
   .options = study_options, .option_count = STUDY_OPTIONS - 1, .defaults = &study_defaults,        \
   .options_size = sizeof study_defaults, .input_minimum = 1, .input_maximum = 2,                   \
-  .partners = "tasks:slurm dry-run:slurm", .run = calibrate_run
+  .partners = "tasks:slurm", .run = calibrate_run

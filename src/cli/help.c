@@ -73,6 +73,6 @@ void cli_print_overview(FILE *stream) {
     fprintf(stream, "  %-10s %s\n", (*verb)->name, (*verb)->summary);
   fputs("  help       show this, or the help of a verb: scree help VERB\n"
         "  version    show the version\n"
-        "\nExit codes: 0 done, 1 failed, 2 wrong usage.\n",
+        "\nExit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted.\n",
         stream);
 }

@@ -71,6 +71,7 @@ static int work(const cli_call *call, scree_calibration *c, const char *folder) 
 }
 
 int calibrate_run(const cli_call *call) {
+  const study_arguments *a = call->options;
   const bool search = !strcmp(call->verb->name, "optimise");
   scree_calibration *c = NULL;
   scree_error error;
@@ -83,6 +84,8 @@ int calibrate_run(const cli_call *call) {
     code = cli_misuse(call->verb,
                       search ? "the file has no minimise or maximise: `scree calibrate` is for it"
                              : "the file has minimise or maximise: `scree optimise` is for it");
+  else if (a->dry_run && !a->slurm)
+    printf("%s can be run\n", call->inputs[0]);
   else
     code = work(call, c, study_folder(call, call->verb->name, folder, sizeof folder));
   scree_calibration_free(c);

@@ -33,7 +33,7 @@ const cli_option study_options[STUDY_OPTIONS] = {
     {"tasks", CLI_COUNT, AT(tasks), "N",
      "Tasks of that array. Default: one per run of a study, 8 of a calibration.", 1, 100000, NULL},
     {"dry-run", CLI_FLAG, AT(dry_run), NULL,
-     "With --slurm: write it, do not submit it. Else, of a study: read the file and list the runs.",
+     "With --slurm: write it, do not submit it. Else: read the file, and list the runs of a study.",
      0, 0, NULL},
     {"json", CLI_FLAG, AT(json), NULL, "Print the results as JSON.", 0, 0, NULL},
     {"csv", CLI_FLAG, AT(csv), NULL,

@@ -153,14 +153,13 @@ static double largest_other(const scree_scene *scene, size_t geometry) {
 static void remark_units(const scree_scene *scene, remarks *r) {
   for (size_t i = 0; i < scene->plan.geometry.count; i++) {
     const scree_plan_geometry *g = SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, i);
-    if (g->file.count == 0) continue;
     double here = diagonal_of(scene, i), other = largest_other(scene, i);
     bool fits = !(here > 0) || !(other > 0) ||
                 (here < MOST_DIFFERENT * other && MOST_DIFFERENT * here > other);
     if (!fits && is_asked(r))
       snprintf(r->text, SCREE_REMARK,
                "%s: %.60s is %.3g m across and all else %.3g m: is its unit right?", g->place.path,
-               g->file.items[0], here, other);
+               g->file.count ? g->file.items[0] : "it", here, other);
   }
 }
 
