@@ -166,7 +166,8 @@ class Mesh(Shared):
         return curve.mesh(curve.find(target))
 
     def choose(self, method: str = "volume", progress: Progress = None, **options: Any) -> Choice:
-        """The triangle count to use: a Choice, whose mesh() is the simplified mesh."""
+        """The triangle count to use: a Choice, whose mesh() is the simplified mesh. The mesh is taken as it is: repair() first
+        what check() does not call usable, as the program does."""
         return Curve(self, method, progress).choose(progress, **options)
 
 
@@ -296,7 +297,7 @@ def load(path: str | os.PathLike, unit: str | float | None = None, weld: float =
     if isinstance(path, str) and path.startswith("sample:"):
         return sample(path[len("sample:"):], **sample_options)
     if sample_options:
-        raise TypeError(f"{', '.join(sample_options)}: options of samples only")
+        raise TypeError(f"{', '.join(sample_options)}: options of samples only; of a file unit and weld are")
     scan = lib.scan_read(path, {"unit_m": metres(unit or "mm"), "weld_tolerance": weld, "ignore_comment_unit": unit is not None})
     mesh, facts = Mesh._of(scan.mesh, os.fsdecode(path)), record(scan)
     mesh.format, mesh.warning, mesh.checksum = facts.format, facts.warning, facts.checksum
