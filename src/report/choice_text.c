@@ -201,12 +201,12 @@ static void say_recommended(sentences *s, const scree_choice_report *report,
       CHANGE(pick->area / c->area - 1));
   say_widths(s, "", c);
   say_limit(s, report, c);
-  if (pick->triangle_count > c->paper.triangle_count)
+  double slower = cost_of(pick->triangle_count) / cost_of(c->paper.triangle_count);
+  if (slower >= 1.05)
     say(s,
         "In a flowing heap it takes about %s times as long to simulate as the paper's %s "
         "triangles.",
-        NUMBER(cost_of(pick->triangle_count) / cost_of(c->paper.triangle_count), 2),
-        scree_count_text(c->paper.triangle_count, other));
+        NUMBER(slower, 2), scree_count_text(c->paper.triangle_count, other));
 }
 
 static void say_by_area(sentences *s, const scree_choice_report *report, const scree_choice *c) {
