@@ -40,6 +40,23 @@ def run(*words, folder=None):
     return subprocess.run([PROGRAM, *map(str, words)], check=True, cwd=folder, stdout=subprocess.PIPE, text=True).stdout
 
 
+def liggghts(template, folder, words):
+    """Runs LIGGGHTS in the folder on the template with its capital words replaced. Environment: LIGGGHTS (the program)."""
+    text = template.read_text()
+    for name, value in words.items():
+        text = text.replace(name, str(value))
+    (folder / template.name).write_text(text)
+    subprocess.run([shutil.which(os.environ.get("LIGGGHTS", "liggghts")), "-in", template.name, "-log", "none"], cwd=folder, check=True,
+                   stdout=subprocess.DEVNULL)
+
+
+def write_stl(path, triangles):
+    lines = ["solid wall"]
+    for corners in triangles:
+        lines += ["facet normal 0 0 0", "outer loop", *("vertex {:.9g} {:.9g} {:.9g}".format(*c) for c in corners), "endloop", "endfacet"]
+    path.write_text("\n".join([*lines, "endsolid wall"]) + "\n")
+
+
 def commit():
     """Of this checkout; of a copy without its history what .commit says, if there is one."""
     if shutil.which("git"):
