@@ -1,6 +1,6 @@
 #!/bin/bash
 # Evidence: cases beside measurements and other codes, docs/background/evidence.md.
-#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration, orifice, bulk, polyhedra, clumps, paper; all without a name
+#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration, orifice, bulk, polyhedra, clumps, turning, paper; all without a name
 # Each piece goes on where it was broken off; what is done is not done again (delete its table in results/ to repeat it).
 # SCREE_EVIDENCE_DIR names the folder of measurements (default ../shared/evidence); a case without its folder is skipped.
 # One process at a time: nice -n 15 bench/evidence/run.sh runs beside other work. Some hours of one core in all.
@@ -13,7 +13,7 @@ work=${SCREE_EVIDENCE_WORK:-$root/build/evidence}
 results=$here/results
 shapes=recommended,4x,0.25x,0.0625x,sphere,clump5,clump20,clump50
 mkdir -p "$work" "$results"
-[ $# -gt 0 ] || set -- boulders drum penetration orifice bulk polyhedra clumps paper
+[ $# -gt 0 ] || set -- boulders drum penetration orifice bulk polyhedra clumps turning paper
 
 # fitted CASE: its calibration and both tables of it.
 fitted() {
@@ -93,6 +93,12 @@ clumps() {
   heaps clumps 4 liggghts-dashpot
 }
 
+turning() {
+  "$here/codes/turning.py" run "$results/turning.csv" 40:3,20:3,10:2 scree liggghts
+  "$here/codes/turning.py" run "$results/turning.csv" 40:3,20:1 liggghts-no-dashpot
+  [ ! -s "$results/turning.csv" ] || "$here/codes/turning.py" compare "$results/turning.csv" >"$results/turning-compared.csv"
+}
+
 paper() { "$here/paper/claims.py" >"$results/paper-claims.csv"; }
 
 for case in "$@"; do
@@ -100,8 +106,8 @@ for case in "$@"; do
   boulders) folder=authume ;;
   drum) folder=granudrum ;;
   penetration | bulk) folder=bulk ;;
-  orifice | polyhedra | clumps | paper) folder= ;; # nothing measured
-  *) echo "run.sh: no case '$case'; there are boulders, drum, penetration, orifice, bulk, polyhedra, clumps and paper" >&2 && exit 2 ;;
+  orifice | polyhedra | clumps | turning | paper) folder= ;; # nothing measured
+  *) echo "run.sh: no case '$case'; there are boulders, drum, penetration, orifice, bulk, polyhedra, clumps, turning and paper" >&2 && exit 2 ;;
   esac
   if [ -z "$folder" ] || [ -d "$SCREE_EVIDENCE_DIR/$folder" ]; then $case; else echo "$case: skipped, there is no folder $SCREE_EVIDENCE_DIR/$folder"; fi
 done

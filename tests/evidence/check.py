@@ -27,6 +27,7 @@ import drum  # noqa: E402
 import heaps  # noqa: E402
 import orifice  # noqa: E402
 import polyhedra  # noqa: E402
+import turning  # noqa: E402
 
 wrong = []
 
@@ -206,6 +207,31 @@ def bodies():
           f"heaps beside each other: {told.getvalue()}")
 
 
+def slopes():
+    rng = random.Random(6)
+    for _ in range(20):
+        angle, level = rng.uniform(-180, 180), rng.uniform(-0.6, 0.6)
+        down = -math.sin(math.radians(angle)), -math.cos(math.radians(angle))
+        below = [p for p in ((rng.uniform(-1, 1), rng.uniform(-1, 1)) for _ in range(40000)) if math.hypot(*p) < 1 and p[0] * down[0] + p[1] * down[1] > level]
+        found = turning.slope(common.mean([p[0] for p in below]), common.mean([p[1] for p in below]))
+        check(abs((found - angle + 180) % 360 - 180) < 3, f"a bed at {angle} degrees is read as {found}")
+    volume = sum(a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+                 for a, b, c in turning.drum()) / 6
+    whole = -90 * math.sin(math.radians(4)) * turning.RADIUS ** 2 * turning.HALF
+    check(abs(volume / whole - 1) < 1e-12, f"the drum, seen from inside, encloses {volume} m3, not {whole}")
+    places = turning.places(1)
+    least = min(math.dist(a, b) for i, a in enumerate(places) for b in places[:i])
+    inside = turning.RADIUS * math.cos(math.radians(2)) - 0.5 * turning.D
+    check(least > turning.D and all(math.hypot(x, z) < inside and abs(y) < turning.HALF - 0.5 * turning.D for x, y, z in places) and
+          len(places) == turning.COUNT, f"spheres begin {least} m apart, inside the drum")
+    path = HOME / "turning.csv"
+    rows = [(10, 1, "scree", 30), (10, 1, "scree", 32), (10, 1, "liggghts", 34), (10, 1, "liggghts", 36)]
+    path.write_text("rpm,seed,code,slope_deg\n" + "".join(",".join(map(str, row)) + "\n" for row in rows))
+    with contextlib.redirect_stdout(io.StringIO()) as told:
+        turning.compare(path)
+    check("10,liggghts,2,35.00,1.00,4.00,1.41" in told.getvalue().splitlines(), f"slopes beside each other: {told.getvalue()}")
+
+
 def intervals():
     rng, held = random.Random(5), 0
     for _ in range(400):
@@ -214,7 +240,7 @@ def intervals():
     check(335 < held < 385, f"{held} of 400 intervals of 90 % hold the difference")
 
 
-for part in (statistics, table, profiles, turns, quarry, speed, holes, processes, bodies, intervals):
+for part in (statistics, table, profiles, turns, quarry, speed, holes, processes, bodies, slopes, intervals):
     part()
 print("\n".join(wrong) or "the scripts of bench/evidence give what is known")
 sys.exit(bool(wrong))

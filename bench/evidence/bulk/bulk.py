@@ -12,13 +12,12 @@ import math
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, data, deviation, library, mean, read  # noqa: E402
+from common import WORK, Table, data, deviation, library, liggghts, mean, read, write_stl  # noqa: E402
 
 EVERY = 0.05
 # Steps are what scree asks for at least: 15 in a quarter period of a hit at 1 m/s.
@@ -43,7 +42,7 @@ DENSITY = {"small": 2500, "large": 2000, "grain": 2500}
 
 def walls(case, path):
     """The published triangles as STL; of the drum the inner surface alone, as LIGGGHTS feels both sides of each."""
-    lines, inner = ["solid wall"], case["scene"] == "drum"
+    found, inner = [], case["scene"] == "drum"
     for row in open(data("bulk") / case["walls"]):
         try:
             numbers = list(map(float, row.split()))
@@ -52,8 +51,8 @@ def walls(case, path):
         corners = [numbers[i:i + 3] for i in (0, 3, 6)] if len(numbers) == 9 else []
         if not corners or inner and any(math.hypot(x, z) > 0.101 or abs(y) > 0.031 for x, y, z in corners):
             continue
-        lines += ["facet normal 0 0 0", "outer loop", *("vertex {} {} {}".format(*c) for c in corners), "endloop", "endfacet"]
-    path.write_text("\n".join([*lines, "endsolid wall"]) + "\n")
+        found.append(corners)
+    write_stl(path, found)
 
 
 def sizes(case):
@@ -115,12 +114,7 @@ def with_liggghts(case, rows, folder):
     (folder / "spheres.data").write_text("\n".join(lines) + "\n")
     every = round(EVERY / case["step"])
     words = {**MATERIALS[case["scene"]], "STEPS": every * round(case["time"] / EVERY), "EVERY": every, "STEP": case["step"]}
-    text = (HERE / "liggghts.in").read_text()
-    for name, value in words.items():
-        text = text.replace(name, str(value))
-    (folder / "liggghts.in").write_text(text)
-    subprocess.run([shutil.which(os.environ.get("LIGGGHTS", "liggghts")), "-in", "liggghts.in", "-log", "none"], cwd=folder, check=True,
-                   stdout=subprocess.DEVNULL)
+    liggghts(HERE / "liggghts.in", folder, words)
     found, frame = [], []
     for line in open(folder / "places.txt"):
         words = line.split()

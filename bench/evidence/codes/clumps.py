@@ -11,13 +11,12 @@ import math
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, library  # noqa: E402
+from common import WORK, Table, library, liggghts, write_stl  # noqa: E402
 from heaps import COLUMNS, compare, measured  # noqa: E402
 
 R, DENSITY, COUNT, STIFF, TUBE, HIGH = 0.0025, 2500, 100, 800.0, 0.025, 0.24
@@ -27,13 +26,9 @@ PRIMES = 32452843, 49979687, 67867967, 86028121, 104395301, 122949823, 141650939
 
 def tube(path):
     def corner(z, k):
-        return f"vertex {TUBE * math.cos(math.pi * k / 45):.9g} {TUBE * math.sin(math.pi * k / 45):.9g} {z}"
-    lines = ["solid tube"]
-    for k in range(90):
-        a, b, c, d = corner(0.0005, k), corner(0.0005, k + 1), corner(HIGH, k + 1), corner(HIGH, k)
-        for three in ((a, b, c), (a, c, d)):
-            lines += ["facet normal 0 0 1", "outer loop", *three, "endloop", "endfacet"]
-    path.write_text("\n".join([*lines, "endsolid tube"]) + "\n")
+        return TUBE * math.cos(math.pi * k / 45), TUBE * math.sin(math.pi * k / 45), z
+    quads = [(corner(0.0005, k), corner(0.0005, k + 1), corner(HIGH, k + 1), corner(HIGH, k)) for k in range(90)]
+    write_stl(path, [three for a, b, c, d in quads for three in ((a, b, c), (a, c, d))])
 
 
 def poses(path):
@@ -59,14 +54,9 @@ def with_liggghts(folder, seed, variant):
     axial, across = 3 * 0.4 * SPHERE * R * R, 3 * 0.4 * SPHERE * R * R + 8 * SPHERE * R * R
     words = {"STIFF": stiff, "PAIR": pair, "WALL": pair * math.sqrt(2), "MASS": 3 * SPHERE, "AXIAL": axial, "ACROSS": across, "COUNT": COUNT,
              "SEED": PRIMES[seed - 1], "DASHPOT": "tangential_damping " + ("on" if "dashpot" in variant else "off")}
-    text = (HERE / "clumps.in").read_text()
-    for name, value in words.items():
-        text = text.replace(name, str(value))
-    (folder / "clumps.in").write_text(text)
     (folder / "rod.txt").write_text("".join(f"{x} 0 0 {R}\n" for x in (-2 * R, 0, 2 * R)))
     tube(folder / "tube.stl")
-    subprocess.run([shutil.which(os.environ.get("LIGGGHTS", "liggghts")), "-in", "clumps.in", "-log", "none"], cwd=folder, check=True,
-                   stdout=subprocess.DEVNULL)
+    liggghts(HERE / "clumps.in", folder, words)
 
 
 def scene(folder, rows):

@@ -21,7 +21,7 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, commit, library  # noqa: E402
+from common import WORK, Table, commit, library, write_stl  # noqa: E402
 from heaps import COLUMNS, compare, measured  # noqa: E402
 
 A, HALF = 0.015, (0.011, 0.009, 0.007)
@@ -55,15 +55,8 @@ def places(seed):
     return rows
 
 
-def stl(path, corners, facets):
-    lines = ["solid grain"]
-    for f in facets:
-        lines += ["facet normal 0 0 0", "outer loop", *("vertex {} {} {}".format(*corners[k]) for k in f), "endloop", "endfacet"]
-    path.write_text("\n".join([*lines, "endsolid grain"]) + "\n")
-
-
 def prepare(folder, shape, rows):
-    stl(folder / "grain.stl", SHAPES[shape], FACETS[shape])
+    write_stl(folder / "grain.stl", [[SHAPES[shape][k] for k in f] for f in FACETS[shape]])
     shutil.copy(HERE / "polyhedra.yaml", folder)
     lines = ["shape,x,y,z,qw,qx,qy,qz", *("grain," + ",".join(map(repr, row)) for row in rows)]
     (folder / "bodies.csv").write_text("\n".join(lines) + "\n")

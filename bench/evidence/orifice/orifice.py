@@ -18,13 +18,12 @@ import os
 import pathlib
 import random
 import shutil
-import subprocess
 import sys
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, deviation, library, mean, read, student  # noqa: E402
+from common import WORK, Table, deviation, library, liggghts, mean, read, student, write_stl  # noqa: E402
 
 D, G, EVERY = 0.006, 9.81, 0.009
 FIRST, LAST, WIDE = 0.2, 0.5, 2
@@ -50,13 +49,9 @@ def places(hole, seed):
 def ring(path, inner, outer):
     """The floor about a hole of 90 corners, as STL."""
     def corner(r, k):
-        return f"vertex {r * math.cos(math.pi * k / 45):.9g} {r * math.sin(math.pi * k / 45):.9g} 0"
-    lines = ["solid ring"]
-    for k in range(90):
-        a, b, c, d = corner(inner, k), corner(outer, k), corner(outer, k + 1), corner(inner, k + 1)
-        for three in ((a, b, c), (a, c, d)):
-            lines += ["facet normal 0 0 1", "outer loop", *three, "endloop", "endfacet"]
-    path.write_text("\n".join([*lines, "endsolid ring"]) + "\n")
+        return r * math.cos(math.pi * k / 45), r * math.sin(math.pi * k / 45), 0
+    quads = [(corner(inner, k), corner(outer, k), corner(outer, k + 1), corner(inner, k + 1)) for k in range(90)]
+    write_stl(path, [three for a, b, c, d in quads for three in ((a, b, c), (a, c, d))])
 
 
 def box(hole):
@@ -87,13 +82,8 @@ def with_liggghts(spheres, hole, folder, code):
     (folder / "spheres.data").write_text("\n".join(lines) + "\n")
     words = {"RADIUS": 0.5 * WIDE * hole * D, "LEAST": round((1 - LAST) * len(spheres)),
              "BED": " ".join(f"{a} {b}" for a, b in zip(low, high)), "DASHPOT": "tangential_damping " + ("off" if "no" in code else "on")}
-    text = (HERE / "liggghts.in").read_text()
-    for name, value in words.items():
-        text = text.replace(name, str(value))
-    (folder / "liggghts.in").write_text(text)
     before = os.times().children_user
-    subprocess.run([shutil.which(os.environ.get("LIGGGHTS", "liggghts")), "-in", "liggghts.in", "-log", "none"], cwd=folder, check=True,
-                   stdout=subprocess.DEVNULL)
+    liggghts(HERE / "liggghts.in", folder, words)
     rows = [tuple(map(float, line.split())) for line in open(folder / "counts.txt") if not line.startswith("#")]
     return rows, os.times().children_user - before
 

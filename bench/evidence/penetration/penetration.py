@@ -9,13 +9,12 @@ just above it with the speed of its fall. Environment: SCREE_EVIDENCE_DIR, LIGGG
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, data, library, read  # noqa: E402
+from common import WORK, Table, data, library, liggghts, read  # noqa: E402
 
 HALF, START, SPEED, EVERY = 0.0235, -0.0455, 5.2, 0.0005
 COLUMNS = ["time", "scree_z", "liggghts_z"]
@@ -37,27 +36,24 @@ def with_scree(grains, folder):
     return heights, scene.sensors["ledger"]
 
 
-def with_liggghts(grains, folder, program):
+def with_liggghts(grains, folder):
     count = len(grains) + 1
     lines = [f"bed\n\n{count} atoms\n2 atom types\n", "-0.03 0.03 xlo xhi\n-0.04 0.04 ylo yhi\n-0.1 0.03 zlo zhi\n\nAtoms\n"]
     lines += [f"{i + 1} 1 0.002 2500 {x!r} {y!r} {z!r}" for i, (x, y, z) in enumerate(grains)]
     lines += [f"{count} 2 0.02 7200 0 0 {START}"]
     (folder / "bed.data").write_text("\n".join(lines) + "\n")
-    text = (HERE / "liggghts.in").read_text().replace("BALL", str(count)).replace("SPEED", f"-{SPEED}")
-    (folder / "liggghts.in").write_text(text)
-    subprocess.run([program, "-in", "liggghts.in", "-log", "none"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    liggghts(HERE / "liggghts.in", folder, {"BALL": count, "SPEED": -SPEED})
     # Its first row is that of the first interval.
     return [START, *(float(line.split()[1]) for line in open(folder / "heights.txt") if not line.startswith("#"))]
 
 
 def run(path):
-    program = shutil.which(os.environ.get("LIGGGHTS", "liggghts"))
-    if not program:
+    if not shutil.which(os.environ.get("LIGGGHTS", "liggghts")):
         print("skipped: LIGGGHTS is not installed")
         return
     folder, grains = WORK / "penetration", bed()
     folder.mkdir(parents=True, exist_ok=True)
-    theirs = with_liggghts(grains, folder, program)
+    theirs = with_liggghts(grains, folder)
     begun = time.process_time()
     ours, ledger = with_scree(grains, folder)
     spent = time.process_time() - begun
