@@ -1,6 +1,7 @@
 /* Loops over lanes: plain C that the compiler turns into vector instructions. A function marked
  * SCREE_LANES is compiled for AVX2 and AVX-512 as well, chosen when the program starts; as nothing
- * contracts and no sum is reordered, all give the same bits. Names must differ in the whole
+ * contracts and no sum is reordered, all give the same bits. It is static, for clang calls
+ * one of another file by its plain name, which there is none of; and names must differ in the whole
  * library, for clang gives the chooser of a static function external linkage. */
 #pragma once
 

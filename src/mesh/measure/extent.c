@@ -40,12 +40,16 @@ void scree_extent_start(scree_extent *extent, const double frame[3][3]) {
     extent->low[i] = INFINITY, extent->high[i] = -INFINITY;
 }
 
-SCREE_LANES void scree_extent_add(scree_extent *extent, vec3 p) {
+SCREE_LANES static void widen_extent(scree_extent *extent, vec3 p) {
   for (int i = 0; i < SCREE_EXTENT_COUNT; i++) {
     double along = scree_extent_along(extent, i, p);
     extent->low[i] = along < extent->low[i] ? along : extent->low[i];
     extent->high[i] = along > extent->high[i] ? along : extent->high[i];
   }
+}
+
+void scree_extent_add(scree_extent *extent, vec3 p) {
+  widen_extent(extent, p);
 }
 
 void scree_extent_of_mesh(scree_extent *extent, const double frame[3][3], const scree_mesh *mesh) {
@@ -66,7 +70,7 @@ int scree_extent_end(const scree_extent *extent, vec3 p) {
   return end;
 }
 
-SCREE_LANES static bool is_beyond(const scree_extent *extent, vec3 p) {
+SCREE_LANES static bool is_beyond_extent(const scree_extent *extent, vec3 p) {
   long long beyond = 0;
   for (int i = 0; i < SCREE_EXTENT_COUNT; i++) {
     double along = scree_extent_along(extent, i, p);
@@ -77,7 +81,7 @@ SCREE_LANES static bool is_beyond(const scree_extent *extent, vec3 p) {
 
 double scree_extent_beyond(const scree_extent *extent, vec3 p, double size) {
   double most = 0;
-  if (!is_beyond(extent, p)) return 0;
+  if (!is_beyond_extent(extent, p)) return 0;
   for (int i = 0; i < SCREE_EXTENT_COUNT; i++) {
     double along = scree_extent_along(extent, i, p), above = along - extent->high[i],
            below = extent->low[i] - along, beyond = above > below ? above : below;
