@@ -96,6 +96,7 @@ clumps() {
 turning() {
   "$here/codes/turning.py" run "$results/turning.csv" 40:3,20:3,10:2 scree liggghts
   "$here/codes/turning.py" run "$results/turning.csv" 40:3,20:1 liggghts-no-dashpot
+  "$here/codes/turning.py" run "$results/turning.csv" 40:3 liggghts-no-sliding liggghts-no-rolling
   [ ! -s "$results/turning.csv" ] || "$here/codes/turning.py" compare "$results/turning.csv" >"$results/turning-compared.csv"
 }
 

@@ -2,7 +2,8 @@
 """Spheres in a drum that turns at three speeds: scree beside LIGGGHTS, from the same places, on the same triangles.
 
   turning.py run TABLE.csv RPM:SEEDS,... CODE...    CODE: scree, liggghts, or liggghts-no-dashpot, without its dashpots of sliding
-                                                    and of rolling; adds to the table what it lacks
+                                                    and of rolling, liggghts-no-sliding, liggghts-no-rolling without that one;
+                                                    adds to the table what it lacks
   turning.py compare TABLE.csv                      as CSV: slopes with standard errors, differences to scree
 
 The slope is the direction of the spheres' common centre as seen from the axis: 0 is straight below, and a level surface that tilts
@@ -20,7 +21,7 @@ sys.path.insert(0, str(HERE.parent))
 from common import WORK, Table, deviation, library, liggghts, mean, read, write_stl  # noqa: E402
 
 D, RADIUS, HALF, COUNT, STEP, FILL, QUARTER = 0.006, 0.05, 0.01, 320, 5.3e-5, 0.3, 50
-CODES = "scree", "liggghts", "liggghts-no-dashpot"
+CODES = "scree", "liggghts", "liggghts-no-dashpot", "liggghts-no-sliding", "liggghts-no-rolling"
 
 
 def places(seed):
@@ -66,10 +67,10 @@ def with_liggghts(rpm, rows, folder, code):
     lines = [f"spheres\n\n{len(rows)} atoms\n2 atom types\n", "-0.06 0.06 xlo xhi\n-0.02 0.02 ylo yhi\n-0.06 0.06 zlo zhi\n\nAtoms\n"]
     lines += [f"{i + 1} 1 {D} 2500 {x!r} {y!r} {z!r}" for i, (x, y, z) in enumerate(rows)]
     (folder / "spheres.data").write_text("\n".join(lines) + "\n")
-    every, none = round(60 / rpm / (4 * QUARTER) / STEP), "no" in code
+    every, without = round(60 / rpm / (4 * QUARTER) / STEP), code.partition("-no-")[2]
     liggghts(HERE / "turning.in", folder, {"FILL": round(FILL / STEP), "PERIOD": 60 / rpm, "FIRST": round(60 / rpm / STEP), "EVERY": every,
-                                           "LAST": every * 4 * QUARTER, "VISCOUS": 0 if none else 0.3,
-                                           "DASHPOT": "tangential_damping " + ("off" if none else "on")})
+                                           "LAST": every * 4 * QUARTER, "VISCOUS": 0 if without in ("dashpot", "rolling") else 0.3,
+                                           "DASHPOT": "tangential_damping " + ("off" if without in ("dashpot", "sliding") else "on")})
     found = [slope(*map(float, line.split())) for line in open(folder / "places.txt") if not line.startswith("#")]
     return found[-4 * QUARTER:]
 
