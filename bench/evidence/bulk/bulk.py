@@ -145,7 +145,8 @@ def run(word, path):
             begun, theirs = time.process_time(), os.times().children_user
             for k, found in enumerate(go(case, rows, folder)):
                 spent = time.process_time() - begun + os.times().children_user - theirs
-                table.add(seed, code, round((k + 1) * EVERY, 6), *found, round(spent, 1))
+                if table.key((seed, code, moment := round((k + 1) * EVERY, 6))) not in table.done:  # of a run that was cut off
+                    table.add(seed, code, moment, *found, round(spent, 1))
 
 
 def halves(series, whole, share):
