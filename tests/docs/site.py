@@ -65,6 +65,7 @@ def look(window, site):
     for words, page in (("tolerance", "reference/verbs/choose.html"), ("hausdorff", "background/method.html"), ("install", "install.html"),
                         ("windows", "install.html"), ("macos python", "install.html"), ("restit", "glossary.html")):
         window.ask("POST", "/url", {"url": f"file://{site}/search.html?q={urllib.parse.quote(words)}"})
+        window.wait("document.querySelector('#found > li > a')", 60)
         found = window.run("return [...document.querySelectorAll('#found > li > a')].map(a => a.getAttribute('href'))")
         if page not in (link.split("#")[0] for link in found) or len(found) != len(set(found)):
             sys.exit(f"the search for {words} finds {found[:10]}, not {page}, or one place twice")
