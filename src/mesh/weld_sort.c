@@ -45,7 +45,9 @@ static void sort_records(record *r, size_t count) {
 }
 
 /* What lies in ascending order of its keys. */
-typedef struct sorting {
+typedef struct sorting sorting;
+struct sorting {
+  void (*place)(const sorting *s, size_t first, size_t end); /* a run of equal keys */
   const scree_loose_mesh *loose;
   const scree_keyed *keyed;
   size_t count;
@@ -53,7 +55,7 @@ typedef struct sorting {
   uint64_t *rest;  /* of triangles: the second index, high, and the third */
   uint32_t *rank;  /* of each loose vertex */
   scree_mesh *made;
-} sorting;
+};
 
 /* The first run that begins at or behind i. */
 static size_t run_start(const sorting *s, size_t i) {
@@ -67,24 +69,29 @@ static size_t run_end(const sorting *s, size_t i) {
   return i;
 }
 
-/* ---- vertices ---- */
-
-static void place_vertices(void *context, size_t begin, size_t end, size_t block, int worker) {
+/* The runs that begin in a block. */
+static void place_runs(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   const sorting *s = context;
   end = run_start(s, end);
   for (size_t first = run_start(s, begin), next; first < end; first = next) {
     next = run_end(s, first);
-    for (size_t i = first; i < next; i++) {
-      record *r = &s->records[i];
-      r->index = s->keyed[i].index;
-      memcpy(r->x, s->loose->positions + 3 * (size_t)r->index, sizeof r->x);
-    }
-    sort_records(s->records + first, next - first);
-    for (size_t i = first; i < next; i++) {
-      memcpy(s->made->positions + 3 * i, s->records[i].x, sizeof s->records[i].x);
-      s->rank[s->records[i].index] = (uint32_t)i;
-    }
+    s->place(s, first, next);
+  }
+}
+
+/* ---- vertices ---- */
+
+static void place_vertices(const sorting *s, size_t first, size_t end) {
+  for (size_t i = first; i < end; i++) {
+    record *r = &s->records[i];
+    r->index = s->keyed[i].index;
+    memcpy(r->x, s->loose->positions + 3 * (size_t)r->index, sizeof r->x);
+  }
+  sort_records(s->records + first, end - first);
+  for (size_t i = first; i < end; i++) {
+    memcpy(s->made->positions + 3 * i, s->records[i].x, sizeof s->records[i].x);
+    s->rank[s->records[i].index] = (uint32_t)i;
   }
 }
 
@@ -113,33 +120,32 @@ static scree_status sort_vertices(const scree_loose_mesh *loose, uint32_t *rank,
       keyed[count++] =
           (scree_keyed){place < UINT32_MAX ? (uint32_t)place : UINT32_MAX, (uint32_t)v};
   }
-  sorting s = {.loose = loose, .count = count, .records = records, .rank = rank, .made = made};
+  sorting s = {.place = place_vertices,
+               .loose = loose,
+               .count = count,
+               .records = records,
+               .rank = rank,
+               .made = made};
   s.keyed = scree_radix_sort(keyed, swap, count, 32);
-  scree_parallel_for(count, SORT_BLOCK, place_vertices, &s);
+  scree_parallel_for(count, SORT_BLOCK, place_runs, &s);
   return SCREE_OK;
 }
 
 /* ---- triangles ---- */
 
-static void place_triangles(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
-  const sorting *s = context;
-  end = run_start(s, end);
-  for (size_t first = run_start(s, begin), next; first < end; first = next) {
-    next = run_end(s, first);
-    for (size_t i = first; i < next; i++) {
-      const uint32_t *v = s->loose->triangles + 3 * (size_t)s->keyed[i].index;
-      uint32_t least = s->keyed[i].key, ranked[3] = {s->rank[v[0]], s->rank[v[1]], s->rank[v[2]]};
-      int k = ranked[0] == least ? 0 : ranked[1] == least ? 1 : 2;
-      s->rest[i] = (uint64_t)ranked[(k + 1) % 3] << 32 | ranked[(k + 2) % 3];
-    }
-    scree_sort_keys(s->rest + first, next - first);
-    for (size_t i = first; i < next; i++) {
-      uint32_t *out = s->made->triangles + 3 * i;
-      out[0] = s->keyed[first].key;
-      out[1] = (uint32_t)(s->rest[i] >> 32);
-      out[2] = (uint32_t)s->rest[i];
-    }
+static void place_triangles(const sorting *s, size_t first, size_t end) {
+  for (size_t i = first; i < end; i++) {
+    const uint32_t *v = s->loose->triangles + 3 * (size_t)s->keyed[i].index;
+    uint32_t least = s->keyed[i].key, ranked[3] = {s->rank[v[0]], s->rank[v[1]], s->rank[v[2]]};
+    int k = ranked[0] == least ? 0 : ranked[1] == least ? 1 : 2;
+    s->rest[i] = (uint64_t)ranked[(k + 1) % 3] << 32 | ranked[(k + 2) % 3];
+  }
+  scree_sort_keys(s->rest + first, end - first);
+  for (size_t i = first; i < end; i++) {
+    uint32_t *out = s->made->triangles + 3 * i;
+    out[0] = s->keyed[first].key;
+    out[1] = (uint32_t)(s->rest[i] >> 32);
+    out[2] = (uint32_t)s->rest[i];
   }
 }
 
@@ -156,9 +162,14 @@ static scree_status sort_triangles(const scree_loose_mesh *loose, uint32_t *rank
     keyed[t] = (scree_keyed){least < c ? least : c, (uint32_t)t};
   }
   while (bits < 32 && made->vertex_count >> bits) bits++;
-  sorting s = {.loose = loose, .count = count, .rest = rest, .rank = rank, .made = made};
+  sorting s = {.place = place_triangles,
+               .loose = loose,
+               .count = count,
+               .rest = rest,
+               .rank = rank,
+               .made = made};
   s.keyed = scree_radix_sort(keyed, swap, count, bits);
-  scree_parallel_for(count, SORT_BLOCK, place_triangles, &s);
+  scree_parallel_for(count, SORT_BLOCK, place_runs, &s);
   return SCREE_OK;
 }
 
