@@ -96,16 +96,30 @@ const char *scree_nearest_name(const char *word, const char *const *names, size_
   return nearest;
 }
 
+void scree_name_hint(const char *name, const char *const *names, size_t count,
+                     char hint[SCREE_NAME_HINT]) {
+  const size_t size = SCREE_NAME_HINT;
+  const char *nearest = scree_nearest_name(name, names, count);
+  *hint = 0;
+  if (nearest) {
+    scree_add_text(hint, size, "; did you mean '%s'?", nearest);
+    return;
+  }
+  scree_add_text(hint, size, "; there %s%s", count == 1 ? "is" : "are", count ? "" : " none");
+  for (size_t i = 0; i < count; i++) {
+    if (strlen(hint) + strlen(names[i]) + 40 > size) {
+      scree_add_text(hint, size, " and %zu more", count - i);
+      return;
+    }
+    scree_add_text(hint, size, "%s %s", i ? "," : "", names[i]);
+  }
+}
+
 scree_status scree_fail_name(const scree_reader *reader, const scree_place *place, const char *what,
                              const char *name, const char *const *names, size_t count) {
-  char list[400] = "";
-  for (size_t i = 0; i < count; i++) SCREE_ADD_TEXT(list, "%s%s", *list ? ", " : "", names[i]);
-  const char *nearest = scree_nearest_name(name, names, count);
-  if (nearest)
-    return scree_fail_place(reader, place, "no %s '%.64s'; did you mean '%s'?", what, name,
-                            nearest);
-  return scree_fail_place(reader, place, "no %s '%.64s'; there %s %s", what, name,
-                          count == 1 ? "is" : "are", count ? list : "none");
+  char hint[SCREE_NAME_HINT];
+  scree_name_hint(name, names, count, hint);
+  return scree_fail_place(reader, place, "no %s '%.64s'%s", what, name, hint);
 }
 
 static scree_status fail_unknown(const scree_reader *r, const scree_yaml *item,

@@ -116,3 +116,8 @@ void scree_record_print(const scree_record *kind, const void *record, int depth,
 
 /* Of the names the one that is a typing error away from `word`; NULL: none is. */
 const char *scree_nearest_name(const char *word, const char *const *names, size_t count);
+/* That one, else the names as far as there is room, to end a sentence on a name that is not there.
+ */
+enum { SCREE_NAME_HINT = 400 };
+void scree_name_hint(const char *name, const char *const *names, size_t count,
+                     char hint[SCREE_NAME_HINT]);

@@ -102,9 +102,7 @@ static void remark_inlets(const scree_scene *scene, remarks *r) {
 static void remark_cylinders(const scree_scene *scene, remarks *r) {
   for (size_t i = 0; i < scene->plan.inlets.count; i++) {
     const scree_scene_inlet *inlet = &scene->inlets[i];
-    double volume, mass, width = 2 * inlet->layers.radius;
-    mean_body(scene, inlet, &volume, &mass);
-    double size = cbrt(1.9098593171027440 * volume); /* 6 / pi */
+    double size = inlet->layers.size, width = 2 * inlet->layers.radius;
     if (inlet->plan->layers && width > 0 && width < narrow * size && is_asked(r))
       snprintf(r->text, SCREE_REMARK,
                "%s: the cylinder is %.3g m wide, %.2g particles: below five they may hang in it, "

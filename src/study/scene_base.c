@@ -246,7 +246,7 @@ bool scree_study_has_column(const scree_study *study, const char *column, const 
 const char *scree_study_column_hint(scree_study *study, const char *column) {
   enum { MOST = 200 };
   scree_scene_file *file;
-  char names[MOST][96], list[400] = "; there are";
+  char names[MOST][96], hint[SCREE_NAME_HINT];
   const char *known[MOST];
   size_t count = 0;
   if (scree_study_scene(study, NULL, &file, NULL) != SCREE_OK) return "";
@@ -257,17 +257,8 @@ const char *scree_study_column_hint(scree_study *study, const char *column) {
     count += strchr(names[count], '.') != NULL;
   }
   scree_scene_file_free(file);
-  const char *nearest = scree_nearest_name(column, known, count);
-  if (nearest) snprintf(list, sizeof list, "; did you mean '%s'?", nearest);
-  for (size_t i = 0; !nearest && i < count; i++) {
-    size_t used = strlen(list);
-    if (used + strlen(names[i]) + 40 > sizeof list) {
-      snprintf(list + used, sizeof list - used, " and %zu more", count - i);
-      break;
-    }
-    snprintf(list + used, sizeof list - used, "%s %s", i ? "," : "", names[i]);
-  }
-  const char *kept = scree_arena_text(&study->arena, list);
+  scree_name_hint(column, known, count, hint);
+  const char *kept = scree_arena_text(&study->arena, hint);
   return kept ? kept : "";
 }
 
