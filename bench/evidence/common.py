@@ -7,6 +7,7 @@ import random
 import shutil
 import subprocess
 import sys
+import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -23,6 +24,20 @@ def data(folder):
         print(f"skipped: there is no folder {path}; SCREE_EVIDENCE_DIR names another")
         sys.exit(0)
     return path
+
+
+def needs(code):
+    """Another code's program, by its name's environment variable or in the PATH; without it the case is skipped."""
+    path = shutil.which(os.environ.get(code, code.lower()))
+    if not path:
+        print(f"skipped: {code} is not installed")
+        sys.exit(0)
+    return path
+
+
+def processor_time():
+    """Seconds of this process and of the programs that it waited for."""
+    return time.process_time() + os.times().children_user
 
 
 def library():
@@ -46,7 +61,7 @@ def liggghts(template, folder, words):
     for name, value in words.items():
         text = text.replace(name, str(value))
     (folder / template.name).write_text(text)
-    subprocess.run([shutil.which(os.environ.get("LIGGGHTS", "liggghts")), "-in", template.name, "-log", "none"], cwd=folder, check=True,
+    subprocess.run([needs("LIGGGHTS"), "-in", template.name, "-log", "none"], cwd=folder, check=True,
                    stdout=subprocess.DEVNULL)
 
 
@@ -140,3 +155,13 @@ def bootstrap(statistic, *samples, rounds=1000, level=0.9, seed=1):
     values = sorted(statistic(*([s[rng.randrange(len(s))] for _ in s] for s in samples)) for _ in range(rounds))
     low = (1 - level) / 2
     return values[int(low * rounds)], values[min(rounds - 1, int((1 - low) * rounds))]
+
+
+def main(run, compare, codes, usage):
+    """`run TABLE CASES CODE...`, of these codes, or `compare TABLE`."""
+    if sys.argv[1:2] == ["run"] and len(sys.argv) > 4 and set(sys.argv[4:]) <= set(codes):
+        run(*sys.argv[2:4], sys.argv[4:])
+    elif sys.argv[1:2] == ["compare"] and len(sys.argv) == 3:
+        compare(sys.argv[2])
+    else:
+        sys.exit(usage)

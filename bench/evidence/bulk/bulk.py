@@ -9,15 +9,13 @@ COARSE times the published diameters and lengths of time steps; counts are as ma
 volume is as published. The silos' filling is not published: it is a quarter of the count, filled anew. Environment:
 SCREE_EVIDENCE_DIR, LIGGGHTS (the program)."""
 import math
-import os
 import pathlib
 import shutil
 import sys
-import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, data, deviation, library, liggghts, mean, read, write_stl  # noqa: E402
+from common import WORK, Table, data, deviation, library, liggghts, mean, needs, processor_time, read, write_stl  # noqa: E402
 
 EVERY = 0.05
 # Steps are what scree asks for at least: 15 in a quarter period of a hit at 1 m/s.
@@ -128,9 +126,7 @@ def with_liggghts(case, rows, folder):
 def run(word, path):
     name, _, seeds = word.partition(":")
     case = CASES[name]
-    if not shutil.which(os.environ.get("LIGGGHTS", "liggghts")):
-        print("skipped: LIGGGHTS is not installed")
-        return
+    needs("LIGGGHTS")
     data("bulk")
     table = Table(path, ["seed", "code", "time", *COLUMNS[case["scene"]], "cpu_s"], 3)
     for seed in range(1, int(seeds) + 1):
@@ -142,9 +138,9 @@ def run(word, path):
             if table.key((seed, code, round(case["time"], 6))) in table.done:
                 continue
             rows = rows or filled(case, folder, seed)
-            begun, theirs = time.process_time(), os.times().children_user
+            begun = processor_time()
             for k, found in enumerate(go(case, rows, folder)):
-                spent = time.process_time() - begun + os.times().children_user - theirs
+                spent = processor_time() - begun
                 if table.key((seed, code, moment := round((k + 1) * EVERY, 6))) not in table.done:  # of a run that was cut off
                     table.add(seed, code, moment, *found, round(spent, 1))
 

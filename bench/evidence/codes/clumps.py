@@ -8,15 +8,13 @@
 Rows: root mean square distance of the rods from their common axis, mean height and angle by volume and centroid of the last places of
 both. LIGGGHTS fills the tube by itself; its first places are where scree begins. Environment: LIGGGHTS (the program)."""
 import math
-import os
 import pathlib
 import shutil
 import sys
-import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, library, liggghts, write_stl  # noqa: E402
+from common import WORK, Table, library, liggghts, needs, processor_time, write_stl  # noqa: E402
 from heaps import COLUMNS, compare, measured  # noqa: E402
 
 R, DENSITY, COUNT, STIFF, TUBE, HIGH = 0.0025, 2500, 100, 800.0, 0.025, 0.24
@@ -85,16 +83,14 @@ def one(seed, variant):
 
 
 def run(path, seeds, variants):
-    if not shutil.which(os.environ.get("LIGGGHTS", "liggghts")):
-        print("skipped: LIGGGHTS is not installed")
-        return
+    needs("LIGGGHTS")
     table = Table(path, COLUMNS, 3)
     for seed in range(1, seeds + 1):
         for variant in variants:
             if table.key(("rod", seed, variant)) not in table.done:
-                begun, theirs = time.process_time(), os.times().children_user
+                begun = processor_time()
                 found = one(seed, variant)
-                table.add("rod", seed, variant, *found, round(time.process_time() - begun + os.times().children_user - theirs, 1))
+                table.add("rod", seed, variant, *found, round(processor_time() - begun, 1))
 
 
 if __name__ == "__main__":

@@ -10,18 +10,16 @@ Rows: root mean square distance of the bodies from their common axis, mean heigh
 places of both. Environment: YADE (the program)."""
 import json
 import math
-import os
 import pathlib
 import random
 import re
 import shutil
 import subprocess
 import sys
-import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, commit, library, write_stl  # noqa: E402
+from common import WORK, Table, commit, library, needs, processor_time, write_stl  # noqa: E402
 from heaps import COLUMNS, compare, measured  # noqa: E402
 
 A, HALF = 0.015, (0.011, 0.009, 0.007)
@@ -77,7 +75,7 @@ def with_yade(folder, shape, rows, value, gravity=DOWN, time=0.8):
             "damping": 0.3 if value == "contacts" else float(value or 0.3), "damp_gravity": value != "contacts", "gravity": gravity,
             "step": 1.2e-4, "lift": min(0.3, time), "speed": 0.6, "time": time}
     (folder / "case.json").write_text(json.dumps(case))
-    told = subprocess.run([os.environ.get("YADE", "yade"), "-n", "-x", "-j1", str(HERE / "polyhedra_yade.py"), str(folder / "case.json")],
+    told = subprocess.run([needs("YADE"), "-n", "-x", "-j1", str(HERE / "polyhedra_yade.py"), str(folder / "case.json")],
                           cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
     last = [list(map(float, line.split()[1:])) for line in told.splitlines() if line.startswith("body ")]
     if len(last) != len(rows):
@@ -92,9 +90,7 @@ def go(variant, *case, **more):
 
 
 def run(path, seeds, variants):
-    if not shutil.which(os.environ.get("YADE", "yade")):
-        print("skipped: YADE is not installed")
-        return
+    needs("YADE")
     table = Table(path, COLUMNS, 3)
     for seed in range(1, seeds + 1):
         for shape in SHAPES:
@@ -103,9 +99,9 @@ def run(path, seeds, variants):
                     continue
                 folder = WORK / "polyhedra" / f"{shape}-{seed}-{variant.replace(':', '-')}"
                 folder.mkdir(parents=True, exist_ok=True)
-                begun, theirs = time.process_time(), os.times().children_user
+                begun = processor_time()
                 found = measured(go(variant, folder, shape, places(seed)))
-                table.add(shape, seed, variant, *found, round(time.process_time() - begun + os.times().children_user - theirs, 1))
+                table.add(shape, seed, variant, *found, round(processor_time() - begun, 1))
 
 
 def slide(variants):

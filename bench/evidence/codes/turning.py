@@ -9,16 +9,14 @@
 The slope is the direction of the spheres' common centre as seen from the axis: 0 is straight below, and a level surface that tilts
 by an angle turns it by that angle. Rows are means over quarters of the second turn. Environment: LIGGGHTS (the program)."""
 import math
-import os
 import pathlib
 import random
 import shutil
 import sys
-import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, deviation, library, liggghts, mean, read, write_stl  # noqa: E402
+from common import WORK, Table, deviation, library, liggghts, main, mean, needs, processor_time, read, write_stl  # noqa: E402
 
 D, RADIUS, HALF, COUNT, STEP, FILL, QUARTER = 0.006, 0.05, 0.01, 320, 5.3e-5, 0.3, 50
 CODES = "scree", "liggghts", "liggghts-no-dashpot", "liggghts-no-sliding", "liggghts-no-rolling"
@@ -84,9 +82,7 @@ def one(rpm, seed, code):
 
 
 def run(path, speeds, codes):
-    if not shutil.which(os.environ.get("LIGGGHTS", "liggghts")):
-        print("skipped: LIGGGHTS is not installed")
-        return
+    needs("LIGGGHTS")
     table = Table(path, ["rpm", "seed", "code", "quarter", "slope_deg", "cpu_s"], 4)
     seeds = {int(rpm): int(count) for rpm, _, count in (s.partition(":") for s in speeds.split(","))}
     for seed in range(1, max(seeds.values()) + 1):
@@ -94,9 +90,9 @@ def run(path, speeds, codes):
             for code in codes:
                 if seed > count or table.key((rpm, seed, code, 4)) in table.done:
                     continue
-                begun, theirs = time.process_time(), os.times().children_user
+                begun = processor_time()
                 found = one(rpm, seed, code)
-                spent = time.process_time() - begun + os.times().children_user - theirs
+                spent = processor_time() - begun
                 for k, value in enumerate(found):
                     table.add(rpm, seed, code, k + 1, value, round(spent, 1))
 
@@ -114,9 +110,4 @@ def compare(path):
 
 
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["run"] and len(sys.argv) > 4 and set(sys.argv[4:]) <= set(CODES):
-        run(*sys.argv[2:4], sys.argv[4:])
-    elif sys.argv[1:2] == ["compare"] and len(sys.argv) == 3:
-        compare(sys.argv[2])
-    else:
-        sys.exit(__doc__)
+    main(run, compare, CODES, __doc__)

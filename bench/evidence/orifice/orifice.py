@@ -23,7 +23,7 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, deviation, library, liggghts, mean, read, student, write_stl  # noqa: E402
+from common import WORK, Table, deviation, library, liggghts, main, mean, needs, read, student, write_stl  # noqa: E402
 
 D, G, EVERY = 0.006, 9.81, 0.009
 FIRST, LAST, WIDE = 0.2, 0.5, 2
@@ -104,9 +104,7 @@ def one(hole, seed, code):
 
 
 def run(path, holes, codes):
-    if not shutil.which(os.environ.get("LIGGGHTS", "liggghts")):
-        print("skipped: LIGGGHTS is not installed")
-        return
+    needs("LIGGGHTS")
     table, seeds = Table(path, COLUMNS, 3), {hole: int(count) for hole, _, count in (h.partition(":") for h in holes.split(","))}
     for seed in range(1, max(seeds.values()) + 1):
         for code in codes:
@@ -175,9 +173,4 @@ def summary(rows, s):
 
 
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["run"] and len(sys.argv) > 4 and set(sys.argv[4:]) <= set(CODES):
-        run(*sys.argv[2:4], sys.argv[4:])
-    elif sys.argv[1:2] == ["compare"] and len(sys.argv) == 3:
-        compare(sys.argv[2])
-    else:
-        sys.exit(__doc__)
+    main(run, compare, CODES, __doc__)

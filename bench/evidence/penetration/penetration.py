@@ -6,7 +6,6 @@
 
 The bed is the middle half of the published one (|x| < 23.5 mm, 12,096 spheres), its stiffness a tenth, the ball begins
 just above it with the speed of its fall. Environment: SCREE_EVIDENCE_DIR, LIGGGHTS (the program)."""
-import os
 import pathlib
 import shutil
 import sys
@@ -14,7 +13,7 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, data, library, liggghts, read  # noqa: E402
+from common import WORK, Table, data, library, liggghts, needs, read  # noqa: E402
 
 HALF, START, SPEED, EVERY = 0.0235, -0.0455, 5.2, 0.0005
 COLUMNS = ["time", "scree_z", "liggghts_z"]
@@ -48,9 +47,7 @@ def with_liggghts(grains, folder):
 
 
 def run(path):
-    if not shutil.which(os.environ.get("LIGGGHTS", "liggghts")):
-        print("skipped: LIGGGHTS is not installed")
-        return
+    needs("LIGGGHTS")
     folder, grains = WORK / "penetration", bed()
     folder.mkdir(parents=True, exist_ok=True)
     theirs = with_liggghts(grains, folder)
