@@ -18,7 +18,6 @@ import math
 import pathlib
 import struct
 import sys
-import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
