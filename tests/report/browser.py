@@ -81,8 +81,11 @@ class Browser:
     def ask(self, method, path, body=None):
         return self.call(method, self.session + path, body)
 
-    def open(self, file):
-        self.ask("POST", "/url", {"url": "file://" + os.path.abspath(file)})
+    def open(self, file, query=""):
+        """The page once it is loaded: on a busy machine the driver may answer while its scripts still run, or before it is there."""
+        self.run("window.left = true")
+        self.ask("POST", "/url", {"url": f"file://{os.path.abspath(file)}{query}"})
+        self.wait("!window.left && document.readyState === 'complete'")
 
     def run(self, script, *arguments):
         return self.ask("POST", "/execute/sync", {"script": script, "args": list(arguments)})
