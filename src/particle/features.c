@@ -392,8 +392,7 @@ scree_status scree_particle_build_trees(scree_particle *p, scree_error *error) {
   scree_tree *trees[3] = {&p->face_tree, &p->edge_tree, &p->point_tree};
   p->box = scree_box_empty();
   for (int what = 0; what < 3; what++) {
-    scree_status status = scree_tree_build(&items[what], trees[what], error);
-    if (status) return status;
+    SCREE_TRY(scree_tree_build(&items[what], trees[what], error));
     if (items[what].count == 0) continue;
     scree_box box = trees[what]->nodes[0].box;
     p->box = scree_box_join(p->box, what == 0 ? scree_box_grown(box, p->radius) : box);

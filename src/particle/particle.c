@@ -132,9 +132,8 @@ static void set_counts(scree_particle *p) {
 
 /* Features, their trees, and what is counted and measured of them. */
 static scree_status extract_all(scree_particle *p, bool is_wall, scree_error *error) {
-  scree_status status = scree_particle_extract_features(p, is_wall, error);
-  if (!status) status = scree_particle_build_trees(p, error);
-  if (status) return status;
+  SCREE_TRY(scree_particle_extract_features(p, is_wall, error));
+  SCREE_TRY(scree_particle_build_trees(p, error));
   set_bounding_radius(p);
   set_counts(p);
   return SCREE_OK;
@@ -155,17 +154,16 @@ static scree_status make_mesh_particle(scree_particle *p, double rounding, scree
     double *position = &p->mesh.positions[3 * v];
     vec3_store(position, into_frame(&p->measures, position));
   }
-  scree_status status = extract_all(p, false, error);
-  if (!status) status = measure_thickness(p, error);
-  if (status) return status;
+  SCREE_TRY(extract_all(p, false, error));
+  SCREE_TRY(measure_thickness(p, error));
   scree_particle_measures *m = &p->measures;
   double least = rounding_radius * m->size;
   m->rounding = rounding > 0 ? rounding : scree_min(least, most_rounding * m->thickness);
   p->radius = radius_of(m);
   drop_features(p);
-  status = extract_all(p, false, error);
-  if (!status) scree_particle_find_inner(p);
-  return status;
+  SCREE_TRY(extract_all(p, false, error));
+  scree_particle_find_inner(p);
+  return SCREE_OK;
 }
 
 /* What the features' extraction does not see: surfaces that meet themselves, shells in shells. */

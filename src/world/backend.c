@@ -53,8 +53,7 @@ scree_status scree_set_backend(const char *name, scree_error *error) {
 scree_status scree_world_set_backend(scree_world *world, const char *name, scree_error *error) {
   char description[256];
   int device;
-  scree_status status = scree_check_backend(name, description, error);
-  if (status) return status;
+  SCREE_TRY(scree_check_backend(name, description, error));
   const scree_backend *backend = find(name, &device);
   int there = scree_cuda_device_of(world);
   if (backend == &scree_backend_cuda && there >= 0 && there != device)
@@ -76,8 +75,8 @@ scree_status scree_world_bring(const scree_world *world, unsigned parts, scree_e
 scree_status scree_world_change(scree_world *world, unsigned parts, scree_error *error) {
   bool settle =
       parts & (SCREE_PART_WALLS | SCREE_PART_LISTS); /* forces on walls follow from them */
-  scree_status status = scree_world_bring(world, parts | (settle ? SCREE_PART_WALLS : 0), error);
-  if (!status && settle) scree_walls_settle(world);
-  if (!status && world->on_device) scree_backend_cuda.change(world->on_device, parts);
-  return status;
+  SCREE_TRY(scree_world_bring(world, parts | (settle ? SCREE_PART_WALLS : 0), error));
+  if (settle) scree_walls_settle(world);
+  if (world->on_device) scree_backend_cuda.change(world->on_device, parts);
+  return SCREE_OK;
 }

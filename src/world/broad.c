@@ -67,10 +67,8 @@ scree_status scree_broad_reserve_bodies(scree_world *world, scree_error *error) 
   if (!world->broad) world->broad = scree_alloc_zero(1, sizeof *world->broad);
   scree_broad *broad = world->broad;
   if (!broad) return scree_fail_memory(error, sizeof *broad, "the broad phase");
-  if (broad->capacity < world->bodies.capacity) {
-    scree_status status = reserve_bodies(broad, world->bodies.capacity, error);
-    if (status) return status;
-  }
+  if (broad->capacity < world->bodies.capacity)
+    SCREE_TRY(reserve_bodies(broad, world->bodies.capacity, error));
   if (!scree_array_reserve((void **)&broad->wall_reach, &broad->wall_capacity, world->walls.count,
                            sizeof *broad->wall_reach))
     return scree_fail_memory(error, world->walls.count * sizeof *broad->wall_reach, "walls");
@@ -225,8 +223,7 @@ bool scree_broad_is_valid(const scree_world *world) {
 
 scree_status scree_broad_update(scree_world *world, scree_error *error) {
   if (world->bodies.count == 0 || scree_broad_is_valid(world)) return SCREE_OK;
-  scree_status status = scree_broad_reserve_bodies(world, error);
-  if (status) return status;
+  SCREE_TRY(scree_broad_reserve_bodies(world, error));
   keep_keys(world);
   find_all(world);
   uint64_t count = world->broad->listed.total;
@@ -248,8 +245,7 @@ bool scree_broad_reserve(scree_world *world) {
 
 scree_status scree_broad_restore(scree_world *world, double margin, scree_error *error) {
   size_t count = world->neighbours.count;
-  scree_status status = scree_broad_reserve_bodies(world, error);
-  if (status) return status;
+  SCREE_TRY(scree_broad_reserve_bodies(world, error));
   world->margin = margin;
   if (world->bodies.count == 0) return SCREE_OK; /* there are no arrays yet */
   if (!reserve_lists(world, count)) return scree_fail_memory(error, 0, "pairs of bodies");

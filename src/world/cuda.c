@@ -73,34 +73,32 @@ static scree_status list_there(scree_world *w, struct scree_device_world *d) {
   scree_cuda_place place = scree_cuda_place_of(d);
   size_t count = 0;
   d->listed = true;
-  scree_status status = scree_cuda_broad_find(d->broad, w, &place, &count, &w->failure);
-  if (!status) status = scree_cuda_broad_list(d->broad, w, &place, count, &w->failure);
-  if (!status) status = scree_cuda_reserve_own(w, d, &w->failure);
-  if (!status) status = scree_cuda_wait(&d->queue, &w->failure);
+  SCREE_TRY(scree_cuda_broad_find(d->broad, w, &place, &count, &w->failure));
+  SCREE_TRY(scree_cuda_broad_list(d->broad, w, &place, count, &w->failure));
+  SCREE_TRY(scree_cuda_reserve_own(w, d, &w->failure));
+  SCREE_TRY(scree_cuda_wait(&d->queue, &w->failure));
   scree_cuda_lead_header(w, d);
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status list_here(scree_world *w, struct scree_device_world *d) {
-  scree_status status = scree_broad_update(w, &w->failure);
+  SCREE_TRY(scree_broad_update(w, &w->failure));
   d->contacts_used = 0;
-  if (!status) status = scree_reserve_blocks(w, &w->failure);
-  return status ? status : scree_cuda_send(w, d, &w->failure);
+  SCREE_TRY(scree_reserve_blocks(w, &w->failure));
+  return scree_cuda_send(w, d, &w->failure);
 }
 
 /* The device has the state, and neighbours that hold. */
 static scree_status prepare(scree_world *w) {
   struct scree_device_world *d = w->on_device;
   bool there = d->current;
-  scree_status status = there ? scree_cuda_send_changed(w, d, &w->failure) : list_here(w, d);
-  if (!status)
-    status = scree_cuda_tell(d, offsetof(scree_world, time_step), sizeof w->time_step, &w->failure);
-  if (status) return status;
+  SCREE_TRY(there ? scree_cuda_send_changed(w, d, &w->failure) : list_here(w, d));
+  SCREE_TRY(scree_cuda_tell(d, offsetof(scree_world, time_step), sizeof w->time_step, &w->failure));
   scree_cuda_part_with(w, d);
   d->settled = false;
-  if (there && (d->header.stale || w->pairs_stale)) status = list_there(w, d);
+  if (there && (d->header.stale || w->pairs_stale)) SCREE_TRY(list_there(w, d));
   d->header.stale = d->header.fallen = 0;
-  return status;
+  return SCREE_OK;
 }
 
 static void begin_steps(struct scree_device_world *d, size_t wanted) {
@@ -126,8 +124,7 @@ static void go_on(struct scree_device_world *d, bool resume) {
 static scree_status note_fallen(scree_world *w) {
   struct scree_device_world *d = w->on_device;
   if (!d->header.fallen) return SCREE_OK;
-  scree_status status = scree_cuda_fetch_removed(w, d, &w->failure);
-  if (status) return status;
+  SCREE_TRY(scree_cuda_fetch_removed(w, d, &w->failure));
   size_t removed = 0;
   for (size_t i = 0; i < w->bodies.count; i++) removed += w->bodies.removed[i];
   w->bodies.removed_count = removed;
@@ -190,13 +187,12 @@ static scree_status step(scree_world *w, size_t most, size_t *done) {
 /* Forces on walls, which follow from pairs. */
 static scree_status settle(scree_world *w, struct scree_device_world *d) {
   scree_cuda_place place = scree_cuda_place_of(d);
-  scree_status status =
-      scree_cuda_tell(d, offsetof(scree_world, step_count), sizeof w->step_count, &w->failure);
-  if (!status)
-    status = scree_cuda_launch(&d->queue, SCREE_KERNEL_wall_forces, w->walls.count, 1, place.worlds,
-                               0, &w->failure);
-  d->settled = status == SCREE_OK;
-  return status;
+  SCREE_TRY(
+      scree_cuda_tell(d, offsetof(scree_world, step_count), sizeof w->step_count, &w->failure));
+  SCREE_TRY(scree_cuda_launch(&d->queue, SCREE_KERNEL_wall_forces, w->walls.count, 1, place.worlds,
+                              0, &w->failure));
+  d->settled = true;
+  return SCREE_OK;
 }
 
 static scree_status bring(struct scree_device_world *d, unsigned parts, scree_error *error) {
@@ -224,25 +220,20 @@ static scree_status sum_there(scree_world *w, struct scree_device_world *d, scre
   const size_t count = scree_sum_part_count(w);
   const scree_cuda_place place = scree_cuda_place_of(d);
   scree_cuda_block *block = &d->own[BLOCK_SUMS];
-  scree_status status = scree_cuda_use(d->queue.device, error);
-  if (!status) status = scree_cuda_send_changed(w, d, error);
-  if (!status)
-    status = scree_cuda_reserve(&block->at, &block->capacity, count * sizeof *parts, error);
-  if (!status) {
-    uintptr_t at = (uintptr_t)block->at;
-    status = scree_cuda_broad_tell(&place, offsetof(scree_world, sums), &at, sizeof at, error);
-  }
-  if (!status)
-    status = scree_cuda_tell(d, offsetof(scree_world, step_count), sizeof w->step_count, error);
-  if (!status)
-    status = scree_cuda_launch(&d->queue, SCREE_KERNEL_sums, count, 1, place.worlds, 0, error);
-  for (size_t first = 0; first < count && !status; first += AT_ONCE) {
+  SCREE_TRY(scree_cuda_use(d->queue.device, error));
+  SCREE_TRY(scree_cuda_send_changed(w, d, error));
+  SCREE_TRY(scree_cuda_reserve(block, count * sizeof *parts, error));
+  const uintptr_t at = (uintptr_t)block->at;
+  SCREE_TRY(scree_cuda_broad_tell(&place, offsetof(scree_world, sums), &at, sizeof at, error));
+  SCREE_TRY(scree_cuda_tell(d, offsetof(scree_world, step_count), sizeof w->step_count, error));
+  SCREE_TRY(scree_cuda_launch(&d->queue, SCREE_KERNEL_sums, count, 1, place.worlds, 0, error));
+  for (size_t first = 0; first < count; first += AT_ONCE) {
     size_t some = count - first < AT_ONCE ? count - first : AT_ONCE;
-    status = scree_cuda_read(&d->queue, parts, block->at + first * sizeof *parts,
-                             some * sizeof *parts, error);
-    for (size_t i = 0; i < some && !status; i++) scree_sums_merge(sums, &parts[i]);
+    SCREE_TRY(scree_cuda_read(&d->queue, parts, block->at + first * sizeof *parts,
+                              some * sizeof *parts, error));
+    for (size_t i = 0; i < some; i++) scree_sums_merge(sums, &parts[i]);
   }
-  return status;
+  return SCREE_OK;
 }
 
 static bool sum(struct scree_device_world *d, scree_sums *sums) {

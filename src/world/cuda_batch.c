@@ -26,8 +26,7 @@ static struct batch {
   size_t count, last_count; /* who wait; who were in the last round */
   bool led;
   scree_cuda_queue queue;
-  scree_device_address worlds, steps;
-  size_t world_capacity, step_capacity; /* bytes */
+  scree_cuda_block worlds, steps;
 } batches[SCREE_MOST_DEVICES];
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 static const long patience = 300000; /* ns, for those of the last round to come again */
@@ -52,40 +51,34 @@ static scree_status launch_all(struct batch *b, const waiting *first, size_t cou
   size_t steps = 0;
   for (const waiting *w = first; w; w = w->next)
     if (w->request->steps > steps) steps = w->request->steps;
-  scree_status status = SCREE_OK;
   for (size_t i = 0; i < steps; i++)
-    for (int k = 0; k < SCREE_STEP_KERNELS && !status; k++)
-      status = scree_cuda_launch(&b->queue, (scree_kernel)k, most_elements(first, k), count,
-                                 b->worlds, b->steps, error);
-  return status;
+    for (int k = 0; k < SCREE_STEP_KERNELS; k++)
+      SCREE_TRY(scree_cuda_launch(&b->queue, (scree_kernel)k, most_elements(first, k), count,
+                                  b->worlds.at, b->steps.at, error));
+  return SCREE_OK;
 }
 
 /* The structs of all lie side by side. */
 static scree_status do_all(struct batch *b, waiting *first, size_t count, scree_error *error) {
   const size_t world_bytes = count * sizeof(scree_device_address),
                step_bytes = count * sizeof(scree_device_step);
-  scree_device_address *worlds = scree_alloc(count, sizeof *worlds);
-  scree_device_step *steps = scree_alloc(count, sizeof *steps);
-  scree_status status = worlds && steps ? SCREE_OK : scree_fail_memory(error, step_bytes, "steps");
-  if (!status && !b->queue.stream) status = scree_cuda_open_queue(&b->queue, error);
-  if (!status) status = scree_cuda_reserve(&b->worlds, &b->world_capacity, world_bytes, error);
-  if (!status) status = scree_cuda_reserve(&b->steps, &b->step_capacity, step_bytes, error);
-  if (status) goto done;
+  SCREE_SCRATCH(scree_device_address, worlds, count, error);
+  SCREE_SCRATCH(scree_device_step, steps, count, error);
+  if (!b->queue.stream) SCREE_TRY(scree_cuda_open_queue(&b->queue, error));
+  SCREE_TRY(scree_cuda_reserve(&b->worlds, world_bytes, error));
+  SCREE_TRY(scree_cuda_reserve(&b->steps, step_bytes, error));
   size_t i = 0;
   for (const waiting *w = first; w; w = w->next, i++) {
     worlds[i] = w->request->world;
     steps[i] = *w->request->step;
   }
-  status = scree_cuda_write(&b->queue, b->worlds, worlds, world_bytes, error);
-  if (!status) status = scree_cuda_write(&b->queue, b->steps, steps, step_bytes, error);
-  if (!status) status = launch_all(b, first, count, error);
-  if (!status) status = scree_cuda_read(&b->queue, steps, b->steps, step_bytes, error);
+  SCREE_TRY(scree_cuda_write(&b->queue, b->worlds.at, worlds, world_bytes, error));
+  SCREE_TRY(scree_cuda_write(&b->queue, b->steps.at, steps, step_bytes, error));
+  SCREE_TRY(launch_all(b, first, count, error));
+  SCREE_TRY(scree_cuda_read(&b->queue, steps, b->steps.at, step_bytes, error));
   i = 0;
-  for (const waiting *w = first; w && !status; w = w->next, i++) *w->request->step = steps[i];
-done:
-  scree_free(worlds);
-  scree_free(steps);
-  return status;
+  for (const waiting *w = first; w; w = w->next, i++) *w->request->step = steps[i];
+  return SCREE_OK;
 }
 
 /* Those of the last round are back soon, as a rule. */

@@ -75,12 +75,6 @@ scree_status scree_cuda_broad_tell(const scree_cuda_place *place, size_t field, 
   return scree_cuda_write(place->queue, place->world + field, known, size, error);
 }
 
-/* With a quarter more, as lists grow and shrink. */
-static scree_status reserve(scree_cuda_block *block, size_t size, scree_error *error) {
-  if (size <= block->capacity) return SCREE_OK;
-  return scree_cuda_reserve(&block->at, &block->capacity, size + size / 4, error);
-}
-
 static scree_status write_image(scree_cuda_broad *broad, const scree_cuda_place *place,
                                 scree_error *error) {
   return scree_cuda_write(place->queue, broad->own.at, &broad->image, sizeof broad->image, error);
@@ -97,11 +91,10 @@ static scree_status clear_counts(scree_cuda_broad *broad, const scree_cuda_place
                                  scree_error *error) {
   scree_broad *b = &broad->image;
   const scree_groups *all[] = {&b->buckets, &b->listed};
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < sizeof all / sizeof *all && !status; i++)
-    status = scree_cuda_clear(place->queue, (uintptr_t)all[i]->count,
-                              all[i]->length * sizeof *all[i]->count, error);
-  return status;
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+    SCREE_TRY(scree_cuda_clear(place->queue, (uintptr_t)all[i]->count,
+                               all[i]->length * sizeof *all[i]->count, error));
+  return SCREE_OK;
 }
 
 scree_status scree_cuda_broad_send(scree_cuda_broad **made, scree_world *w,
@@ -118,18 +111,17 @@ scree_status scree_cuda_broad_send(scree_cuda_broad **made, scree_world *w,
   for (size_t i = 0; i < sizeof by_body / sizeof *by_body; i++) set_length(by_body[i], n);
   array arrays[MOST_ARRAYS];
   size_t count = list_body_arrays(w, b, arrays);
-  scree_status status = scree_cuda_reserve(&broad->own.at, &broad->own.capacity, sizeof *b, error);
-  for (size_t i = 0; i < count && !status; i++) {
-    status = reserve(&broad->arrays[i], arrays[i].size, error);
+  SCREE_TRY(scree_cuda_reserve(&broad->own, sizeof *b, error));
+  for (size_t i = 0; i < count; i++) {
+    SCREE_TRY(scree_cuda_reserve_more(&broad->arrays[i], arrays[i].size, error));
     lead(b, arrays[i].field, broad->arrays[i].at);
   }
   lead(b, FIELD(sides.begin), place->array(w, offsetof(scree_world, side_begin))->at);
-  if (!status) status = clear_counts(broad, place, error);
-  if (!status)
-    status = scree_cuda_write(place->queue, (uintptr_t)b->listed.begin, w->broad->listed.begin,
-                              (b->old_bodies + 1) * sizeof *b->listed.begin, error);
+  SCREE_TRY(clear_counts(broad, place, error));
+  SCREE_TRY(scree_cuda_write(place->queue, (uintptr_t)b->listed.begin, w->broad->listed.begin,
+                             (b->old_bodies + 1) * sizeof *b->listed.begin, error));
   *at = broad->own.at;
-  return status ? status : write_image(broad, place, error);
+  return write_image(broad, place, error);
 }
 
 scree_status scree_cuda_broad_keep(const scree_cuda_broad *broad, scree_world *w,
@@ -167,11 +159,10 @@ static scree_status launch(const scree_cuda_broad *broad, const scree_world *w,
                    [SCREE_KERNEL_wall_places] = chunks,
                    [SCREE_KERNEL_list_touching] = k / 64 + 1,
                };
-  scree_status status = SCREE_OK;
-  for (int kernel = (int)first; kernel <= (int)last && !status; kernel++)
-    status = scree_cuda_launch(place->queue, (scree_kernel)kernel,
-                               counts[kernel] ? counts[kernel] : n, 1, place->worlds, 0, error);
-  return status;
+  for (int kernel = (int)first; kernel <= (int)last; kernel++)
+    SCREE_TRY(scree_cuda_launch(place->queue, (scree_kernel)kernel,
+                                counts[kernel] ? counts[kernel] : n, 1, place->worlds, 0, error));
+  return SCREE_OK;
 }
 
 /* Where bodies' keys begin, of the old list and of the new one. */
@@ -186,40 +177,38 @@ scree_status scree_cuda_broad_find(scree_cuda_broad *broad, scree_world *w,
                                    scree_error *error) {
   scree_broad *b = &broad->image;
   w->margin = scree_broad_margin(w);
-  scree_status status = scree_cuda_broad_tell(place, offsetof(scree_world, margin), &w->margin,
-                                              sizeof w->margin, error);
+  SCREE_TRY(scree_cuda_broad_tell(place, offsetof(scree_world, margin), &w->margin,
+                                  sizeof w->margin, error));
   exchange_begins(b);
   b->widest = 0;
   b->used = 0;
   b->left.length = b->old_bodies;
-  if (!status)
-    status = scree_cuda_clear(place->queue, (uintptr_t)b->wall_reach,
-                              w->walls.count * sizeof *b->wall_reach, error);
-  if (!status) status = write_image(broad, place, error);
-  if (!status) status = launch(broad, w, place, SCREE_KERNEL_box, SCREE_KERNEL_key_places, error);
-  if (!status) status = scree_cuda_read(place->queue, b, broad->own.at, sizeof *b, error);
+  SCREE_TRY(scree_cuda_clear(place->queue, (uintptr_t)b->wall_reach,
+                             w->walls.count * sizeof *b->wall_reach, error));
+  SCREE_TRY(write_image(broad, place, error));
+  SCREE_TRY(launch(broad, w, place, SCREE_KERNEL_box, SCREE_KERNEL_key_places, error));
+  SCREE_TRY(scree_cuda_read(place->queue, b, broad->own.at, sizeof *b, error));
   *count = (size_t)b->listed.total;
-  if (!status && b->listed.total >= SCREE_MOST_NEIGHBOURS)
+  if (b->listed.total >= SCREE_MOST_NEIGHBOURS)
     return scree_fail_memory(error, *count * sizeof(scree_neighbours), "pairs of bodies");
-  return status;
+  return SCREE_OK;
 }
 
 /* The old neighbours are kept aside, and there is room for the new ones. */
 static scree_status exchange_neighbours(scree_cuda_broad *broad, scree_world *w,
                                         const scree_cuda_place *place, size_t count,
                                         scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < KEPT_COUNT && !status; i++) {
+  for (size_t i = 0; i < KEPT_COUNT; i++) {
     const kept *one = &all_kept[i];
     scree_cuda_block *now = place->array(w, one->field), *old = &broad->kept[i], block = *now;
     *now = *old;
     *old = block;
-    status = reserve(now, count * one->size, error);
+    SCREE_TRY(scree_cuda_reserve_more(now, count * one->size, error));
     uintptr_t at = (uintptr_t)now->at;
     lead(&broad->image, one->old_field, old->at);
-    if (!status) status = scree_cuda_broad_tell(place, one->field, &at, sizeof at, error);
+    SCREE_TRY(scree_cuda_broad_tell(place, one->field, &at, sizeof at, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* Lists of the world that are made anew. */
@@ -231,56 +220,52 @@ static scree_status reserve_lists(scree_world *w, const scree_cuda_place *place,
                        LIST(sides, 2 * count), LIST(acting, 2 * count),
                        LIST(awake, count),     LIST(wall_pairs, count)};
 #undef LIST
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < sizeof all / sizeof *all && !status; i++) {
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     scree_cuda_block *block = place->array(w, all[i].field);
-    status = reserve(block, all[i].size, error);
+    SCREE_TRY(scree_cuda_reserve_more(block, all[i].size, error));
     uintptr_t at = (uintptr_t)block->at;
-    if (!status) status = scree_cuda_broad_tell(place, all[i].field, &at, sizeof at, error);
+    SCREE_TRY(scree_cuda_broad_tell(place, all[i].field, &at, sizeof at, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* For where the neighbours were, and which of them are left. */
 static scree_status reserve_own(scree_cuda_broad *broad, size_t old, size_t count,
                                 scree_error *error) {
   scree_broad *b = &broad->image;
-  scree_status status = reserve(&broad->match, count * sizeof *b->match.items, error);
-  if (!status) status = reserve(&broad->left, old * sizeof *b->left_features.items, error);
+  SCREE_TRY(scree_cuda_reserve_more(&broad->match, count * sizeof *b->match.items, error));
+  SCREE_TRY(scree_cuda_reserve_more(&broad->left, old * sizeof *b->left_features.items, error));
   lead(b, FIELD(match.items), broad->match.at);
   lead(b, FIELD(left_features.items), broad->left.at);
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_cuda_broad_list(scree_cuda_broad *broad, scree_world *w,
                                    const scree_cuda_place *place, size_t count,
                                    scree_error *error) {
-  scree_status status = exchange_neighbours(broad, w, place, count, error);
-  if (!status) status = reserve_lists(w, place, count, error);
-  if (!status) status = reserve_own(broad, w->neighbours.count, count, error);
-  if (!status)
-    status = scree_cuda_broad_tell(place, offsetof(scree_world, neighbours.count), &count,
-                                   sizeof count, error);
-  if (!status)
-    status = scree_cuda_broad_tell(place, offsetof(scree_world, keys.count), &count, sizeof count,
-                                   error);
-  if (!status) status = write_image(broad, place, error);
-  if (status) return status;
+  SCREE_TRY(exchange_neighbours(broad, w, place, count, error));
+  SCREE_TRY(reserve_lists(w, place, count, error));
+  SCREE_TRY(reserve_own(broad, w->neighbours.count, count, error));
+  SCREE_TRY(scree_cuda_broad_tell(place, offsetof(scree_world, neighbours.count), &count,
+                                  sizeof count, error));
+  SCREE_TRY(
+      scree_cuda_broad_tell(place, offsetof(scree_world, keys.count), &count, sizeof count, error));
+  SCREE_TRY(write_image(broad, place, error));
   w->neighbours.count = count;
-  status = launch(broad, w, place, SCREE_KERNEL_key_write, SCREE_KERNEL_list_date, error);
+  SCREE_TRY(launch(broad, w, place, SCREE_KERNEL_key_write, SCREE_KERNEL_list_date, error));
   broad->image.old_bodies = w->broad->old_bodies = w->bodies.count;
   w->pairs_stale = false;
   w->timings.broad_builds++;
-  return status;
+  return SCREE_OK;
 }
 
 void scree_cuda_broad_free(scree_cuda_broad *broad) {
   if (!broad) return;
-  for (size_t i = 0; i < MOST_ARRAYS; i++) scree_cuda_free(broad->arrays[i].at);
-  for (size_t i = 0; i < KEPT_COUNT; i++) scree_cuda_free(broad->kept[i].at);
-  scree_cuda_free(broad->match.at);
-  scree_cuda_free(broad->left.at);
-  scree_cuda_free(broad->own.at);
+  for (size_t i = 0; i < MOST_ARRAYS; i++) scree_cuda_free(broad->arrays[i]);
+  for (size_t i = 0; i < KEPT_COUNT; i++) scree_cuda_free(broad->kept[i]);
+  scree_cuda_free(broad->match);
+  scree_cuda_free(broad->left);
+  scree_cuda_free(broad->own);
   scree_free(broad);
 }
 

@@ -92,9 +92,9 @@ static scree_status load_driver(scree_error *error) {
     if (!(*names[i].function = dlsym(library, names[i].name)))
       return scree_fail(error, SCREE_NO_BACKEND, "cuda: the driver has no %s: too old",
                         names[i].name);
-  scree_status status = check(cu.init(0), "the driver does not start", error);
-  loaded = status == SCREE_OK;
-  return status;
+  SCREE_TRY(check(cu.init(0), "the driver does not start", error));
+  loaded = true;
+  return SCREE_OK;
 }
 
 static scree_status load_kernels(struct opened *device, scree_error *error) {
@@ -110,20 +110,15 @@ static scree_status load_kernels(struct opened *device, scree_error *error) {
   if (result)
     return scree_fail(error, SCREE_NO_BACKEND,
                       "cuda: the driver refuses the kernels: error %d %.300s", result, log);
-  for (int k = 0; k < SCREE_KERNEL_COUNT; k++) {
-    scree_status status =
-        check(cu.get_function(&device->functions[k], module, kernels[k]), kernels[k], error);
-    if (status) return status;
-  }
+  for (int k = 0; k < SCREE_KERNEL_COUNT; k++)
+    SCREE_TRY(check(cu.get_function(&device->functions[k], module, kernels[k]), kernels[k], error));
   return SCREE_OK;
 }
 
 static scree_status open_device(int number, scree_error *error) {
-  scree_status status = load_driver(error);
+  SCREE_TRY(load_driver(error));
   int count = 0, id;
-  if (status) return status;
-  status = check(cu.device_count(&count), "devices", error);
-  if (status) return status;
+  SCREE_TRY(check(cu.device_count(&count), "devices", error));
   if (number >= count || number >= SCREE_MOST_DEVICES)
     return scree_fail(error, SCREE_NO_BACKEND,
                       "cuda: there is no device %d; there are %d, numbered from 0", number, count);
@@ -132,14 +127,13 @@ static scree_status open_device(int number, scree_error *error) {
   char name[128];
   size_t memory = 0;
   handle context;
-  status = check(cu.device_get(&id, number), "device", error);
-  if (!status) status = check(cu.device_name(name, sizeof name, id), "device", error);
-  if (!status) status = check(cu.device_memory(&memory, id), "device", error);
-  if (!status) status = check(cu.retain(&context, id), "context", error);
-  if (!status) status = check(cu.set_current(context), "context", error);
-  if (!status) status = check(cu.set_limit(LIMIT_STACK, STACK_BYTES), "stack", error);
-  if (!status) status = load_kernels(device, error);
-  if (status) return status;
+  SCREE_TRY(check(cu.device_get(&id, number), "device", error));
+  SCREE_TRY(check(cu.device_name(name, sizeof name, id), "device", error));
+  SCREE_TRY(check(cu.device_memory(&memory, id), "device", error));
+  SCREE_TRY(check(cu.retain(&context, id), "context", error));
+  SCREE_TRY(check(cu.set_current(context), "context", error));
+  SCREE_TRY(check(cu.set_limit(LIMIT_STACK, STACK_BYTES), "stack", error));
+  SCREE_TRY(load_kernels(device, error));
   snprintf(device->description, sizeof device->description, "%s, %.1f GB", name,
            (double)memory * 1e-9);
   device->context = context;
@@ -158,25 +152,26 @@ scree_status scree_cuda_use(int device, scree_error *error) {
   return check(cu.set_current(devices[device].context), "context", error);
 }
 
-scree_status scree_cuda_reserve(scree_device_address *block, size_t *capacity, size_t size,
-                                scree_error *error) {
-  if (size <= *capacity) return SCREE_OK;
+scree_status scree_cuda_reserve(scree_cuda_block *block, size_t size, scree_error *error) {
+  if (size <= block->capacity) return SCREE_OK;
   scree_cuda_free(*block);
-  *block = 0;
-  *capacity = 0;
+  *block = (scree_cuda_block){0, 0};
   scree_device_address made;
   int result = cu.allocate(&made, size);
   if (result == OUT_OF_MEMORY)
     return scree_fail(error, SCREE_OUT_OF_MEMORY,
                       "out of memory: the device has no room for %zu bytes more", size);
   if (result) return check(result, "memory", error);
-  *block = made;
-  *capacity = size;
+  *block = (scree_cuda_block){made, size};
   return SCREE_OK;
 }
 
-void scree_cuda_free(scree_device_address block) {
-  if (block) cu.release(block);
+scree_status scree_cuda_reserve_more(scree_cuda_block *block, size_t size, scree_error *error) {
+  return size <= block->capacity ? SCREE_OK : scree_cuda_reserve(block, size + size / 4, error);
+}
+
+void scree_cuda_free(scree_cuda_block block) {
+  if (block.at) cu.release(block.at);
 }
 
 scree_status scree_cuda_open_queue(scree_cuda_queue *queue, scree_error *error) {
@@ -200,8 +195,8 @@ scree_status scree_cuda_write(const scree_cuda_queue *queue, scree_device_addres
 scree_status scree_cuda_read(const scree_cuda_queue *queue, void *to, scree_device_address from,
                              size_t size, scree_error *error) {
   if (size == 0) return SCREE_OK;
-  scree_status status = check(cu.read(to, from, size, queue->stream), "from the device", error);
-  return status ? status : scree_cuda_wait(queue, error);
+  SCREE_TRY(check(cu.read(to, from, size, queue->stream), "from the device", error));
+  return scree_cuda_wait(queue, error);
 }
 
 scree_status scree_cuda_clear(const scree_cuda_queue *queue, scree_device_address at, size_t size,

@@ -37,9 +37,10 @@ typedef struct scree_cuda_block {
   size_t capacity; /* bytes */
 } scree_cuda_block;
 /* Larger, when it is too small; its content goes then. */
-scree_status scree_cuda_reserve(scree_device_address *block, size_t *capacity, size_t size,
-                                scree_error *error);
-void scree_cuda_free(scree_device_address block);
+scree_status scree_cuda_reserve(scree_cuda_block *block, size_t size, scree_error *error);
+/* The same with a quarter more, for what grows. */
+scree_status scree_cuda_reserve_more(scree_cuda_block *block, size_t size, scree_error *error);
+void scree_cuda_free(scree_cuda_block block);
 /* Until all that was asked of the queue is done. */
 scree_status scree_cuda_wait(const scree_cuda_queue *queue, scree_error *error);
 scree_status scree_cuda_write(const scree_cuda_queue *queue, scree_device_address to,

@@ -99,13 +99,6 @@ static void lead_to(void *pointer, scree_device_address address) {
   memcpy(pointer, &at, sizeof at);
 }
 
-/* With a quarter more, as bodies are added. */
-static scree_status reserve(scree_cuda_block *block, size_t size, scree_error *error) {
-  if (size <= block->capacity) return SCREE_OK;
-  if (block->capacity) size += size / 4;
-  return scree_cuda_reserve(&block->at, &block->capacity, size, error);
-}
-
 /* ---- shapes ---- */
 
 /* An array of a particle, or the particle itself, in the block of all shapes. */
@@ -198,15 +191,14 @@ static scree_status send_bytes(const scree_world *w, struct scree_device_world *
                                scree_error *error) {
   scree_cuda_block *block = &d->own[BLOCK_SHAPES];
   bool there = bytes_are_there(w, d, bytes);
-  scree_status status = scree_cuda_reserve(&block->at, &block->capacity, bytes, error);
-  if (status) return status;
-  packer p = {scree_alloc_zero(bytes, 1), 0, block->at};
-  if (!p.bytes) return scree_fail_memory(error, bytes, "shapes");
+  d->seen_count = 0;
+  SCREE_TRY(scree_cuda_reserve(block, bytes, error));
+  SCREE_SCRATCH_ZERO(char, shapes, bytes, error);
+  packer p = {shapes, 0, block->at};
   pack_shapes(w, &p, d->addresses);
-  if (!there) status = scree_cuda_write(&d->queue, block->at, p.bytes, p.used, error);
-  scree_free(p.bytes);
+  if (!there) SCREE_TRY(scree_cuda_write(&d->queue, block->at, shapes, p.used, error));
   d->shape_bytes = bytes;
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status send_shapes(scree_world *w, struct scree_device_world *d, scree_error *error) {
@@ -219,17 +211,14 @@ static scree_status send_shapes(scree_world *w, struct scree_device_world *d, sc
   if (!seen || !addresses) return scree_fail_memory(error, count * sizeof *d->addresses, "shapes");
   packer measured = {0};
   pack_shapes(w, &measured, d->addresses);
-  scree_status status = send_bytes(w, d, measured.used, error);
-  d->seen_count = 0;
-  if (status) return status;
+  SCREE_TRY(send_bytes(w, d, measured.used, error));
   for (size_t i = 0; i < count; i++) d->seen[i] = shape_at(w, i);
   d->seen_count = count;
   d->wall_count = walls;
   size_t bytes = w->bodies.count * sizeof *d->addresses;
-  status = reserve(&d->own[BLOCK_PARTICLES], bytes, error);
-  return status ? status
-                : scree_cuda_write(&d->queue, d->own[BLOCK_PARTICLES].at, d->addresses + walls,
-                                   bytes, error);
+  SCREE_TRY(scree_cuda_reserve_more(&d->own[BLOCK_PARTICLES], bytes, error));
+  return scree_cuda_write(&d->queue, d->own[BLOCK_PARTICLES].at, d->addresses + walls, bytes,
+                          error);
 }
 
 static scree_status send_walls(const scree_world *w, struct scree_device_world *d,
@@ -241,10 +230,8 @@ static scree_status send_walls(const scree_world *w, struct scree_device_world *
   d->copies = copies;
   memcpy(d->copies, w->walls.items, bytes);
   for (size_t i = 0; i < count; i++) lead_to(&d->copies[i].surface, d->addresses[i]);
-  scree_status status =
-      scree_cuda_reserve(&d->own[BLOCK_WALLS].at, &d->own[BLOCK_WALLS].capacity, bytes, error);
-  return status ? status
-                : scree_cuda_write(&d->queue, d->own[BLOCK_WALLS].at, d->copies, bytes, error);
+  SCREE_TRY(scree_cuda_reserve(&d->own[BLOCK_WALLS], bytes, error));
+  return scree_cuda_write(&d->queue, d->own[BLOCK_WALLS].at, d->copies, bytes, error);
 }
 
 /* ---- there ---- */
@@ -322,39 +309,35 @@ scree_status scree_cuda_reserve_own(const scree_world *w, struct scree_device_wo
                                [BLOCK_DEPTHS] = depths_of(w) * sizeof(scree_depth)};
   for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++)
     sizes[BLOCK_VISITS + kind] = w->pools.feature_capacity * sizeof(scree_visit);
-  scree_status status = SCREE_OK;
-  for (int i = 0; i < BLOCK_COUNT && !status; i++)
-    status = scree_cuda_reserve(&d->own[i].at, &d->own[i].capacity, sizes[i], error);
-  return status;
+  for (int i = 0; i < BLOCK_COUNT; i++) SCREE_TRY(scree_cuda_reserve(&d->own[i], sizes[i], error));
+  return SCREE_OK;
 }
 
 static scree_status send_span(const scree_world *w, struct scree_device_world *d, size_t i,
                               const span *s, scree_error *error) {
-  scree_status status = reserve(&d->arrays[i], s->capacity, error);
-  return status ? status
-                : scree_cuda_write(&d->queue, d->arrays[i].at, pointer_at(w, s->field), s->used,
-                                   error);
+  SCREE_TRY(scree_cuda_reserve_more(&d->arrays[i], s->capacity, error));
+  return scree_cuda_write(&d->queue, d->arrays[i].at, pointer_at(w, s->field), s->used, error);
 }
 
 scree_status scree_cuda_send(scree_world *w, struct scree_device_world *d, scree_error *error) {
   d->body_count = w->bodies.count;
+  d->current = false;
   span spans[SCREE_MOST_SPANS];
   size_t count = list_spans(w, spans);
-  scree_status status = send_shapes(w, d, error);
-  if (!status) status = send_walls(w, d, error);
-  if (!status) status = scree_cuda_reserve_own(w, d, error);
-  for (size_t i = 0; i < count && !status; i++) status = send_span(w, d, i, &spans[i], error);
+  SCREE_TRY(send_shapes(w, d, error));
+  SCREE_TRY(send_walls(w, d, error));
+  SCREE_TRY(scree_cuda_reserve_own(w, d, error));
+  for (size_t i = 0; i < count; i++) SCREE_TRY(send_span(w, d, i, &spans[i], error));
   scree_device_address broad = 0;
   scree_cuda_place place = scree_cuda_place_of(d);
-  if (!status) status = scree_cuda_broad_send(&d->broad, w, &place, &broad, error);
-  if (!status) status = send_image(w, d, broad, error);
-  if (!status)
-    status = scree_cuda_write(&d->queue, d->own[BLOCK_WORLDS].at, &d->own[BLOCK_WORLD].at,
-                              sizeof(scree_device_address), error);
-  if (!status) status = scree_cuda_wait(&d->queue, error); /* steps have another queue */
-  d->current = status == SCREE_OK;
+  SCREE_TRY(scree_cuda_broad_send(&d->broad, w, &place, &broad, error));
+  SCREE_TRY(send_image(w, d, broad, error));
+  SCREE_TRY(scree_cuda_write(&d->queue, d->own[BLOCK_WORLDS].at, &d->own[BLOCK_WORLD].at,
+                             sizeof(scree_device_address), error));
+  SCREE_TRY(scree_cuda_wait(&d->queue, error)); /* steps have another queue */
+  d->current = true;
   d->changed = 0;
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- what changed here ---- */
@@ -387,41 +370,38 @@ static scree_status make_room_for_bodies(scree_world *w, struct scree_device_wor
                 (w->bodies.count + w->walls.count) * sizeof *w->wake_threshold.items}};
   scree_cuda_place place = scree_cuda_place_of(d);
   scree_device_address broad;
-  scree_status status = scree_broad_reserve_bodies(w, error);
-  for (size_t i = 0; i < sizeof lists / sizeof *lists && !status; i++) {
+  SCREE_TRY(scree_broad_reserve_bodies(w, error));
+  for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
     scree_cuda_block *block = array_at(w, lists[i].field);
-    status = reserve(block, lists[i].size, error);
-    if (!status) status = tell_address(d, lists[i].field, block->at, error);
+    SCREE_TRY(scree_cuda_reserve_more(block, lists[i].size, error));
+    SCREE_TRY(tell_address(d, lists[i].field, block->at, error));
   }
-  if (!status) status = scree_cuda_broad_keep(d->broad, w, &place, error);
-  if (!status) status = scree_cuda_broad_send(&d->broad, w, &place, &broad, error);
-  if (!status) d->body_count = w->bodies.count;
-  return status;
+  SCREE_TRY(scree_cuda_broad_keep(d->broad, w, &place, error));
+  SCREE_TRY(scree_cuda_broad_send(&d->broad, w, &place, &broad, error));
+  d->body_count = w->bodies.count;
+  return SCREE_OK;
 }
 
 /* To shapes that have come elsewhere. */
 static scree_status lead_walls(const scree_world *w, const struct scree_device_world *d,
                                scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < w->walls.count && !status; i++)
-    status = scree_cuda_write(&d->queue,
-                              d->own[BLOCK_WALLS].at + i * sizeof(scree_world_wall) +
-                                  offsetof(scree_world_wall, surface),
-                              &d->addresses[i], sizeof d->addresses[i], error);
-  return status;
+  for (size_t i = 0; i < w->walls.count; i++)
+    SCREE_TRY(scree_cuda_write(&d->queue,
+                               d->own[BLOCK_WALLS].at + i * sizeof(scree_world_wall) +
+                                   offsetof(scree_world_wall, surface),
+                               &d->addresses[i], sizeof d->addresses[i], error));
+  return SCREE_OK;
 }
 
 static scree_status send_parts(scree_world *w, struct scree_device_world *d, scree_error *error) {
   span spans[SCREE_MOST_SPANS];
   size_t count = list_spans(w, spans);
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < count && !status; i++) {
+  for (size_t i = 0; i < count; i++) {
     if (!(spans[i].part & d->changed)) continue;
-    status = send_span(w, d, i, &spans[i], error);
-    if (!status)
-      status = tell_address(d, spans[i].field, spans[i].capacity ? d->arrays[i].at : 0, error);
+    SCREE_TRY(send_span(w, d, i, &spans[i], error));
+    SCREE_TRY(tell_address(d, spans[i].field, spans[i].capacity ? d->arrays[i].at : 0, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_cuda_send_changed(scree_world *w, struct scree_device_world *d,
@@ -431,22 +411,21 @@ scree_status scree_cuda_send_changed(scree_world *w, struct scree_device_world *
                                   FIELD(motion_rows.count)};
   scree_cuda_place place = scree_cuda_place_of(d);
   const scree_device_address shapes = d->own[BLOCK_SHAPES].at;
-  scree_status status = send_shapes(w, d, error);
-  if (!status && d->own[BLOCK_SHAPES].at != shapes) status = lead_walls(w, d, error);
-  if (!status) status = tell_address(d, FIELD(bodies.particle), d->own[BLOCK_PARTICLES].at, error);
-  if (!status) status = make_room_for_bodies(w, d, error);
-  if (!status) status = send_parts(w, d, error);
-  for (size_t i = 0; i < sizeof counts / sizeof *counts && !status; i++)
-    status = scree_cuda_tell(d, counts[i], sizeof(size_t), error);
-  if (!status && d->changed & SCREE_PART_WALLS) {
-    status = send_walls(w, d, error);
-    if (!status)
-      status = scree_cuda_launch(&d->queue, SCREE_KERNEL_wall_threshold, w->walls.count, 1,
-                                 place.worlds, 0, error);
+  SCREE_TRY(send_shapes(w, d, error));
+  if (d->own[BLOCK_SHAPES].at != shapes) SCREE_TRY(lead_walls(w, d, error));
+  SCREE_TRY(tell_address(d, FIELD(bodies.particle), d->own[BLOCK_PARTICLES].at, error));
+  SCREE_TRY(make_room_for_bodies(w, d, error));
+  SCREE_TRY(send_parts(w, d, error));
+  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+    SCREE_TRY(scree_cuda_tell(d, counts[i], sizeof(size_t), error));
+  if (d->changed & SCREE_PART_WALLS) {
+    SCREE_TRY(send_walls(w, d, error));
+    SCREE_TRY(scree_cuda_launch(&d->queue, SCREE_KERNEL_wall_threshold, w->walls.count, 1,
+                                place.worlds, 0, error));
   }
-  if (!status) status = scree_cuda_wait(&d->queue, error);
-  if (!status) d->changed = 0;
-  return status;
+  SCREE_TRY(scree_cuda_wait(&d->queue, error));
+  d->changed = 0;
+  return SCREE_OK;
 }
 
 /* ---- back ---- */
@@ -501,9 +480,8 @@ static scree_status fetch_numbers(scree_world *w, struct scree_device_world *d,
                                   scree_error *error) {
   const size_t from = FIELD(spare_pairs), size = FIELD(slots) - from;
   scree_world *image = d->image;
-  scree_status status =
-      scree_cuda_read(&d->queue, (char *)image + from, d->own[BLOCK_WORLD].at + from, size, error);
-  if (status) return status;
+  SCREE_TRY(
+      scree_cuda_read(&d->queue, (char *)image + from, d->own[BLOCK_WORLD].at + from, size, error));
   w->spare_pairs.count = image->spare_pairs.count;
   w->pools.features_used = image->pools.features_used;
   w->pools.sleeping_used = image->pools.sleeping_used;
@@ -514,34 +492,33 @@ static scree_status fetch_numbers(scree_world *w, struct scree_device_world *d,
 /* The walls have come elsewhere. */
 static scree_status fetch_walls(scree_world *w, struct scree_device_world *d, scree_error *error) {
   size_t count = w->walls.count;
-  scree_status status = scree_cuda_read(&d->queue, d->copies, d->own[BLOCK_WALLS].at,
-                                        count * sizeof *d->copies, error);
-  for (size_t i = 0; i < count && !status; i++) {
+  SCREE_TRY(scree_cuda_read(&d->queue, d->copies, d->own[BLOCK_WALLS].at, count * sizeof *d->copies,
+                            error));
+  for (size_t i = 0; i < count; i++) {
     scree_particle *surface = w->walls.items[i].surface;
     w->walls.items[i] = d->copies[i];
     w->walls.items[i].surface = surface;
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status fetch_parts(scree_world *w, struct scree_device_world *d, unsigned parts,
                                 scree_error *error) {
   bool lists = parts & SCREE_PART_LISTS, listed = lists && d->listed;
-  scree_status status = lists ? fetch_numbers(w, d, error) : SCREE_OK;
-  if (status) return status;
+  SCREE_TRY(lists ? fetch_numbers(w, d, error) : SCREE_OK);
   if (listed && !scree_broad_reserve(w)) return scree_fail_memory(error, 0, "pairs of bodies");
   span spans[SCREE_MOST_SPANS];
   size_t count = list_spans(w, spans);
-  for (size_t i = 0; i < count && !status; i++) {
+  for (size_t i = 0; i < count; i++) {
     const span *s = &spans[i];
     size_t used = s->used < s->capacity ? s->used : s->capacity;
     if (s->part & parts && s->kind == COMES_BACK)
-      status = scree_cuda_read(&d->queue, pointer_at(w, s->field), d->arrays[i].at, used, error);
+      SCREE_TRY(scree_cuda_read(&d->queue, pointer_at(w, s->field), d->arrays[i].at, used, error));
   }
-  if (!status && parts & SCREE_PART_WALLS) status = fetch_walls(w, d, error);
-  if (!status && listed) status = scree_broad_restore(w, w->margin, error);
-  if (!status && listed) d->listed = false;
-  return status;
+  if (parts & SCREE_PART_WALLS) SCREE_TRY(fetch_walls(w, d, error));
+  if (listed) SCREE_TRY(scree_broad_restore(w, w->margin, error));
+  if (listed) d->listed = false;
+  return SCREE_OK;
 }
 
 scree_status scree_cuda_fetch(scree_world *w, struct scree_device_world *d, unsigned parts,
@@ -562,8 +539,8 @@ void scree_cuda_free_state(scree_world *w, struct scree_device_world *d) {
   scree_error error;
   if (scree_cuda_use(d->queue.device, &error) == SCREE_OK) {
     scree_cuda_broad_free(d->broad);
-    for (size_t i = 0; i < SCREE_MOST_SPANS; i++) scree_cuda_free(d->arrays[i].at);
-    for (size_t i = 0; i < BLOCK_COUNT; i++) scree_cuda_free(d->own[i].at);
+    for (size_t i = 0; i < SCREE_MOST_SPANS; i++) scree_cuda_free(d->arrays[i]);
+    for (size_t i = 0; i < BLOCK_COUNT; i++) scree_cuda_free(d->own[i]);
     scree_cuda_close_queue(&d->queue);
   }
   scree_free(d->image);

@@ -45,8 +45,7 @@ size_t scree_world_steps_to_keep(const scree_world *world) {
 scree_status scree_world_keep_state(scree_world *world, scree_error *error) {
   unsigned char *bytes;
   size_t count;
-  scree_status status = world->kept.pack(world->kept.what, &bytes, &count, error);
-  if (status) return status;
+  SCREE_TRY(world->kept.pack(world->kept.what, &bytes, &count, error));
   scree_free(world->kept.bytes);
   world->kept.bytes = bytes;
   world->kept.byte_count = count;

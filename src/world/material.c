@@ -126,9 +126,8 @@ scree_status scree_world_add_material(scree_world *world, const scree_material *
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: Poisson's ratio %g; 0 to 0.5",
                       material->poisson);
   scree_material_contact own = contact_of(material, material);
-  scree_status status = check_contact(&own, error);
-  if (!status) status = scree_world_change(world, SCREE_ALL_PARTS, error);
-  if (status) return status;
+  SCREE_TRY(check_contact(&own, error));
+  SCREE_TRY(scree_world_change(world, SCREE_ALL_PARTS, error));
   size_t k = world->material_count++;
   world->materials[k] = *material;
   for (size_t i = 0; i <= k; i++) {
@@ -148,17 +147,16 @@ static scree_status check_materials(const scree_world *world, size_t a, size_t b
 
 scree_status scree_world_get_pair(const scree_world *world, size_t a, size_t b,
                                   scree_material_contact *contact, scree_error *error) {
-  scree_status status = check_materials(world, a, b, error);
-  if (!status) *contact = world->contacts[a][b].given;
-  return status;
+  SCREE_TRY(check_materials(world, a, b, error));
+  *contact = world->contacts[a][b].given;
+  return SCREE_OK;
 }
 
 scree_status scree_world_set_pair(scree_world *world, size_t a, size_t b,
                                   const scree_material_contact *contact, scree_error *error) {
-  scree_status status = check_materials(world, a, b, error);
-  if (!status) status = check_contact(contact, error);
-  if (!status) status = scree_world_change(world, SCREE_ALL_PARTS, error);
-  if (status) return status;
+  SCREE_TRY(check_materials(world, a, b, error));
+  SCREE_TRY(check_contact(contact, error));
+  SCREE_TRY(scree_world_change(world, SCREE_ALL_PARTS, error));
   world->contacts[a][b] = world->contacts[b][a] = make_contact(world, contact);
   scree_neighbours_set_up(world);
   world->time_step_stale = true;
@@ -168,8 +166,7 @@ scree_status scree_world_set_pair(scree_world *world, size_t a, size_t b,
 scree_status scree_world_set_contact(scree_world *world, size_t a, size_t b, double restitution,
                                      double friction, scree_error *error) {
   scree_material_contact contact;
-  scree_status status = scree_world_get_pair(world, a, b, &contact, error);
-  if (status) return status;
+  SCREE_TRY(scree_world_get_pair(world, a, b, &contact, error));
   contact.restitution = restitution;
   contact.friction = friction;
   return scree_world_set_pair(world, a, b, &contact, error);

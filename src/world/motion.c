@@ -359,8 +359,7 @@ scree_status scree_world_set_wall_motion(scree_world *world, size_t index,
     if (wrong) return wrong;
     if (has_table(&motions[i])) row_count += motions[i].row_count;
   }
-  scree_status status = scree_world_change(world, SCREE_PART_WALLS, error);
-  if (status) return status;
+  SCREE_TRY(scree_world_change(world, SCREE_PART_WALLS, error));
   motion_range r = motions_of(world, index);
   if (!SCREE_RESERVE(&world->motions, world->motions.count + count) ||
       !SCREE_RESERVE(&world->motion_rows, world->motion_rows.count + row_count))

@@ -488,8 +488,7 @@ const scree_backend scree_backend_cpu = {"cpu", begin, one_step, NULL, NULL, NUL
 
 static scree_status check_time_step(scree_world *world, scree_error *error) {
   if (!world->time_step_stale) return SCREE_OK;
-  scree_status status = scree_world_bring(world, SCREE_PART_WALLS, error);
-  if (status) return status;
+  SCREE_TRY(scree_world_bring(world, SCREE_PART_WALLS, error));
   world->time_step = scree_world_choose_time_step(world, NULL);
   world->time_step_stale = false;
   if (!(world->options.time_step > 0)) return SCREE_OK;

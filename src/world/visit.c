@@ -42,8 +42,7 @@ static void share_mean(const scree_world *world, const scree_pair *pair, scree_p
 
 scree_status scree_world_visit_contacts(const scree_world *world, scree_contact_visitor *visit,
                                         void *context, scree_error *error) {
-  scree_status status = scree_world_bring(world, SCREE_ALL_PARTS, error);
-  if (status) return status;
+  SCREE_TRY(scree_world_bring(world, SCREE_ALL_PARTS, error));
   scree_pair_copy copy = {0};
   bool good = true, going = true;
   for (size_t k = 0; k < world->neighbours.count && good && going; k++) {

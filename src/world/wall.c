@@ -106,10 +106,9 @@ static scree_status make_rims(scree_world_wall *wall, scree_error *error) {
 
 scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall, size_t *index,
                                   scree_error *error) {
-  scree_status status = check_wall(world, wall, error);
-  if (!status) status = check_period(world, wall, error);
-  if (!status) status = scree_world_change(world, SCREE_ALL_PARTS, error);
-  if (status) return status;
+  SCREE_TRY(check_wall(world, wall, error));
+  SCREE_TRY(check_period(world, wall, error));
+  SCREE_TRY(scree_world_change(world, SCREE_ALL_PARTS, error));
   scree_world_wall made = {.given = *wall,
                            .orientation = turn_to(vec3_load(wall->axis)),
                            .path_at_build = -1,
@@ -119,12 +118,11 @@ scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall, si
   set_velocity(&made, vec3_load(wall->velocity), vec3_load(wall->angular_velocity));
   set_surface(&made, wall->surface_velocity, wall->surface_angular_velocity, wall->surface_loop);
   if (wall->kind == SCREE_WALL_MESH) {
-    status = scree_particle_surface(wall->mesh, 0, wall->two_sided, &made.surface, error);
-    if (!status) made.given.mesh = &made.surface->mesh;
+    SCREE_TRY(scree_particle_surface(wall->mesh, 0, wall->two_sided, &made.surface, error));
+    made.given.mesh = &made.surface->mesh;
   } else {
-    status = make_rims(&made, error);
+    SCREE_TRY(make_rims(&made, error));
   }
-  if (status) return status;
   if (!SCREE_PUSH(&world->walls, made)) {
     scree_particle_free(made.surface);
     return scree_fail_memory(error, sizeof made, "a wall");
@@ -204,12 +202,10 @@ void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, ve
 scree_status scree_world_set_wall_velocity(scree_world *world, size_t index,
                                            const double velocity[3],
                                            const double angular_velocity[3], scree_error *error) {
-  scree_status status = check_velocities(world, index, velocity, angular_velocity, error);
-  if (!status) status = scree_world_change(world, SCREE_PART_WALLS, error);
-  if (status) return status;
+  SCREE_TRY(check_velocities(world, index, velocity, angular_velocity, error));
+  SCREE_TRY(scree_world_change(world, SCREE_PART_WALLS, error));
   if (world->walls.items[index].motion_count > 0)
-    status = scree_world_set_wall_motion(world, index, NULL, 0, error);
-  if (status) return status;
+    SCREE_TRY(scree_world_set_wall_motion(world, index, NULL, 0, error));
   scree_wall_set_velocity(world, index, vec3_load(velocity), vec3_load(angular_velocity));
   return SCREE_OK;
 }
@@ -218,12 +214,12 @@ scree_status scree_world_set_wall_surface(scree_world *world, size_t index,
                                           const double velocity[3],
                                           const double angular_velocity[3], const double loop[3],
                                           scree_error *error) {
-  scree_status status = check_velocities(world, index, velocity, angular_velocity, error);
-  if (!status) status = check_velocities(world, index, velocity, loop, error);
-  if (!status) status = check_loop(&world->walls.items[index].given, index, loop, error);
-  if (!status) status = scree_world_change(world, SCREE_PART_WALLS, error);
-  if (!status) set_surface(&world->walls.items[index], velocity, angular_velocity, loop);
-  return status;
+  SCREE_TRY(check_velocities(world, index, velocity, angular_velocity, error));
+  SCREE_TRY(check_velocities(world, index, velocity, loop, error));
+  SCREE_TRY(check_loop(&world->walls.items[index].given, index, loop, error));
+  SCREE_TRY(scree_world_change(world, SCREE_PART_WALLS, error));
+  set_surface(&world->walls.items[index], velocity, angular_velocity, loop);
+  return SCREE_OK;
 }
 
 vec3 scree_belt_velocity(const scree_world_wall *wall, vec3 at, vec3 n) {

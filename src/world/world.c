@@ -62,19 +62,17 @@ static scree_status check_options(const scree_world_options *o, scree_error *err
       {"skin", o->skin, 1e-4, 1},
       {"floor_height", o->floor_height, -INFINITY, INFINITY},
   };
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < sizeof ranges / sizeof *ranges && !status; i++)
-    status = check_range(ranges[i].name, ranges[i].value, ranges[i].low, ranges[i].high, error);
-  if (!status && !(o->law <= SCREE_LAW_HERTZ))
+  for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
+    SCREE_TRY(check_range(ranges[i].name, ranges[i].value, ranges[i].low, ranges[i].high, error));
+  if (!(o->law <= SCREE_LAW_HERTZ))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: law number %d is none", (int)o->law);
-  return status ? status : check_periods(o, error);
+  return check_periods(o, error);
 }
 
 scree_status scree_world_create(const scree_world_options *options, scree_world **world,
                                 scree_error *error) {
   scree_world_options o = options ? *options : scree_default_world_options();
-  scree_status status = check_options(&o, error);
-  if (status) return status;
+  SCREE_TRY(check_options(&o, error));
   scree_world *made = scree_alloc_zero(1, sizeof *made);
   if (!made) return scree_fail_memory(error, sizeof *made, "a world");
   made->options = o;
@@ -84,18 +82,36 @@ scree_status scree_world_create(const scree_world_options *options, scree_world 
   return SCREE_OK;
 }
 
-static void free_bodies(scree_bodies *b) {
-  for (size_t i = 0; i < b->count; i++) scree_particle_free(b->particle[i]);
-  void *arrays[] = {b->frame,    b->orientation, b->momentum, b->inertia, b->force,
-                    b->torque,   b->mass,        b->travel,   b->path,    b->particle,
-                    b->material, b->removed,     b->turn,     b->applied, b->balance};
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) scree_free(arrays[i]);
+/* An array with an element for each body, and one more. */
+static const struct body_array {
+  size_t field, size; /* where in scree_world its pointer is; bytes of an element */
+} body_arrays[] = {
+#define OF(member)                                                                                 \
+  { offsetof(scree_world, member), sizeof *((scree_world *)0)->member }
+    OF(bodies.frame),      OF(bodies.orientation), OF(bodies.momentum), OF(bodies.inertia),
+    OF(bodies.force),      OF(bodies.torque),      OF(bodies.mass),     OF(bodies.travel),
+    OF(bodies.path),       OF(bodies.turn),        OF(bodies.particle), OF(bodies.material),
+    OF(bodies.removed),    OF(bodies.balance),     OF(side_begin),      OF(offenders),
+    OF(body_path_at_build)};
+#undef OF
+enum { BODY_ARRAYS = sizeof body_arrays / sizeof *body_arrays };
+
+static void *body_array(const scree_world *world, size_t i) {
+  void *pointer;
+  memcpy(&pointer, (const char *)world + body_arrays[i].field, sizeof pointer);
+  return pointer;
+}
+
+static void free_bodies(scree_world *world) {
+  for (size_t i = 0; i < world->bodies.count; i++) scree_particle_free(world->bodies.particle[i]);
+  for (size_t i = 0; i < BODY_ARRAYS; i++) scree_free(body_array(world, i));
+  scree_free(world->bodies.applied);
 }
 
 void scree_world_free(scree_world *world) {
   if (!world) return;
   if (world->on_device) scree_backend_cuda.release(world);
-  free_bodies(&world->bodies);
+  free_bodies(world);
   for (size_t i = 0; i < world->walls.count; i++)
     scree_particle_free(world->walls.items[i].surface);
   scree_free(world->walls.items);
@@ -113,12 +129,9 @@ void scree_world_free(scree_world *world) {
   scree_free(world->keys.items);
   scree_free(world->sides.items);
   scree_free(world->acting.items);
-  scree_free(world->side_begin);
-  scree_free(world->offenders);
   scree_free(world->ledger.items);
   scree_free(world->awake.items);
   scree_free(world->progress.items);
-  scree_free(world->body_path_at_build);
   for (int i = 0; i < world->scratch_count; i++) scree_free(world->scratch[i].contacts.items);
   scree_free(world->scratch);
   scree_broad_free(world);
@@ -143,36 +156,14 @@ static scree_status grow_applied(scree_bodies *b, size_t capacity, scree_error *
 static scree_status grow_bodies(scree_world *world, scree_error *error) {
   scree_bodies *b = &world->bodies;
   size_t capacity = b->capacity < 64 ? 64 : 2 * b->capacity;
-  struct {
-    void **array;
-    size_t size;
-  } arrays[] = {
-      {(void **)&b->frame, sizeof *b->frame},
-      {(void **)&b->orientation, sizeof *b->orientation},
-      {(void **)&b->momentum, sizeof *b->momentum},
-      {(void **)&b->inertia, sizeof *b->inertia},
-      {(void **)&b->force, sizeof *b->force},
-      {(void **)&b->torque, sizeof *b->torque},
-      {(void **)&b->mass, sizeof *b->mass},
-      {(void **)&b->travel, sizeof *b->travel},
-      {(void **)&b->path, sizeof *b->path},
-      {(void **)&b->turn, sizeof *b->turn},
-      {(void **)&b->particle, sizeof *b->particle},
-      {(void **)&b->material, sizeof *b->material},
-      {(void **)&b->removed, sizeof *b->removed},
-      {(void **)&b->balance, sizeof *b->balance},
-      {(void **)&world->side_begin, sizeof *world->side_begin},
-      {(void **)&world->offenders, sizeof *world->offenders},
-      {(void **)&world->body_path_at_build, sizeof *world->body_path_at_build},
-  };
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-    void *moved = scree_resize(*arrays[i].array, capacity + 1, arrays[i].size);
-    if (!moved) return scree_fail_memory(error, capacity * arrays[i].size, "bodies");
-    *arrays[i].array = moved;
+  for (size_t i = 0; i < BODY_ARRAYS; i++) {
+    void *moved = scree_resize(body_array(world, i), capacity + 1, body_arrays[i].size);
+    if (!moved) return scree_fail_memory(error, capacity * body_arrays[i].size, "bodies");
+    memcpy((char *)world + body_arrays[i].field, &moved, sizeof moved);
   }
-  scree_status status = b->applied ? grow_applied(b, capacity, error) : SCREE_OK;
-  if (!status) b->capacity = capacity;
-  return status;
+  SCREE_TRY(b->applied ? grow_applied(b, capacity, error) : SCREE_OK);
+  b->capacity = capacity;
+  return SCREE_OK;
 }
 
 scree_body scree_default_body(void) {
@@ -248,15 +239,13 @@ scree_status scree_world_add_body(scree_world *world, scree_particle *particle, 
                       world->material_count);
   scree_body start = state ? *state : scree_default_body();
   scree_bodies *b = &world->bodies;
-  scree_status status = check_state(b->count, "added with", &start, error);
-  if (!status) status = check_period(world, particle, error);
-  if (!status) status = scree_world_change(world, of_bodies, error);
-  if (status) return status;
+  SCREE_TRY(check_state(b->count, "added with", &start, error));
+  SCREE_TRY(check_period(world, particle, error));
+  SCREE_TRY(scree_world_change(world, of_bodies, error));
   if (b->count == b->capacity) {
     if (b->count > UINT32_MAX / 8)
       return scree_fail(error, SCREE_LIMIT, "world: at most %u bodies", UINT32_MAX / 8);
-    status = grow_bodies(world, error);
-    if (status) return status;
+    SCREE_TRY(grow_bodies(world, error));
   }
   size_t i = b->count++;
   b->travel[i] = b->path[i] = world->body_path_at_build[i] = 0;
@@ -278,8 +267,7 @@ scree_status scree_world_set_body_density(scree_world *world, size_t index, doub
   if (!(density > 0 && isfinite(density)))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: body %zu: density %g kg/m3; above 0",
                       index, density);
-  scree_status status = scree_world_change(world, parts_around(world, index), error);
-  if (status) return status;
+  SCREE_TRY(scree_world_change(world, parts_around(world, index), error));
   scree_bodies *b = &world->bodies;
   double before = b->mass[index];
   fill_body(b, index, density);
@@ -325,9 +313,9 @@ void scree_world_get_bodies(const scree_world *world, size_t first, size_t count
 
 scree_status scree_bodies_make_applied(scree_bodies *b, scree_error *error) {
   if (b->applied) return SCREE_OK;
-  scree_status status = grow_applied(b, b->capacity, error);
-  if (!status) memset(b->applied, 0, b->count * sizeof *b->applied);
-  return status;
+  SCREE_TRY(grow_applied(b, b->capacity, error));
+  memset(b->applied, 0, b->count * sizeof *b->applied);
+  return SCREE_OK;
 }
 
 scree_status scree_world_set_body_force(scree_world *world, size_t index, const double force[3],
@@ -339,17 +327,16 @@ scree_status scree_world_set_body_force(scree_world *world, size_t index, const 
     if (!isfinite(force[i] + torque[i]))
       return scree_fail(error, SCREE_BAD_ARGUMENT,
                         "world: body %zu is given a force or torque that is not finite", index);
-  scree_status status = scree_world_change(world, SCREE_PART_BODIES, error);
-  if (!status) status = scree_bodies_make_applied(b, error);
-  if (!status) b->applied[index].now = (scree_wrench){vec3_load(force), vec3_load(torque)};
-  return status;
+  SCREE_TRY(scree_world_change(world, SCREE_PART_BODIES, error));
+  SCREE_TRY(scree_bodies_make_applied(b, error));
+  b->applied[index].now = (scree_wrench){vec3_load(force), vec3_load(torque)};
+  return SCREE_OK;
 }
 
 scree_status scree_world_set_body(scree_world *world, size_t index, const scree_body *state,
                                   scree_error *error) {
-  scree_status status = check_state(index, "set to", state, error);
-  if (!status) status = scree_world_change(world, parts_around(world, index), error);
-  if (status) return status;
+  SCREE_TRY(check_state(index, "set to", state, error));
+  SCREE_TRY(scree_world_change(world, parts_around(world, index), error));
   place_body(world, index, state);
   return SCREE_OK;
 }
