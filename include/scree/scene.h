@@ -112,7 +112,8 @@ SCREE_API const char *scree_scene_text(const scree_scene *scene);
 SCREE_API scree_world *scree_scene_world(scree_scene *scene);
 SCREE_API const scree_world *scree_scene_view(const scree_scene *scene);
 
-/* What a scene will cost, as far as its file says; bodies are those that find room and stay in. */
+/* What is left of a scene will cost so much, as far as its file says; bodies are those that find
+ * room and stay in. */
 typedef struct scree_scene_forecast {
   double step_count, body_count, body_steps;
   double seconds;     /* on one core, of 1e-6 s a body and step, 3e-6 of meshes: to a factor of 3 */

@@ -122,9 +122,12 @@ static int run(const cli_verb *verb, int argc, char **argv) {
                                                 : cli_fail(&error);
     goto done;
   }
-  bool show = common.progress || (!common.quiet && scree_is_terminal(stderr));
+  cli_progress_kind shown = common.progress             ? CLI_PROGRESS_LINE
+                            : common.quiet              ? CLI_PROGRESS_NONE
+                            : scree_is_terminal(stderr) ? CLI_PROGRESS_LINE
+                                                        : CLI_PROGRESS_LOG;
   cli_call call = {verb,         options,           inputs,         input_count,
-                   common.quiet, common.max_memory, common.backend, cli_terminal_start(show),
+                   common.quiet, common.max_memory, common.backend, cli_terminal_start(shown),
                    command_line};
   result = verb->run(&call);
   if (result) cli_remove_empty_folders();

@@ -8,13 +8,19 @@
 
 enum { BAR_WIDTH = 24, LINE_WIDTH = 78, LINE_BYTES = 128 };
 
+/* Lines in a log: the first one after so long, each later one after twice as long, up to the most.
+ */
+static const double first_line_s = 4, longest_pause_s = 600;
+
 static volatile sig_atomic_t received_signal;
 static bool settled;
 
 static struct {
-  bool show, drawn;
+  cli_progress_kind kind;
+  bool drawn;
   char phase[48];
-  double phase_start; /* s, monotonic */
+  double phase_start;             /* s, monotonic */
+  double start, next_line, pause; /* of a log */
 } terminal;
 
 static void on_signal(int number) {
@@ -38,26 +44,42 @@ static int line_width(void) {
   return columns > 0 && columns <= LINE_WIDTH ? columns - 1 : LINE_WIDTH;
 }
 
+static bool line_is_due(void) {
+  if (terminal.kind == CLI_PROGRESS_LINE) return true;
+  if (terminal.kind == CLI_PROGRESS_NONE || scree_now() < terminal.next_line) return false;
+  terminal.pause = fmin(2 * terminal.pause, longest_pause_s);
+  terminal.next_line = scree_now() + terminal.pause;
+  return true;
+}
+
 static void put_line(const char *text) {
+  if (terminal.kind == CLI_PROGRESS_LOG) {
+    char elapsed[32];
+    format_seconds(elapsed, sizeof elapsed, scree_now() - terminal.start);
+    fprintf(stderr, "scree, after %s: %s\n", elapsed, text);
+    return;
+  }
   int width = line_width();
   fprintf(stderr, "\r%-*.*s", width, width, text);
   fflush(stderr);
   terminal.drawn = true;
 }
 
-/* "42 s left"; nothing where that would be 0 s while work goes on. */
+/* ", 42 s left"; nothing where it is not known, or would be 0 s while work goes on. */
 static void format_left(char *text, size_t size, double seconds) {
   char number[32];
   format_seconds(number, sizeof number, seconds);
-  snprintf(text, size, "%s left", number);
-  if (seconds < 0.5) *text = 0;
+  snprintf(text, seconds < 0.5 || !isfinite(seconds) ? 1 : size, ", %s left", number);
 }
 
-static void draw(const char *phase, double fraction) {
+static void note_phase(const char *phase) {
   if (strncmp(phase, terminal.phase, sizeof terminal.phase - 1) != 0) {
     snprintf(terminal.phase, sizeof terminal.phase, "%s", phase);
     terminal.phase_start = scree_now();
   }
+}
+
+static void draw(const char *phase, double fraction) {
   double elapsed = scree_now() - terminal.phase_start;
   double seconds = fraction > 0.01 ? elapsed * (1 - fraction) / fraction : INFINITY;
   char left[40], bar[BAR_WIDTH + 1], line[LINE_BYTES];
@@ -65,15 +87,17 @@ static void draw(const char *phase, double fraction) {
   int full = (int)(fraction * BAR_WIDTH);
   for (int i = 0; i < BAR_WIDTH; i++) bar[i] = i < full ? '#' : '.';
   bar[BAR_WIDTH] = 0;
-  if (line_width() == LINE_WIDTH)
-    snprintf(line, sizeof line, "%-30.30s [%s] %3.0f %%  %s", phase, bar, 100 * fraction, left);
+  if (terminal.kind == CLI_PROGRESS_LOG)
+    snprintf(line, sizeof line, "%s: %.0f %%%s", phase, 100 * fraction, left);
+  else if (line_width() == LINE_WIDTH)
+    snprintf(line, sizeof line, "%-30.30s [%s] %3.0f %%%s", phase, bar, 100 * fraction, left);
   else
-    snprintf(line, sizeof line, "%3.0f %% %s%s%s", 100 * fraction, left, *left ? ", " : "", phase);
+    snprintf(line, sizeof line, "%3.0f %%%s, %s", 100 * fraction, left, phase);
   put_line(line);
 }
 
 void cli_terminal_line(const char *text) {
-  if (terminal.show) put_line(text);
+  if (line_is_due()) put_line(text);
 }
 
 void cli_terminal_seconds(char *text, size_t size, double seconds) {
@@ -82,7 +106,8 @@ void cli_terminal_seconds(char *text, size_t size, double seconds) {
 
 static bool report(void *context, const char *phase, double fraction) {
   (void)context;
-  if (terminal.show) draw(phase, fraction < 0 ? 0 : fraction > 1 ? 1 : fraction);
+  note_phase(phase);
+  if (line_is_due()) draw(phase, fraction < 0 ? 0 : fraction > 1 ? 1 : fraction);
   return !cli_interrupted();
 }
 
@@ -116,10 +141,13 @@ void cli_terminal_release(void) {
   scree_signals_release(on_signal);
 }
 
-const scree_progress *cli_terminal_start(bool show) {
+const scree_progress *cli_terminal_start(cli_progress_kind kind) {
   static const scree_progress progress = {report, NULL, 0.1};
   scree_signals_catch(on_signal, false);
-  terminal.show = show;
+  terminal.kind = kind;
+  terminal.pause = first_line_s;
+  terminal.start = scree_now();
+  terminal.next_line = terminal.start + first_line_s;
   return &progress;
 }
 

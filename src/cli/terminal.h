@@ -3,9 +3,16 @@
 
 #include "scree.h"
 
-/* A progress that draws one line on stderr (when show is set) and cancels after Ctrl-C, SIGTERM, or
- * a terminal that goes away (SIGHUP, unless ignored). */
-const scree_progress *cli_terminal_start(bool show);
+/* On stderr: nothing; one line drawn again and again; or, for a log, a line now and then of calls
+ * that last. */
+typedef enum cli_progress_kind {
+  CLI_PROGRESS_NONE,
+  CLI_PROGRESS_LINE,
+  CLI_PROGRESS_LOG
+} cli_progress_kind;
+/* A progress that is shown so and cancels after Ctrl-C, SIGTERM, or a terminal that goes away
+ * (SIGHUP, unless ignored). */
+const scree_progress *cli_terminal_start(cli_progress_kind kind);
 /* A share of a progress that stands for one phase among several: `progress` is given to whoever
  * does that part. What was reported once is never taken back. */
 typedef struct cli_share {
@@ -18,7 +25,7 @@ typedef struct cli_share {
 cli_share cli_share_of(const scree_progress *whole, const char *phase);
 /* Goes on with the next part, from `base` on; the share must not move in memory after that. */
 const scree_progress *cli_share_enter(cli_share *share, double base, double part);
-/* One's own line in the same place, when show was set. */
+/* One's own line in the same place. */
 void cli_terminal_line(const char *text);
 /* "42 s", "7 min", "3.2 h"; "..." where seconds is not finite. */
 void cli_terminal_seconds(char *text, size_t size, double seconds);

@@ -201,8 +201,9 @@ bool scree_scene_remark(const scree_scene *scene, size_t index, char text[SCREE_
 
 void scree_scene_foretell(const scree_scene *scene, scree_scene_forecast *forecast) {
   scree_scene_forecast f = {0};
-  double time = duration_of(scene), seconds = 0, triangles = 0;
-  f.step_count = ceil(time / scene->time_step);
+  double time = duration_of(scene), now = scree_world_time(scene->world), seconds = 0,
+         triangles = 0;
+  f.step_count = fmax(0, ceil((time - now) / scene->time_step));
   f.frame_interval = scene->plan.output->frames;
   f.frames_are_instances = scene->plan.output->bodies == 0;
   (void)scree_world_time_step(scene->gallery, f.time_step_reason);
@@ -219,7 +220,8 @@ void scree_scene_foretell(const scree_scene *scene, scree_scene_forecast *foreca
   f.body_steps = f.step_count * f.body_count;
   f.seconds = f.body_steps * seconds;
   double interval = scene->plan.output->frames;
-  if (interval > 0) f.frame_count = fmin(floor(time / interval) + 1, f.step_count);
+  double frames_before = now > 0 ? floor(now / interval) + 1 : 0;
+  if (interval > 0) f.frame_count = fmin(floor(time / interval) + 1 - frames_before, f.step_count);
   f.frame_bytes = body_bytes * f.body_count + triangle_bytes * triangles;
   *forecast = f;
 }

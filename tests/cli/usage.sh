@@ -67,3 +67,11 @@ run drop sphere:40mm --width 3bananas 2>&1 | sed -n 2p
 for words in 'choose sample:box --tolerance mean=0,1%' 'simplify ball.stl --rp 0,1% -o no.off' 'drop sphere:40mm --friction 0,3' 'repose sample:box --friction 0,3'; do
   run $words 2>&1 | sed -n 2p
 done
+
+# a call that lasts says in a log where it stands, and what is left
+"$SCREE" export --to liggghts -n 300 sample:fp-1 -o long >/dev/null 2>said &
+while kill -0 $! 2>/dev/null && [ "$(grep -c '^scree, after .*: [0-9]* %, [0-9]* [a-z]* left$' said)" -lt 2 ]; do sleep 0.2; done
+kill -INT $!
+wait $!
+echo "exit code $?"
+grep -v '^scree, after ' said

@@ -373,11 +373,35 @@ static void remarks(void **state) {
   }
 }
 
+/* Of a scene that goes on, what is left is foretold. */
+static void the_rest_is_foretold(void **state) {
+  (void)state;
+  scree_error error;
+  scree_scene *scene = NULL;
+  scree_scene_forecast whole, rest;
+  scree_scene_file *file = parse(good);
+  CHECK_OK(scree_scene_file_set(file, "output.frames", "1e-4", &error), error);
+  CHECK_OK(scree_scene_create(file, NULL, &scene, &error), error);
+  scree_scene_foretell(scene, &whole);
+  CHECK_OK(scree_scene_advance(scene, 100, &error), error);
+  scree_scene_foretell(scene, &rest);
+  CHECK_NEAR(rest.step_count, whole.step_count - 100, 1);
+  CHECK_NEAR(rest.seconds, whole.seconds * rest.step_count / whole.step_count, 1e-9);
+  double frames = floor(scree_world_time(scree_scene_view(scene)) / 1e-4) + 1;
+  CHECK_NEAR(rest.frame_count, whole.frame_count - frames, 0);
+  scree_scene_free(scene);
+  scree_scene_file_free(file);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(wrong_files),    cmocka_unit_test(printed_reads_back),
-      cmocka_unit_test(fields_are_set), cmocka_unit_test(units),
-      cmocka_unit_test(remarks),        cmocka_unit_test(scenes_that_cannot_be),
+      cmocka_unit_test(wrong_files),
+      cmocka_unit_test(printed_reads_back),
+      cmocka_unit_test(fields_are_set),
+      cmocka_unit_test(units),
+      cmocka_unit_test(remarks),
+      cmocka_unit_test(scenes_that_cannot_be),
+      cmocka_unit_test(the_rest_is_foretold),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
