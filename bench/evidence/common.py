@@ -55,13 +55,14 @@ def run(*words, folder=None):
     return subprocess.run([PROGRAM, *map(str, words)], check=True, cwd=folder, stdout=subprocess.PIPE, text=True).stdout
 
 
-def liggghts(template, folder, words):
-    """Runs LIGGGHTS in the folder on the template with its capital words replaced. Environment: LIGGGHTS (the program)."""
+def liggghts(template, folder, words, code="LIGGGHTS"):
+    """Runs LIGGGHTS, or LAMMPS, in the folder on the template with its capital words replaced. Environment: LIGGGHTS, LMP (the
+    programs)."""
     text = template.read_text()
     for name, value in words.items():
         text = text.replace(name, str(value))
     (folder / template.name).write_text(text)
-    subprocess.run([needs("LIGGGHTS"), "-in", template.name, "-log", "none"], cwd=folder, check=True,
+    subprocess.run([needs(code), "-in", template.name, "-log", "none"], cwd=folder, check=True,
                    stdout=subprocess.DEVNULL)
 
 

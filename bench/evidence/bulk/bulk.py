@@ -24,7 +24,7 @@ CASES = {
              "inlet": {"at": [0, -0.03, 0], "axis": [0, 1, 0], "radius": 0.1, "length": 0.06}, "fill": 0.8, "stiff": 10},
     "silo-large": {"scene": "silo", "coarse": 2, "step": 2.4e-5, "time": 2.0, "walls": "Silo_walls__large_orifice_.txt", "shapes": {"grain": (0.004, 25000)},
                    "inlet": {"at": [0, 0, 0.02], "axis": [0, 0, 1], "radius": 0.1, "length": 0.28}, "fill": 0.5, "stiff": 3},
-    "silo-small": {"scene": "silo", "coarse": 2, "step": 2.4e-5, "time": 2.0, "walls": "Silo_walls__small_orifice_.txt", "shapes": {"grain": (0.004, 25000)},
+    "silo-small": {"scene": "silo", "coarse": 2, "step": 2.4e-5, "time": 5.5, "walls": "Silo_walls__small_orifice_.txt", "shapes": {"grain": (0.004, 25000)},
                    "inlet": {"at": [0, 0, 0.02], "axis": [0, 0, 1], "radius": 0.1, "length": 0.28}, "fill": 0.5, "stiff": 3},
 }
 COLUMNS = {"drum": ["up.small", "up.large", "down.small", "down.large"], "silo": ["mass"]}
