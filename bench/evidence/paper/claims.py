@@ -2,7 +2,8 @@
 """The claims of Katagiri and Koyanaka (Materials Transactions 61, 1158, 2020) on the reduced study: 297 of the nine devices, ten
 replicates of seven levels (bench/results/study/runs.csv), and the recommended level (recommended-runs.csv).
 
-  claims.py      as CSV: each claim's number, its interval of 90 %, what was asked of it, and the verdict
+  claims.py                       as CSV: each claim's number, its interval of 90 %, what was asked of it, and the verdict
+  claims.py runs FOLDER TABLE.csv  adds to the table the runs of study.yaml that are done; its heaps are measured by volume and centroid
 
 An equality is confirmed if the interval lies within the margin, refuted if it lies outside; a direction is confirmed if the interval lies
 on its side of 0, refuted on the other; else it is not shown. Replicates: what shows an equality within the margin with 90 % power
@@ -10,14 +11,17 @@ if there is no difference, a direction if the difference is as measured. The las
 at the rates of these runs, steps as in bench/results/paper."""
 import math
 import pathlib
+import sqlite3
 import statistics
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import ROOT, deviation, mean, read, student  # noqa: E402
+from common import ROOT, Table, deviation, mean, read, student  # noqa: E402
 
 STUDY = ROOT / "bench" / "results" / "study"
+RUNS = HERE.parent / "results" / "paper-runs.csv"
+ANGLES = {"volume_deg": "by volume", "sector_deg": "by sectors, the same heaps"}
 LEVELS = ("1e-5", "3e-5", "1e-4", "3e-4", "1e-3", "2e-3")
 FULL_STEPS, FULL_BODIES, REPLICATES = 1444400, 1197, 10
 POWER = 1.645 + 1.282
@@ -68,7 +72,27 @@ def slope(rows):
     return fit.slope, math.sqrt(rest / sum((a - x) ** 2 for a, _ in points)), len(points) - 2
 
 
-def main():
+def by_volume():
+    rows = read(RUNS)
+    for way, name in ANGLES.items():
+        rp = {level: values(rows, level, way) for level in ("1e-5", "1e-4", "1e-3", "recommended")}
+        if min(map(len, rp.values())) < 3:
+            return
+        for level in ("1e-4", "recommended"):
+            equal(f"angle {name} at {level} less that at 1e-3 (deg)", apart(rp[level], rp["1e-3"]), 3, len(rp["1e-3"]), "deg")
+        side(f"angle {name} at 1e-5 less that at 1e-4 (deg)", apart(rp["1e-5"], rp["1e-4"]), -1, len(rp["1e-4"]))
+
+
+def runs(folder, path):
+    table = Table(path, ["rp", "replicate", "seed", "triangles", "processor_seconds", *ANGLES, "silhouette_deg", "hash"], 2)
+    base = sqlite3.connect(f"file:{pathlib.Path(folder) / 'study.sqlite'}?mode=ro", uri=True)
+    for row in base.execute("select rp, replicate, seed, triangle_count, processor_seconds, answer.value, sector_deg, silhouette_deg, hash"
+                            " from run join point using (point) join answer using (key) where state = 'done' order by run"):
+        if table.key(row) not in table.done:
+            table.add(*("" if v is None else v for v in row))
+
+
+def claims():
     rows = [r for r in read(STUDY / "runs.csv") if r["state"] == "done"]
     recommended = read(STUDY / "recommended-runs.csv")
 
@@ -84,6 +108,9 @@ def main():
     side("ln of CV at 1e-3 and 2e-3 over 1e-5 and 3e-5", spread(rows, True), -1, 10)
     none = sum(r["heap"] == "0" for r in rows if r["rp"] == "spheres")
     print(f"spheres without a heap of {REPLICATES},{none},,,all,{'confirmed' if none == REPLICATES else 'refuted'},")
+
+    if RUNS.exists():
+        by_volume()
 
     def turning(rp):
         return values(rows, rp, "mean_rotation_lifting")
@@ -104,4 +131,9 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    if sys.argv[1:2] == ["runs"] and len(sys.argv) == 4:
+        runs(*sys.argv[2:])
+    elif len(sys.argv) == 1:
+        claims()
+    else:
+        sys.exit(__doc__)
