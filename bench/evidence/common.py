@@ -21,7 +21,7 @@ def data(folder):
     """The folder of a case's measurements; without it the case is skipped."""
     path = DATA / folder
     if not path.is_dir():
-        print(f"skipped: there is no folder {path}; SCREE_EVIDENCE_DIR names another")
+        print(f"{pathlib.Path(sys.argv[0]).name}: skipped, there is no folder {path}; SCREE_EVIDENCE_DIR names another", file=sys.stderr)
         sys.exit(0)
     return path
 
@@ -30,7 +30,7 @@ def needs(code):
     """Another code's program, by its name's environment variable or in the PATH; without it the case is skipped."""
     path = shutil.which(os.environ.get(code, code.lower()))
     if not path:
-        print(f"skipped: {code} is not installed")
+        print(f"{pathlib.Path(sys.argv[0]).name}: skipped, {code} is not installed; the variable {code} names its program", file=sys.stderr)
         sys.exit(0)
     return path
 
@@ -106,9 +106,18 @@ class Table:
 
     def add(self, *values):
         with open(self.path, "a") as out:
-            out.write(",".join(f"{v:.6g}" if isinstance(v, float) else str(v) for v in values) + "\n")
+            out.write(",".join(map(cell, values)) + "\n")
         self.rows.append(dict(zip(self.columns, map(str, values))))
         self.done.add(self.key(values))
+
+
+def show(*values):
+    """A row of a table on standard output."""
+    print(",".join(cell(v) for v in values))
+
+
+def cell(value):
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def read(path):

@@ -23,6 +23,8 @@ def write(path, series, x_name, y_name, box=None):
     """series: name, points, and whether they are "line" or "points"; box: x and y from, to."""
     width, height, left, bottom, top, right = 820, 400, 60, 50, 15, 195
     every = [p for _, points, _ in series for p in points]
+    if not every:
+        return
     x0, x1, y0, y1 = box or (min(p[0] for p in every), max(p[0] for p in every), min(p[1] for p in every), max(p[1] for p in every))
 
     def at(x, y):

@@ -1,9 +1,10 @@
 #!/bin/bash
 # Evidence: cases beside measurements and other codes, docs/background/evidence.md.
-#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration, orifice, bulk, polyhedra, clumps, turning, paper; all without a name
+#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration, orifice, bulk, polyhedra, clumps, turning, hits, paper, estimator; all without a name
 # Each piece goes on where it was broken off; what is done is not done again (delete its table in results/ to repeat it).
-# SCREE_EVIDENCE_DIR names the folder of measurements (default ../shared/evidence); a case without its folder is skipped.
-# One process at a time: nice -n 15 bench/evidence/run.sh runs beside other work. Some hours of one core in all.
+# SCREE_EVIDENCE_SECONDS stops each piece after so long, at a row of its table; the same call goes on with the next.
+# SCREE_EVIDENCE_DIR names the folder of measurements (default ../shared/evidence); a case without its folder, or the program that it is
+# compared with, is skipped. One process at a time: nice -n 15 bench/evidence/run.sh runs beside other work. Some hours of one core in all.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -13,103 +14,147 @@ work=${SCREE_EVIDENCE_WORK:-$root/build/evidence}
 results=$here/results
 shapes=recommended,4x,0.25x,0.0625x,sphere,clump5,clump20,clump50
 mkdir -p "$work" "$results"
-[ $# -gt 0 ] || set -- boulders drum penetration orifice bulk polyhedra clumps turning paper
+cases=(boulders drum penetration orifice bulk polyhedra clumps turning hits paper estimator)
+[ $# -gt 0 ] || set -- "${cases[@]}"
+
+# piece COMMAND...: within the limit; stopped says that one of the case's ended there.
+piece() {
+  code=0
+  timeout "${SCREE_EVIDENCE_SECONDS:-0}" "$@" || code=$?
+  [ $code != 124 ] || { stopped=1 && echo "stopped after $SCREE_EVIDENCE_SECONDS s: ${*#"$root/"}" >&2; }
+  [ $code = 0 ] || [ $code = 124 ]
+}
+
+# table FILE COMMAND...: what the command prints, whole or not at all.
+table() {
+  piece "${@:2}" >"$work/table"
+  [ $code != 0 ] || [ ! -s "$work/table" ] || cp "$work/table" "$1"
+}
+
+# compared RUNS RESULT COMMAND...: what the command says of the runs, when all are there.
+compared() { [ "$stopped" ] || [ ! -s "$1" ] || table "$2" "${@:3}" "$1"; }
 
 # fitted CASE: its calibration and both tables of it.
 fitted() {
   [ -s "$results/$1-fit.csv" ] && return
-  "$scree" calibrate "$here/$1/fit.yaml" -o "$work/$1-fit" --jobs 1 -j 1
-  "$here/fit_table.py" "$work/$1-fit" "$results/$1-fit.csv" "$results/$1-runs.csv"
+  piece "$scree" calibrate "$here/$1/fit.yaml" -o "$work/$1-fit" --jobs 1 -j 1
+  [ "$stopped" ] || "$here/fit_table.py" "$work/$1-fit" "$results/$1-fit.csv" "$results/$1-runs.csv"
 }
 
 boulders() {
-  [ -s "$results/boulders-measured.csv" ] || "$here/boulders/boulders.py" measured >"$results/boulders-measured.csv"
-  [ -s "$results/boulders-used.csv" ] || "$here/boulders/boulders.py" used --variant $shapes >"$results/boulders-used.csv"
+  [ -s "$results/boulders-measured.csv" ] || table "$results/boulders-measured.csv" "$here/boulders/boulders.py" measured
+  [ -s "$results/boulders-used.csv" ] || table "$results/boulders-used.csv" "$here/boulders/boulders.py" used --variant $shapes
   fitted boulders
-  local words corner=() zone table
+  [ -s "$results/boulders-fit.csv" ] || return 0
+  local words corner=() zone part
   words=$("$here/boulders/boulders.py" fitted "$results/boulders-fit.csv")
   for zone in blue gray red; do corner+=("$zone.restitution=0.05" "$zone.friction=1"); done
   # shellcheck disable=SC2086 # many words
-  "$here/boulders/boulders.py" grid "$results/boulders-grid.csv" $words --every 16 --variant $shapes
-  "$here/boulders/boulders.py" grid "$results/boulders-corner.csv" "${corner[@]}" --every 4 --variant $shapes
-  "$here/boulders/boulders.py" rolling "$results/boulders-rolling.csv"
-  for table in grid corner; do
-    "$here/boulders/compare.py" places "$results/boulders-$table.csv" "$results/boulders-$table-places.csv"
-    "$here/boulders/compare.py" shapes "$results/boulders-$table.csv" "$results/boulders-$table-shapes.csv"
+  piece "$here/boulders/boulders.py" grid "$results/boulders-grid.csv" $words --every 16 --variant $shapes
+  piece "$here/boulders/boulders.py" grid "$results/boulders-corner.csv" "${corner[@]}" --every 4 --variant $shapes
+  piece "$here/boulders/boulders.py" rolling "$results/boulders-rolling.csv"
+  for part in grid corner; do
+    compared "$results/boulders-$part.csv" "$results/boulders-$part-places.csv" "$here/boulders/compare.py" places
+    compared "$results/boulders-$part.csv" "$results/boulders-$part-shapes.csv" "$here/boulders/compare.py" shapes
   done
 }
 
 drum() {
-  "$here/drum/drum.py" outlines "$results/drum-measured.csv"
-  "$here/drum/drum.py" acces >"$results/drum-acces.csv"
-  "$here/drum/drum.py" sizes "$results/drum-sizes.csv" 6.0 4.5 3.5 --measured "$results/drum-measured.csv"
+  [ -s "$results/drum-measured.csv" ] || "$here/drum/drum.py" outlines "$results/drum-measured.csv"
+  table "$results/drum-acces.csv" "$here/drum/drum.py" acces
+  piece "$here/drum/drum.py" sizes "$results/drum-sizes.csv" 6.0 4.5 3.5 --measured "$results/drum-measured.csv"
   fitted drum
+  [ -s "$results/drum-fit.csv" ] || return 0
   local rpm friction rolling solid
   friction=$(awk -F, '$2 == "friction" { print $4 }' "$results/drum-fit.csv")
   rolling=$(awk -F, '$2 == "rolling" { print $4 }' "$results/drum-fit.csv")
   solid=$(awk -F, '$2 == "solid" { print $4 }' "$results/drum-fit.csv")
   [ -n "$solid" ] || { echo "drum-fit.csv is of a fit without the powder's volume: remove it, and drum-10.csv to drum-45.csv" >&2; return 1; }
   for rpm in 10 15 30 45; do
-    [ -s "$results/drum-$rpm.csv" ] || "$here/drum/drum.py" one --rpm $rpm --friction "$friction" --rolling "$rolling" \
+    [ -s "$results/drum-$rpm.csv" ] || piece "$here/drum/drum.py" one --rpm $rpm --friction "$friction" --rolling "$rolling" \
       --solid "$solid" --size 3.5 --profile "$results/drum-$rpm.csv"
   done
 }
 
 penetration() {
-  [ -s "$results/penetration.csv" ] || "$here/penetration/penetration.py" run "$results/penetration.csv"
-  "$here/penetration/penetration.py" compare "$results/penetration.csv" >"$results/penetration.txt"
+  [ -s "$results/penetration.csv" ] || piece "$here/penetration/penetration.py" run "$results/penetration.csv"
+  compared "$results/penetration.csv" "$results/penetration.txt" "$here/penetration/penetration.py" compare
 }
 
 orifice() {
-  "$here/orifice/orifice.py" run "$results/orifice.csv" 5.5:4,6.25:4,7:4,8:2,9:1 scree liggghts liggghts-no-dashpot
-  "$here/orifice/orifice.py" compare "$results/orifice.csv" >"$results/orifice-compared.csv"
+  piece "$here/orifice/orifice.py" run "$results/orifice.csv" 5.5:4,6.25:4,7:4,8:2,9:1 scree liggghts liggghts-no-dashpot
+  compared "$results/orifice.csv" "$results/orifice-compared.csv" "$here/orifice/orifice.py" compare
 }
 
 bulk() {
   local case
   for case in drum silo-large silo-small; do
-    "$here/bulk/bulk.py" run $case:1 "$results/bulk-$case.csv"
-    [ ! -s "$results/bulk-$case.csv" ] || "$here/bulk/bulk.py" compare $case "$results/bulk-$case.csv" >"$results/bulk-$case-compared.csv"
+    piece "$here/bulk/bulk.py" run $case:1 "$results/bulk-$case.csv"
+    compared "$results/bulk-$case.csv" "$results/bulk-$case-compared.csv" "$here/bulk/bulk.py" compare $case
   done
 }
 
-# heaps NAME SEEDS VARIANT...: tables of codes/NAME.py; without its other code nothing is there to compare.
-heaps() {
-  "$here/codes/$1.py" run "$results/$1.csv" "${@:2}"
-  [ ! -s "$results/$1.csv" ] || "$here/codes/$1.py" compare "$results/$1.csv" >"$results/$1-compared.csv"
-}
+# heaps NAME SEEDS VARIANT...: a table of codes/NAME.py.
+heaps() { piece "$here/codes/$1.py" run "$results/$1.csv" "${@:2}"; }
 
 polyhedra() {
-  heaps polyhedra 3 yade yade-contacts scree:0.7
+  heaps polyhedra 5 yade
+  heaps polyhedra 3 yade-contacts scree:0.7
   heaps polyhedra 2 yade:0.1
   heaps polyhedra 12 scree:0.1
   heaps polyhedra 20 scree
-  [ -s "$results/polyhedra-slide.csv" ] || ! command -v "${YADE:-yade}" >/dev/null ||
-    "$here/codes/polyhedra.py" slide scree yade yade:0.1 yade-contacts >"$results/polyhedra-slide.csv"
+  compared "$results/polyhedra.csv" "$results/polyhedra-compared.csv" "$here/codes/polyhedra.py" compare
+  [ -s "$results/polyhedra-slide.csv" ] || table "$results/polyhedra-slide.csv" "$here/codes/polyhedra.py" slide scree yade yade:0.1 yade-contacts
 }
 
 clumps() {
-  heaps clumps 10 liggghts scree
+  heaps clumps 40 liggghts scree
+  heaps clumps 40 lammps
   heaps clumps 4 liggghts-dashpot
+  compared "$results/clumps.csv" "$results/clumps-compared.csv" "$here/codes/clumps.py" compare
 }
 
 turning() {
-  "$here/codes/turning.py" run "$results/turning.csv" 40:3,20:3,10:2 scree liggghts
-  "$here/codes/turning.py" run "$results/turning.csv" 40:3,20:1 liggghts-no-dashpot
-  "$here/codes/turning.py" run "$results/turning.csv" 40:3 liggghts-no-sliding liggghts-no-rolling
-  [ ! -s "$results/turning.csv" ] || "$here/codes/turning.py" compare "$results/turning.csv" >"$results/turning-compared.csv"
+  heaps turning 40:3,20:3,10:2 scree liggghts liggghts-no-rolling
+  heaps turning 40:3,20:1 liggghts-no-dashpot
+  heaps turning 40:3 liggghts-no-sliding
+  compared "$results/turning.csv" "$results/turning-compared.csv" "$here/codes/turning.py" compare
 }
 
-paper() { "$here/paper/claims.py" >"$results/paper-claims.csv"; }
+hits() { [ -s "$results/hits.csv" ] || table "$results/hits.csv" "$here/hits/hits.py"; }
+
+paper() {
+  local runs=$results/paper-runs.csv
+  if [ ! -s "$runs" ] || [ "$(wc -l <"$runs")" -lt 14 ]; then
+    piece "$scree" study "$here/paper/study.yaml" -o "$work/paper" --jobs 1
+    [ ! -s "$work/paper/study.sqlite" ] || "$here/paper/claims.py" runs "$work/paper" "$runs"
+  fi
+  table "$results/paper-claims.csv" "$here/paper/claims.py"
+}
+
+estimator() {
+  piece "$here/estimator/estimator.py" run "$results/estimator.csv" sphere:75:32 sphere:150:60 sphere:300:32 sphere:600:6 box:150:20
+  compared "$results/estimator.csv" "$results/estimator-compared.csv" "$here/estimator/estimator.py" compare
+}
 
 for case in "$@"; do
+  folder='' needs='' stopped=''
   case $case in
   boulders) folder=authume ;;
   drum) folder=granudrum ;;
-  penetration | bulk) folder=bulk ;;
-  orifice | polyhedra | clumps | turning | paper) folder= ;; # nothing measured
-  *) echo "run.sh: no case '$case'; there are boulders, drum, penetration, orifice, bulk, polyhedra, clumps, turning and paper" >&2 && exit 2 ;;
+  penetration | bulk) folder=bulk needs=LIGGGHTS ;;
+  orifice | clumps | turning) needs=LIGGGHTS ;;
+  polyhedra) needs=YADE ;;
+  hits | paper | estimator) ;;
+  *) echo "run.sh: no case '$case'; there are ${cases[*]}" >&2 && exit 2 ;;
   esac
-  if [ -z "$folder" ] || [ -d "$SCREE_EVIDENCE_DIR/$folder" ]; then $case; else echo "$case: skipped, there is no folder $SCREE_EVIDENCE_DIR/$folder"; fi
+  program=${needs:+${!needs:-${needs,,}}}
+  if [ ! -d "$SCREE_EVIDENCE_DIR/$folder" ] && [ "$folder" ]; then
+    echo "$case: skipped, there is no folder $SCREE_EVIDENCE_DIR/$folder (SCREE_EVIDENCE_DIR)" >&2
+  elif [ "$program" ] && ! command -v "$program" >/dev/null; then
+    echo "$case: skipped, there is no program $program (apt install ${needs,,}; or $needs=PROGRAM)" >&2
+  else
+    $case
+  fi
 done
 "$here/figures.py"

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Where boulders came to rest: measured, by Rockable and by scree; and which description of the shape would have misled.
 
-  compare.py places GRID.csv OUT.csv     measured, Rockable and scree at the fitted parameters, two by two
-  compare.py shapes GRID.csv OUT.csv     every variant beside 4x, trajectories with the same start as pairs
+  compare.py places GRID.csv     as CSV: measured, Rockable and scree at the fitted parameters, two by two
+  compare.py shapes GRID.csv     as CSV: every variant beside 4x, trajectories with the same start as pairs
 Margins: ../margins.md. Environment: SCREE_EVIDENCE_DIR."""
 import csv
 import math
@@ -12,7 +12,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 from boulders import ZONES, Terrain, measured_rows  # noqa: E402
-from common import Table, bootstrap, data, deviation, kolmogorov, kolmogorov_p, mean, read  # noqa: E402
+from common import bootstrap, data, deviation, kolmogorov, kolmogorov_p, mean, read, show  # noqa: E402
 
 REFERENCE, SPAN, NEAR, FAR = "4x", 3.0, 0.12, 0.2   # m; Kolmogorov distances
 FIT = 0.35
@@ -37,11 +37,10 @@ def distance_interval(d, a, b):
     return max(0.0, 2 * d - high), min(1.0, max(0.0, 2 * d - low))
 
 
-def places(grid, out):
+def places(grid):
     samples = {"measured": measured_rows(), "rockable": rockable(), "scree": simulated(grid)}
-    table = Table(out, ["sample", "beside", "count", "along_mean", "along_sd", "sideways_mean", "sideways_sd", *ZONES, "off",
-                        "d_along", "d_along_low", "d_along_high", "p_along", "d_sideways", "d_sideways_low", "d_sideways_high",
-                        "p_sideways", "verdict_along"], 2)
+    show("sample", "beside", "count", "along_mean", "along_sd", "sideways_mean", "sideways_sd", *ZONES, "off", "d_along", "d_along_low",
+         "d_along_high", "p_along", "d_sideways", "d_sideways_low", "d_sideways_high", "p_sideways", "verdict_along")
     for name, beside in (("measured", ""), ("rockable", "measured"), ("scree", "measured"), ("scree", "rockable")):
         rows = samples[name]
         line = [name, beside, len(rows), *(f([r[k] for r in rows]) for k in (0, 1) for f in (mean, deviation)),
@@ -54,22 +53,21 @@ def places(grid, out):
             line += [d, low, high, p]
             if k == 0:
                 verdict = "differs" if p < 0.05 else "agrees" if high < FIT else "open"
-        table.add(*line, *([""] * 8 if not beside else []), verdict)
+        show(*line, *([""] * 8 if not beside else []), verdict)
 
 
-def shapes(grid, out):
+def shapes(grid):
     rows = {}
     for r in read(grid):
         if r["zone"] != "none":
             rows.setdefault(r["variant"], {})[r["shape"], r["place"], r["orientation"]] = float(r["along"])
-    table = Table(out, ["variant", "pairs", "along_mean", "along_sd", "difference", "low", "high", "sd_of_differences", "d",
-                        "d_low", "d_high", "verdict"], 1)
+    show("variant", "pairs", "along_mean", "along_sd", "difference", "low", "high", "sd_of_differences", "d", "d_low", "d_high", "verdict")
     reference = rows[REFERENCE]
     for variant, ends in rows.items():
         keys = [k for k in ends if k in reference]
         a, b = [ends[k] for k in keys], [reference[k] for k in keys]
         if variant == REFERENCE:
-            table.add(variant, len(keys), mean(a), deviation(a), *[""] * 8)
+            show(variant, len(keys), mean(a), deviation(a), *[""] * 8)
             continue
         differences = [x - y for x, y in zip(a, b)]
         half = 1.645 * deviation(differences) / math.sqrt(len(keys))
@@ -78,12 +76,11 @@ def shapes(grid, out):
         d_low, d_high = distance_interval(d, a, b)
         misled = low > SPAN or high < -SPAN or d_low > NEAR
         same = low > -SPAN and high < SPAN and d_high < FAR
-        table.add(variant, len(keys), mean(a), deviation(a), mean(differences), low, high, deviation(differences), d, d_low, d_high,
-                  "misleads" if misled else "does not" if same else "open")
+        show(variant, len(keys), mean(a), deviation(a), mean(differences), low, high, deviation(differences), d, d_low, d_high,
+             "misleads" if misled else "does not" if same else "open")
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 4 or sys.argv[1] not in ("places", "shapes"):
+    if len(sys.argv) != 3 or sys.argv[1] not in ("places", "shapes"):
         sys.exit(__doc__)
-    pathlib.Path(sys.argv[3]).unlink(missing_ok=True)
-    {"places": places, "shapes": shapes}[sys.argv[1]](*sys.argv[2:])
+    {"places": places, "shapes": shapes}[sys.argv[1]](sys.argv[2])

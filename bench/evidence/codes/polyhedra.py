@@ -107,6 +107,7 @@ def run(path, seeds, variants):
 def slide(variants):
     """A box that starts at rest, flat on a slope, friction 0.5: half of the time squared times g (sin a - 0.5 cos a). In scree
     its tangential spring, softer than YADE's, gives way first: some 2 mm more."""
+    needs("YADE")
     print(f"# commit {commit()}; polyhedra.py slide {' '.join(variants)}\ndegrees,variant,way_mm,closed_form_mm")
     folder = WORK / "polyhedra" / "slide"
     folder.mkdir(parents=True, exist_ok=True)
