@@ -698,6 +698,9 @@ static void hostile_gltf(void **state) {
   (void)state;
   make_glb(4000000000, ""); /* indices that the buffer has no room for */
   expect_error(SCREE_BAD_FILE, "out of range");
+  make_quantized("},{\"bufferView\":1,\"count\":1000000000000,\"type\":\"SCALAR\"", 5122,
+                 "KHR_mesh_quantization");
+  expect_error(SCREE_BAD_FILE, "out of range"); /* indices that are of no type */
   make_glb(36, "");
   for (size_t i = 12; i < file_size; i++) file[i] = (unsigned char)(i * 181);
   expect_error(SCREE_BAD_FILE, "glTF binary");

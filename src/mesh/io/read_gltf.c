@@ -225,6 +225,7 @@ typedef struct elements {
 static bool find_elements(const cgltf_buffer_view *view, size_t offset, size_t stride, size_t size,
                           size_t count, elements *e) {
   size_t length = 0;
+  if (size == 0) return false; /* no type of numbers */
   if (!view || !view->buffer || !view->buffer->data || view->offset > view->buffer->size ||
       view->size > view->buffer->size - view->offset)
     return false;
