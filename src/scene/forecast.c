@@ -1,7 +1,7 @@
 /* What can be said of a scene before its first step: what it will cost, and what is probably a
  * slip. An inlet that places at random holds a quarter of its volume, or little more; what it holds
  * makes room by falling out of it. */
-#include "scene/scene.h"
+#include "scene/starts.h"
 
 static const double random_packing = 0.25; /* share of a region's volume that random places fill */
 static const double body_seconds = 1e-6, mesh_seconds = 3e-6; /* a step, at rest, on one core */
@@ -186,6 +186,26 @@ static void remark_softness(const scree_scene *scene, remarks *r) {
              soft.least, pow(usual_share / soft.least, 2), usual_share / soft.least);
 }
 
+/* The last, for it takes longest. */
+static void remark_starts(const scree_scene *scene, remarks *r) {
+  for (size_t i = 0; i < scene->plan.inlets.count && r->count <= r->wanted; i++) {
+    const char *path = scene->inlets[i].plan->place.path;
+    scree_scene_starts s;
+    if (!scree_scene_look_at_starts(scene, i, &s)) continue;
+    if (s.parted > 0 && is_asked(r))
+      snprintf(
+          r->text, SCREE_REMARK,
+          "%s: '%s' cuts the region in parts: about %.0f %% of the bodies start outside of its "
+          "largest part",
+          path, scree_scene_geometry_name(scene, s.parted_by), 100 * s.parted);
+    if (s.past > 0 && is_asked(r))
+      snprintf(
+          r->text, SCREE_REMARK,
+          "%s: about %.0f %% of the bodies start where they fall past all geometry and outlets",
+          path, 100 * s.past);
+  }
+}
+
 bool scree_scene_remark(const scree_scene *scene, size_t index, char text[SCREE_REMARK]) {
   remarks r = {.wanted = index, .text = text};
   remark_softness(scene, &r);
@@ -194,6 +214,7 @@ bool scree_scene_remark(const scree_scene *scene, size_t index, char text[SCREE_
   remark_inlets(scene, &r);
   remark_cylinders(scene, &r);
   remark_frames(scene, &r);
+  remark_starts(scene, &r);
   return r.count > index;
 }
 

@@ -1,12 +1,11 @@
 /* Inlets: random sequential addition. A body that is due takes a random place and orientation in
  * its region; where it would touch another or a wall it takes the next, and after so many tries it
  * waits until the next tick. Shapes come in their shares: next is the one that is most behind. */
-#include "scene/scene.h"
+#include "scene/starts.h"
 
 #include "base/alloc.h"
 #include "base/array.h"
 #include "base/math.h"
-#include "base/rng.h"
 
 #include <string.h>
 
@@ -123,6 +122,12 @@ static bool draw(const scree_scene *scene, const scree_scene_inlet *inlet, size_
                                  : draw_in_cylinder(inlet->plan->cylinder, p, rng);
   scree_placement_settle(p);
   return within;
+}
+
+bool scree_scene_draw_start(const scree_scene *scene, size_t index, size_t which, scree_rng *rng,
+                            scree_placement *placement) {
+  const scree_scene_inlet *inlet = &scene->inlets[index];
+  return draw(scene, inlet, inlet->shapes[which], rng, placement);
 }
 
 static scree_rng rng_of(const scree_scene *scene, size_t index) {
