@@ -365,7 +365,7 @@ static scree_status read_inner(const scree_reader *r, const scree_yaml *node, co
 }
 
 static scree_status read_records(const scree_reader *r, const scree_yaml *node,
-                                 const scree_field *f, scree_records *value) {
+                                 const scree_field *f, void *value) {
   bool named = f->kind == SCREE_FIELD_NAMED;
   if (node->kind != (named ? SCREE_YAML_MAPPING : SCREE_YAML_SEQUENCE))
     return fail_at(r, node,
@@ -389,8 +389,8 @@ static scree_status read_records(const scree_reader *r, const scree_yaml *node,
     place->name = named ? keep_text(r, node->items[i].key) : NULL;
     if (named && !place->name) return fail_memory(r);
   }
-  value->items = items;
-  value->count = node->item_count;
+  const scree_records made = {items, node->item_count};
+  memcpy(value, &made, sizeof made);
   return SCREE_OK;
 }
 
@@ -476,6 +476,13 @@ scree_status scree_record_read(const scree_reader *reader, const scree_yaml *nod
   return kind->check ? kind->check(reader, record) : SCREE_OK;
 }
 
+/* A list of records as one of any kind. */
+static scree_records records_in(const void *list) {
+  scree_records records;
+  memcpy(&records, list, sizeof records);
+  return records;
+}
+
 bool scree_field_is_given(const scree_field *field, const void *record) {
   const void *value = (const char *)record + field->offset;
   switch (field->kind) {
@@ -501,7 +508,7 @@ bool scree_field_is_given(const scree_field *field, const void *record) {
     return ((const scree_weights *)value)->count > 0;
   case SCREE_FIELD_NAMED:
   case SCREE_FIELD_LIST:
-    return ((const scree_records *)value)->count > 0;
+    return records_in(value).count > 0;
   default:
     return true;
   }
@@ -659,10 +666,11 @@ static bool is_empty(const scree_record *kind, const void *record) {
   return true;
 }
 
-static void put_records(FILE *stream, const scree_field *f, const scree_records *records, int depth,
+static void put_records(FILE *stream, const scree_field *f, const void *value, int depth,
                         bool comments) {
-  for (size_t i = 0; i < records->count; i++) {
-    const void *record = (const char *)records->items + i * f->record->size;
+  const scree_records records = records_in(value);
+  for (size_t i = 0; i < records.count; i++) {
+    const void *record = (const char *)records.items + i * f->record->size;
     const scree_place *place = record;
     fprintf(stream, "%*s", 2 * depth, "");
     if (f->kind == SCREE_FIELD_NAMED) put_text(stream, place->name);

@@ -20,8 +20,8 @@ typedef enum scree_field_kind {
   SCREE_FIELD_TABLE,   /* scree_table: [[t, value], ...], t rising */
   SCREE_FIELD_WEIGHTS, /* scree_weights: {name: number, ...}, a list of names, or one name */
   SCREE_FIELD_RECORD,  /* struct *; NULL: not given */
-  SCREE_FIELD_NAMED,   /* scree_records: {name: record, ...} */
-  SCREE_FIELD_LIST,    /* scree_records: [record, ...] */
+  SCREE_FIELD_NAMED,   /* TYPE_list: {name: record, ...} */
+  SCREE_FIELD_LIST,    /* TYPE_list: [record, ...] */
   SCREE_FIELD_VALUES,  /* scree_values: {name: any one value, ...} */
   SCREE_FIELD_NODE, /* const scree_yaml *: as it stands there, for its reader to look at; NULL: not
                        given; never printed */
@@ -48,6 +48,7 @@ typedef struct scree_values {
   size_t count;
 } scree_values;
 
+/* As the list of every type of record (schema_rows.h) lies in memory. */
 typedef struct scree_records {
   void *items;
   size_t count;

@@ -1,31 +1,138 @@
-/* Rows of the tables in base/schema.h, for files that hold such tables: the field is the member of
- * that name of the type that the macro RECORD names there. */
+/* Records whose fields are each said once, in a list of rows:
+ *
+ *     #define SCREE_PLAN_DISC(ROW, T)                       \
+ *       ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m", "")       \
+ *       ROW(T, VECTOR, normal, (0, 0, 1), 0, 0, "", "")
+ *     SCREE_RECORD_TYPE(scree_plan_disc, SCREE_PLAN_DISC)
+ *
+ * is the struct, whose members are the rows', and a list of such structs, scree_plan_disc_list. In
+ * one .c file
+ *
+ *     SCREE_RECORD_TABLE(scree_plan_disc, SCREE_PLAN_DISC, "a disc", check_disc)
+ *
+ * is scree_plan_disc_record, its table and defaults. A row has the kind (scree_field_kind), the
+ * member, which is the key too, and
+ *
+ *     REAL, VECTOR: default, least, most, unit, sentence     COUNT: default, least, most, sentence
+ *     SEED, FLAG: default, sentence                          WORD: default, words, sentence
+ *     TEXT, TEXTS, VALUES, NODE: sentence                    TABLE, WEIGHTS: least, most, unit,
+ *     GROUP, NAMED, LIST: type of the record, sentence         sentence
+ *
+ * AS: a key, then the row of a member that is not called so. OWN: declaration, name and default of
+ * a member that the file knows nothing of. */
 #pragma once
 
 #include "base/schema.h"
 
-#define SCREE_ROW(member, kind, least, most, unit, comment, record)                                \
-  { #member, SCREE_FIELD_##kind, offsetof(RECORD, member), least, most, unit, comment, record }
+#define SCREE_NONE                  (NAN, NAN, NAN)
+#define SCREE_ZERO                  (0, 0, 0)
+#define SCREE_WITHOUT_BRACKETS(...) __VA_ARGS__
 
-#define REAL(member, least, most, unit, comment)                                                   \
-  SCREE_ROW(member, REAL, least, most, unit, comment, NULL)
-#define VECTOR(member, least, most, unit, comment)                                                 \
-  SCREE_ROW(member, VECTOR, least, most, unit, comment, NULL)
-#define WEIGHTS(member, least, most, unit, comment)                                                \
-  SCREE_ROW(member, WEIGHTS, least, most, unit, comment, NULL)
-#define COUNT(member, least, most, comment) SCREE_ROW(member, COUNT, least, most, "", comment, NULL)
-#define WORD(member, words, comment)        SCREE_ROW(member, WORD, 0, 0, words, comment, NULL)
-#define TABLE(member, units, comment)       SCREE_ROW(member, TABLE, 0, 0, units, comment, NULL)
-#define FLAG(member, comment)               SCREE_ROW(member, FLAG, 0, 0, "", comment, NULL)
-#define SEED(member, comment)               SCREE_ROW(member, SEED, 0, 0, "", comment, NULL)
-#define TEXT(member, comment)               SCREE_ROW(member, TEXT, 0, 0, "", comment, NULL)
-#define TEXTS(member, comment)              SCREE_ROW(member, TEXTS, 0, 0, "", comment, NULL)
-#define VALUES(member, comment)             SCREE_ROW(member, VALUES, 0, 0, "", comment, NULL)
-#define NODE(member, comment)               SCREE_ROW(member, NODE, 0, 0, "", comment, NULL)
-#define GROUP(member, comment, record)      SCREE_ROW(member, RECORD, 0, 0, "", comment, record)
-#define NAMED(member, comment, record)      SCREE_ROW(member, NAMED, 0, 0, "", comment, record)
-#define LIST(member, comment, record)       SCREE_ROW(member, LIST, 0, 0, "", comment, record)
+#define SCREE_RECORD_TYPE(type, list)                                                              \
+  typedef struct type {                                                                            \
+    scree_place place;                                                                             \
+    list(SCREE_MEMBER, type)                                                                       \
+  } type;                                                                                          \
+  SCREE_RECORD_LIST(type);
+/* What a record's lists are, and that there is its table. */
+#define SCREE_RECORD_LIST(type)                                                                    \
+  typedef struct type##_list {                                                                     \
+    type *items;                                                                                   \
+    size_t count;                                                                                  \
+  } type##_list;                                                                                   \
+  extern const scree_record type##_record
 
-/* The record of a table and its defaults. */
-#define SCREE_RECORD(what, table, defaults, check)                                                 \
-  { what, table, sizeof(table) / sizeof *(table), sizeof(defaults), &(defaults), check }
+/* The same struct, of which another record has some members, with other keys and ranges. */
+#define SCREE_RECORD_LIKE(type, other)                                                             \
+  typedef type other;                                                                              \
+  SCREE_RECORD_LIST(other)
+
+#define SCREE_RECORD_TABLE(type, list, what, check)                                                \
+  SCREE_RECORD_TABLE_OF(type, list, list, what, check)
+/* Of a record that has rows for some of the members; the others have defaults, too. */
+#define SCREE_RECORD_TABLE_OF(type, all, list, what, check)                                        \
+  static const type type##_defaults = {.place = {0}, all(SCREE_DEFAULT, type)};                    \
+  static const scree_field type##_fields[] = {list(SCREE_ROW, type)};                              \
+  const scree_record type##_record = {                                                             \
+      what,         type##_fields,    sizeof(type##_fields) / sizeof *type##_fields,               \
+      sizeof(type), &type##_defaults, check};
+
+/* ---- a row as member of the struct ---- */
+
+#define SCREE_MEMBER(T, kind, ...)               SCREE_MEMBER_##kind(T, __VA_ARGS__)
+#define SCREE_MEMBER_AS(T, key, kind, ...)       SCREE_MEMBER_##kind(T, __VA_ARGS__)
+#define SCREE_MEMBER_OWN(T, declaration, ...)    declaration;
+#define SCREE_MEMBER_REAL(T, member, ...)        double member;
+#define SCREE_MEMBER_VECTOR(T, member, ...)      double member[3];
+#define SCREE_MEMBER_COUNT(T, member, ...)       size_t member;
+#define SCREE_MEMBER_SEED(T, member, ...)        uint64_t member;
+#define SCREE_MEMBER_FLAG(T, member, ...)        bool member;
+#define SCREE_MEMBER_WORD(T, member, ...)        int member;
+#define SCREE_MEMBER_TEXT(T, member, ...)        const char *member;
+#define SCREE_MEMBER_TEXTS(T, member, ...)       scree_texts member;
+#define SCREE_MEMBER_TABLE(T, member, ...)       scree_table member;
+#define SCREE_MEMBER_WEIGHTS(T, member, ...)     scree_weights member;
+#define SCREE_MEMBER_VALUES(T, member, ...)      scree_values member;
+#define SCREE_MEMBER_NODE(T, member, ...)        const scree_yaml *member;
+#define SCREE_MEMBER_GROUP(T, member, type, ...) type *member;
+#define SCREE_MEMBER_NAMED(T, member, type, ...) type##_list member;
+#define SCREE_MEMBER_LIST(T, member, type, ...)  type##_list member;
+
+/* ---- as its default ---- */
+
+#define SCREE_DEFAULT(T, kind, ...)                    SCREE_DEFAULT_##kind(T, __VA_ARGS__)
+#define SCREE_DEFAULT_AS(T, key, kind, ...)            SCREE_DEFAULT_##kind(T, __VA_ARGS__)
+#define SCREE_DEFAULT_OWN(T, declaration, name, value) .name = value,
+#define SCREE_DEFAULT_REAL(T, member, value, ...)      .member = (value),
+#define SCREE_DEFAULT_VECTOR(T, member, value, ...)    .member = {SCREE_WITHOUT_BRACKETS value},
+#define SCREE_DEFAULT_COUNT                            SCREE_DEFAULT_REAL
+#define SCREE_DEFAULT_SEED                             SCREE_DEFAULT_REAL
+#define SCREE_DEFAULT_FLAG                             SCREE_DEFAULT_REAL
+#define SCREE_DEFAULT_WORD                             SCREE_DEFAULT_REAL
+#define SCREE_DEFAULT_TEXT(...)
+#define SCREE_DEFAULT_TEXTS(...)
+#define SCREE_DEFAULT_TABLE(...)
+#define SCREE_DEFAULT_WEIGHTS(...)
+#define SCREE_DEFAULT_VALUES(...)
+#define SCREE_DEFAULT_NODE(...)
+#define SCREE_DEFAULT_GROUP(...)
+#define SCREE_DEFAULT_NAMED(...)
+#define SCREE_DEFAULT_LIST(...)
+
+/* ---- in the table ---- */
+
+#define SCREE_ROW(T, kind, member, ...)       SCREE_ROW_##kind(T, #member, member, __VA_ARGS__)
+#define SCREE_ROW_AS(T, none, key, kind, ...) SCREE_ROW_##kind(T, key, __VA_ARGS__)
+#define SCREE_ROW_OWN(...)
+#define SCREE_ROW_OF(T, key, kind, member, least, most, unit, comment, record)                     \
+  {key, SCREE_FIELD_##kind, offsetof(T, member), least, most, unit, comment, record},
+#define SCREE_ROW_REAL(T, key, member, value, least, most, unit, comment)                          \
+  SCREE_ROW_OF(T, key, REAL, member, least, most, unit, comment, NULL)
+#define SCREE_ROW_VECTOR(T, key, member, value, least, most, unit, comment)                        \
+  SCREE_ROW_OF(T, key, VECTOR, member, least, most, unit, comment, NULL)
+#define SCREE_ROW_TABLE(T, key, member, least, most, units, comment)                               \
+  SCREE_ROW_OF(T, key, TABLE, member, least, most, units, comment, NULL)
+#define SCREE_ROW_WEIGHTS(T, key, member, least, most, unit, comment)                              \
+  SCREE_ROW_OF(T, key, WEIGHTS, member, least, most, unit, comment, NULL)
+#define SCREE_ROW_COUNT(T, key, member, value, least, most, comment)                               \
+  SCREE_ROW_OF(T, key, COUNT, member, least, most, "", comment, NULL)
+#define SCREE_ROW_WORD(T, key, member, value, words, comment)                                      \
+  SCREE_ROW_OF(T, key, WORD, member, 0, 0, words, comment, NULL)
+#define SCREE_ROW_SEED(T, key, member, value, comment)                                             \
+  SCREE_ROW_OF(T, key, SEED, member, 0, 0, "", comment, NULL)
+#define SCREE_ROW_FLAG(T, key, member, value, comment)                                             \
+  SCREE_ROW_OF(T, key, FLAG, member, 0, 0, "", comment, NULL)
+#define SCREE_ROW_TEXT(T, key, member, comment)                                                    \
+  SCREE_ROW_OF(T, key, TEXT, member, 0, 0, "", comment, NULL)
+#define SCREE_ROW_TEXTS(T, key, member, comment)                                                   \
+  SCREE_ROW_OF(T, key, TEXTS, member, 0, 0, "", comment, NULL)
+#define SCREE_ROW_VALUES(T, key, member, comment)                                                  \
+  SCREE_ROW_OF(T, key, VALUES, member, 0, 0, "", comment, NULL)
+#define SCREE_ROW_NODE(T, key, member, comment)                                                    \
+  SCREE_ROW_OF(T, key, NODE, member, 0, 0, "", comment, NULL)
+#define SCREE_ROW_GROUP(T, key, member, type, comment)                                             \
+  SCREE_ROW_OF(T, key, RECORD, member, 0, 0, "", comment, &type##_record)
+#define SCREE_ROW_NAMED(T, key, member, type, comment)                                             \
+  SCREE_ROW_OF(T, key, NAMED, member, 0, 0, "", comment, &type##_record)
+#define SCREE_ROW_LIST(T, key, member, type, comment)                                              \
+  SCREE_ROW_OF(T, key, LIST, member, 0, 0, "", comment, &type##_record)

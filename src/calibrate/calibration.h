@@ -1,61 +1,75 @@
 /* A calibration: what its file says, its folder, its runs, and the model of them. */
 #pragma once
 
-#include "base/schema.h"
+#include "base/schema_rows.h"
 #include "calibrate/model.h"
 #include "study/study.h"
 
 /* ---- the file ---- */
 
-typedef struct scree_plan_experiment {
-  scree_place place;
-  const char *scene;
-  scree_texts command;
-  const scree_yaml *set;
-  double cost; /* NAN: as measured */
-} scree_plan_experiment;
+#define SCREE_PLAN_EXPERIMENT(ROW, T)                                                              \
+  ROW(T, TEXT, scene, "file of a scene")                                                           \
+  ROW(T, TEXTS, command, "program and words")                                                      \
+  ROW(T, NODE, set, "fields of the scene that differ here")                                        \
+  ROW(T, REAL, cost, NAN, 1e-9, 1e9, "", "of a run, beside the others; not given: as measured")
+SCREE_RECORD_TYPE(scree_plan_experiment, SCREE_PLAN_EXPERIMENT)
 
-typedef struct scree_plan_parameter {
-  scree_place place;
-  scree_texts fields; /* none: its name, of a command */
-  double from, to;
-  int scale; /* 1: logarithmic */
-  scree_texts values;
-} scree_plan_parameter;
+#define SCREE_PLAN_SOUGHT_PARAMETER(ROW, T)                                                        \
+  ROW(T, AS, "field", TEXTS, fields, "of the scenes; none: its name, of a command")                \
+  ROW(T, REAL, from, NAN, -1e300, 1e300, "", "")                                                   \
+  ROW(T, REAL, to, NAN, -1e300, 1e300, "", "")                                                     \
+  ROW(T, WORD, scale, 0, "linear|log", "")                                                         \
+  ROW(T, TEXTS, values, "in place of a range")
+SCREE_RECORD_TYPE(scree_plan_parameter, SCREE_PLAN_SOUGHT_PARAMETER)
 
-typedef struct scree_plan_quantity {
-  scree_place place;
-  const char *experiment, *answer, *curve;
-  double at, from, until;
-  int take; /* 0 the last value, 1 the mean, 2 the standard deviation over the sensor's window */
-  double value, uncertainty;
-  const scree_yaml *measured;
-  size_t repeats;
-  double at_most, at_least;
-} scree_plan_quantity;
+/* What the simulation answers; what was measured of it; what it may be. */
+#define SCREE_PLAN_ANSWER(ROW, T)                                                                  \
+  ROW(T, TEXT, experiment, "")                                                                     \
+  ROW(T, TEXT, answer, "column of a sensor, or outline")                                           \
+  ROW(T, REAL, at, NAN, -1e9, 1e9, "", "s; of an outline m")                                       \
+  ROW(T, REAL, from, NAN, 0, 1e9, "s", "of the mean over a window")                                \
+  ROW(T, REAL, until, NAN, 0, 1e9, "s", "")                                                        \
+  ROW(T, WORD, take, 0, "last|mean|sd", "over the sensor's window")
+#define SCREE_PLAN_TARGET(ROW, T)                                                                  \
+  SCREE_PLAN_ANSWER(ROW, T)                                                                        \
+  ROW(T, REAL, value, NAN, -1e300, 1e300, "", "measured")                                          \
+  ROW(T, NODE, measured, "repeats, a list")                                                        \
+  ROW(T, TEXT, curve, "file of two columns")                                                       \
+  ROW(T, REAL, uncertainty, 0, 0, 1e300, "", "standard")                                           \
+  ROW(T, COUNT, repeats, 1, 1, 1e6, "that the value is the mean of")
+#define SCREE_PLAN_BOUNDS(ROW, T)                                                                  \
+  ROW(T, REAL, at_most, NAN, -1e300, 1e300, "", "")                                                \
+  ROW(T, REAL, at_least, NAN, -1e300, 1e300, "", "")
+#define SCREE_PLAN_LIMIT(ROW, T)    SCREE_PLAN_ANSWER(ROW, T) SCREE_PLAN_BOUNDS(ROW, T)
+#define SCREE_PLAN_QUANTITY(ROW, T) SCREE_PLAN_TARGET(ROW, T) SCREE_PLAN_BOUNDS(ROW, T)
+SCREE_RECORD_TYPE(scree_plan_quantity, SCREE_PLAN_QUANTITY)
+SCREE_RECORD_LIKE(scree_plan_quantity, scree_plan_target);
+SCREE_RECORD_LIKE(scree_plan_quantity, scree_plan_sought);
+SCREE_RECORD_LIKE(scree_plan_quantity, scree_plan_limit);
 
-typedef struct scree_plan_budget {
-  scree_place place;
-  size_t runs;
-  double time; /* s of processor time; NAN: no limit */
-} scree_plan_budget;
+#define SCREE_PLAN_BUDGET(ROW, T)                                                                  \
+  ROW(T, COUNT, runs, 100, 2, 1000, "of all experiments together")                                 \
+  ROW(T, REAL, time, NAN, 0, 1e12, "s", "of the processor; not given: no limit")
+SCREE_RECORD_TYPE(scree_plan_budget, SCREE_PLAN_BUDGET)
 
-typedef struct scree_plan_start {
-  scree_place place;
-  size_t points;
-} scree_plan_start;
+#define SCREE_PLAN_START(ROW, T) ROW(T, COUNT, points, 0, 2, 1000, "of each experiment")
+SCREE_RECORD_TYPE(scree_plan_start, SCREE_PLAN_START)
 
-typedef struct scree_plan_calibration {
-  scree_place place;
-  const char *title;
-  uint64_t seed;
-  scree_records experiments, parameters, targets, predict, limits;
-  scree_plan_quantity *minimise, *maximise;
-  scree_plan_budget *budget;
-  scree_plan_start *start;
-  size_t batch;
-  double confidence;
-} scree_plan_calibration;
+#define SCREE_PLAN_CALIBRATION(ROW, T)                                                             \
+  ROW(T, TEXT, title, "")                                                                          \
+  ROW(T, SEED, seed, 1, "")                                                                        \
+  ROW(T, NAMED, experiments, scree_plan_experiment, "")                                            \
+  ROW(T, NAMED, parameters, scree_plan_parameter, "")                                              \
+  ROW(T, NAMED, targets, scree_plan_target, "")                                                    \
+  ROW(T, NAMED, predict, scree_plan_target, "")                                                    \
+  ROW(T, GROUP, minimise, scree_plan_sought, "")                                                   \
+  ROW(T, GROUP, maximise, scree_plan_sought, "")                                                   \
+  ROW(T, NAMED, limits, scree_plan_limit, "")                                                      \
+  ROW(T, GROUP, budget, scree_plan_budget, "")                                                     \
+  ROW(T, GROUP, start, scree_plan_start, "")                                                       \
+  ROW(T, COUNT, batch, 8, 1, 1000, "runs planned at a time")                                       \
+  ROW(T, REAL, confidence, 0.9, 0.5, 0.9999, "", "of intervals")
+SCREE_RECORD_TYPE(scree_plan_calibration, SCREE_PLAN_CALIBRATION)
 
 /* ---- what follows from it ---- */
 

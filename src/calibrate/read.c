@@ -5,7 +5,6 @@
 #include "base/math.h"
 #include "base/number.h"
 #include "base/platform.h"
-#include "base/schema_rows.h"
 #include "calibrate/calibration.h"
 
 #include <stdlib.h>
@@ -13,115 +12,20 @@
 
 enum { LARGEST_FILE = 1 << 20, MOST_CURVE = 40 };
 
-#define RECORD scree_plan_experiment
-static const scree_field experiment_table[] = {
-    TEXT(scene, "file of a scene"),
-    TEXTS(command, "program and words"),
-    NODE(set, "fields of the scene that differ here"),
-    REAL(cost, 1e-9, 1e9, "", "of a run, beside the others"),
-};
-#undef RECORD
-static const scree_plan_experiment experiment_defaults = {.cost = NAN};
-static const scree_record experiment_record =
-    SCREE_RECORD("an experiment", experiment_table, experiment_defaults, NULL);
-
-#define RECORD scree_plan_parameter
-static const scree_field parameter_table[] = {
-    {"field", SCREE_FIELD_TEXTS, offsetof(RECORD, fields), 0, 0, "", "of the scenes", NULL},
-    REAL(from, -1e300, 1e300, "", ""),
-    REAL(to, -1e300, 1e300, "", ""),
-    WORD(scale, "linear|log", ""),
-    TEXTS(values, "in place of a range"),
-};
-#undef RECORD
-static const scree_plan_parameter parameter_defaults = {.from = NAN, .to = NAN};
-static const scree_record parameter_record =
-    SCREE_RECORD("a parameter", parameter_table, parameter_defaults, NULL);
-
-#define RECORD scree_plan_quantity
-#define ANSWER                                                                                     \
-  TEXT(experiment, ""), TEXT(answer, "column of a sensor, or outline"),                            \
-      REAL(at, -1e9, 1e9, "", "s; of an outline m"),                                               \
-      REAL(from, 0, 1e9, "s", "of the mean over a window"), REAL(until, 0, 1e9, "s", ""), {        \
-    "take", SCREE_FIELD_WORD, offsetof(RECORD, take), 0, 0, "last|mean|sd",                        \
-        "over the sensor's window", NULL                                                           \
-  }
-#define MEASURED                                                                                   \
-  REAL(value, -1e300, 1e300, "", "measured"), NODE(measured, "repeats, a list"),                   \
-      TEXT(curve, "file of two columns"), REAL(uncertainty, 0, 1e300, "", "standard"), {           \
-    "repeats", SCREE_FIELD_COUNT, offsetof(RECORD, repeats), 1, 1e6, "",                           \
-        "that the value is the mean of", NULL                                                      \
-  }
-static const scree_field target_table[] = {ANSWER, MEASURED};
-static const scree_field sought_table[] = {ANSWER};
-static const scree_field limit_table[] = {
-    ANSWER,
-    REAL(at_most, -1e300, 1e300, "", ""),
-    REAL(at_least, -1e300, 1e300, "", ""),
-};
-#undef RECORD
-static const scree_plan_quantity quantity_defaults = {.at = NAN,
-                                                      .from = NAN,
-                                                      .until = NAN,
-                                                      .value = NAN,
-                                                      .uncertainty = 0,
-                                                      .repeats = 1,
-                                                      .at_most = NAN,
-                                                      .at_least = NAN};
-static const scree_record target_record =
-    SCREE_RECORD("a target", target_table, quantity_defaults, NULL);
-static const scree_record sought_record =
-    SCREE_RECORD("what is sought", sought_table, quantity_defaults, NULL);
-static const scree_record limit_record =
-    SCREE_RECORD("a limit", limit_table, quantity_defaults, NULL);
-
-#define RECORD scree_plan_budget
-static const scree_field budget_table[] = {
-    COUNT(runs, 2, 1000, "of all experiments together"),
-    REAL(time, 0, 1e12, "s", "of the processor"),
-};
-#undef RECORD
-static const scree_plan_budget budget_defaults = {.runs = 100, .time = NAN};
-static const scree_record budget_record =
-    SCREE_RECORD("the budget", budget_table, budget_defaults, NULL);
-
-#define RECORD scree_plan_start
-static const scree_field start_table[] = {
-    COUNT(points, 2, 1000, "of each experiment"),
-};
-#undef RECORD
-static const scree_plan_start start_defaults = {.points = 0};
-static const scree_record start_record =
-    SCREE_RECORD("the start", start_table, start_defaults, NULL);
-
-#define RECORD scree_plan_calibration
-static const scree_field calibration_table[] = {
-    TEXT(title, ""),
-    SEED(seed, ""),
-    NAMED(experiments, "", &experiment_record),
-    NAMED(parameters, "", &parameter_record),
-    NAMED(targets, "", &target_record),
-    NAMED(predict, "", &target_record),
-    GROUP(minimise, "", &sought_record),
-    GROUP(maximise, "", &sought_record),
-    NAMED(limits, "", &limit_record),
-    GROUP(budget, "", &budget_record),
-    GROUP(start, "", &start_record),
-    COUNT(batch, 1, 1000, "runs planned at a time"),
-    REAL(confidence, 0.5, 0.9999, "", "of intervals"),
-};
-#undef RECORD
-static const scree_plan_calibration calibration_defaults = {
-    .seed = 1, .batch = 8, .confidence = 0.9};
-static const scree_record calibration_record =
-    SCREE_RECORD("a calibration", calibration_table, calibration_defaults, NULL);
+SCREE_RECORD_TABLE(scree_plan_experiment, SCREE_PLAN_EXPERIMENT, "an experiment", NULL)
+SCREE_RECORD_TABLE(scree_plan_parameter, SCREE_PLAN_SOUGHT_PARAMETER, "a parameter", NULL)
+SCREE_RECORD_TABLE_OF(scree_plan_target, SCREE_PLAN_QUANTITY, SCREE_PLAN_TARGET, "a target", NULL)
+SCREE_RECORD_TABLE_OF(scree_plan_sought, SCREE_PLAN_QUANTITY, SCREE_PLAN_ANSWER, "what is sought",
+                      NULL)
+SCREE_RECORD_TABLE_OF(scree_plan_limit, SCREE_PLAN_QUANTITY, SCREE_PLAN_LIMIT, "a limit", NULL)
+SCREE_RECORD_TABLE(scree_plan_budget, SCREE_PLAN_BUDGET, "the budget", NULL)
+SCREE_RECORD_TABLE(scree_plan_start, SCREE_PLAN_START, "the start", NULL)
+SCREE_RECORD_TABLE(scree_plan_calibration, SCREE_PLAN_CALIBRATION, "a calibration", NULL)
 
 typedef struct reader {
   scree_calibration *c;
   scree_reader in;
 } reader;
-
-#define ITEM(records, type, index) ((const type *)(records).items + (index))
 
 static scree_status fail_memory(const reader *r) {
   return scree_fail_memory(r->in.error, 0, r->in.file);
@@ -298,7 +202,7 @@ static scree_status read_experiments(const reader *r) {
   if (!c->experiments) return fail_memory(r);
   for (size_t i = 0; i < c->experiment_count; i++) {
     scree_experiment_plan *e = &c->experiments[i];
-    *e = (scree_experiment_plan){.plan = ITEM(c->plan.experiments, scree_plan_experiment, i)};
+    *e = (scree_experiment_plan){.plan = &c->plan.experiments.items[i]};
     SCREE_TRY(check_experiment(r, e->plan));
     if (!is_command(e->plan) && !(e->scene_path = full_path(r, e->plan->scene)))
       return fail_memory(r);
@@ -459,10 +363,9 @@ static scree_status read_quantity(const reader *r, scree_quantity *q) {
 }
 
 static void list_quantities(scree_calibration *c, scree_quantity_kind kind,
-                            const scree_records *records) {
-  for (size_t i = 0; i < records->count; i++)
-    c->quantities[c->quantity_count++] =
-        (scree_quantity){.kind = kind, .plan = ITEM(*records, scree_plan_quantity, i)};
+                            const scree_plan_quantity *plans, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    c->quantities[c->quantity_count++] = (scree_quantity){.kind = kind, .plan = &plans[i]};
 }
 
 static scree_status read_quantities(const reader *r) {
@@ -472,12 +375,10 @@ static scree_status read_quantities(const reader *r) {
   size_t most = p->targets.count + p->predict.count + p->limits.count + 1;
   c->quantities = scree_arena_take(&c->arena, most, sizeof *c->quantities);
   if (!c->quantities) return fail_memory(r);
-  if (sought)
-    c->quantities[c->quantity_count++] =
-        (scree_quantity){.kind = SCREE_QUANTITY_SOUGHT, .plan = sought};
-  list_quantities(c, SCREE_QUANTITY_LIMIT, &p->limits);
-  list_quantities(c, SCREE_QUANTITY_TARGET, &p->targets);
-  list_quantities(c, SCREE_QUANTITY_PREDICTION, &p->predict);
+  list_quantities(c, SCREE_QUANTITY_SOUGHT, sought, sought != NULL);
+  list_quantities(c, SCREE_QUANTITY_LIMIT, p->limits.items, p->limits.count);
+  list_quantities(c, SCREE_QUANTITY_TARGET, p->targets.items, p->targets.count);
+  list_quantities(c, SCREE_QUANTITY_PREDICTION, p->predict.items, p->predict.count);
   bool measured = false, used[64] = {false};
   size_t responses = 0;
   for (size_t i = 0; i < c->quantity_count; i++) {
@@ -544,14 +445,13 @@ static scree_status check_budget(const reader *r) {
 }
 
 static scree_status read_all(scree_calibration *c, scree_error *error) {
-  static const scree_plan_budget no_budget = {.runs = 100, .time = NAN};
   reader r = {c, {c->path, &c->arena, error, ""}};
   SCREE_TRY(scree_yaml_parse(c->text, c->text_size, c->path, &c->root, error));
   if (c->root.kind != SCREE_YAML_MAPPING)
     return scree_fail(error, SCREE_BAD_FILE, "%s: a calibration is `key: value` lines", c->path);
-  SCREE_TRY(scree_record_read(&r.in, &c->root, &calibration_record, &c->plan));
-  if (!c->plan.budget && (c->plan.budget = scree_arena_take(&c->arena, 1, sizeof no_budget)))
-    *c->plan.budget = no_budget;
+  SCREE_TRY(scree_record_read(&r.in, &c->root, &scree_plan_calibration_record, &c->plan));
+  if (!c->plan.budget && (c->plan.budget = scree_arena_take(&c->arena, 1, sizeof *c->plan.budget)))
+    *c->plan.budget = scree_plan_budget_defaults;
   if (!c->plan.budget) return fail_memory(&r);
   c->experiment_count = c->plan.experiments.count;
   c->parameter_count = c->plan.parameters.count;

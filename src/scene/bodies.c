@@ -31,9 +31,8 @@ static scree_status check_names(const scree_named_table *t, const scree_scene *s
 static size_t find_shape(const scree_scene *scene, const char *name, double size) {
   size_t i = 0;
   for (; i < SCREE_SCENE_SHAPES(scene); i++) {
-    const scree_plan_shape *s = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, i);
-    const char *family =
-        SCREE_PLAN_AT(&scene->plan, families, scree_plan_shape, s->family)->place.name;
+    const scree_plan_shape *s = &scene->plan.shapes.items[i];
+    const char *family = scene->plan.families.items[s->family].place.name;
     double own = scene->shapes[i].particle->measures.size;
     bool named = !name || !strcmp(name, s->place.name) || !strcmp(name, family);
     if (named && (isnan(size) || fabs(size - own) <= 1e-4 * own)) break;

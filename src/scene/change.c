@@ -274,14 +274,14 @@ static void take_inlets(const comparison *c, scree_scene *is) {
   const scree_scene *was = c->scene;
   for (size_t i = 0; i < is->plan.inlets.count; i++) {
     const char *name = is->inlets[i].plan->place.name;
-    size_t k = scree_plan_find(&was->plan.inlets, sizeof(scree_plan_inlet), name);
+    size_t k = SCREE_PLAN_FIND(was->plan.inlets, name);
     if (k < was->plan.inlets.count) take_inlet(c, &was->inlets[k], &is->inlets[i]);
   }
   size_t rim = is->plan.outlets.count;
   is->outlets[rim] = was->outlets[was->plan.outlets.count];
   for (size_t i = 0; i < rim; i++) {
-    const char *name = SCREE_PLAN_AT(&is->plan, outlets, scree_plan_outlet, i)->place.name;
-    size_t k = scree_plan_find(&was->plan.outlets, sizeof(scree_plan_outlet), name);
+    const char *name = is->plan.outlets.items[i].place.name;
+    size_t k = SCREE_PLAN_FIND(was->plan.outlets, name);
     if (k < was->plan.outlets.count) is->outlets[i] = was->outlets[k];
   }
 }
@@ -302,7 +302,7 @@ static scree_status take_sensors(const comparison *c, scree_scene *is, scree_err
   scree_scene *was = c->scene;
   for (size_t i = 0; i < is->plan.sensors.count; i++) {
     const char *name = is->sensors[i].plan->place.name;
-    size_t k = scree_plan_find(&was->plan.sensors, sizeof(scree_plan_sensor), name);
+    size_t k = SCREE_PLAN_FIND(was->plan.sensors, name);
     if (k < was->plan.sensors.count && !has_changed(c, "sensors", name))
       SCREE_TRY(take_sensor(was, k, is, i, error));
   }
@@ -328,26 +328,23 @@ static scree_status take_series(const scree_scene *was, scree_scene *is, scree_e
   return SCREE_OK;
 }
 
-/* Its place now, by its name; UINT32_MAX: there is none any more. */
-static uint32_t place_now(const scree_records *was, const scree_records *is, size_t size,
-                          uint32_t index) {
-  if (index >= was->count) return index;
-  const scree_place *place =
-      (const scree_place *)(const void *)((const char *)was->items + index * size);
-  size_t now = scree_plan_find(is, size, place->name);
-  return now < is->count ? (uint32_t)now : UINT32_MAX;
-}
-
-/* By which inlets and outlets bodies came and went. */
+/* By which inlets and outlets bodies came and went: their places now, by their names; UINT32_MAX:
+ * there is none any more. */
 static void take_stays(const scree_scene *was, scree_scene *is) {
   const scree_plan *from = &was->plan, *to = &is->plan;
   is->stays = was->stays;
   for (size_t b = 0; b < is->stays.count; b++) {
     scree_scene_stay *s = &is->stays.items[b];
-    s->inlet = place_now(&from->inlets, &to->inlets, sizeof(scree_plan_inlet), s->inlet);
-    s->outlet = s->outlet == from->outlets.count
-                    ? (uint32_t)to->outlets.count
-                    : place_now(&from->outlets, &to->outlets, sizeof(scree_plan_outlet), s->outlet);
+    if (s->inlet < from->inlets.count) {
+      size_t now = SCREE_PLAN_FIND(to->inlets, from->inlets.items[s->inlet].place.name);
+      s->inlet = now < to->inlets.count ? (uint32_t)now : UINT32_MAX;
+    }
+    if (s->outlet < from->outlets.count) {
+      size_t now = SCREE_PLAN_FIND(to->outlets, from->outlets.items[s->outlet].place.name);
+      s->outlet = now < to->outlets.count ? (uint32_t)now : UINT32_MAX;
+    } else if (s->outlet == from->outlets.count) { /* the domain's rim */
+      s->outlet = (uint32_t)to->outlets.count;
+    }
   }
 }
 
@@ -384,7 +381,7 @@ static scree_status set_geometry(const comparison *c, scree_scene *scene, scree_
   static const double still[3] = {0, 0, 0};
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < scene->plan.geometry.count; i++) {
-    const scree_plan_geometry *g = SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, i);
+    const scree_plan_geometry *g = &scene->plan.geometry.items[i];
     const scree_scene_geometry *made = &scene->geometry[i];
     if (!has_changed(c, "geometry", g->place.name)) continue;
     const double *surface = isnan(g->surface_velocity[0]) ? still : g->surface_velocity;

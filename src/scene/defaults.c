@@ -15,8 +15,8 @@ static const double rim = 1.5;               /* of the longest body: measured be
 static const double coarsest_cell = 0.5;     /* sizes: a coarser height field shows no pile */
 
 static const scree_plan_geometry *geometry_named(const scree_scene *scene, const char *name) {
-  size_t index = scree_plan_find(&scene->plan.geometry, sizeof(scree_plan_geometry), name);
-  return SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, index);
+  size_t index = SCREE_PLAN_FIND(scene->plan.geometry, name);
+  return &scene->plan.geometry.items[index];
 }
 
 static scree_particle_measures measures_of(const scree_scene *scene, const scree_scene_inlet *inlet,

@@ -69,7 +69,7 @@ scree_scene_reach scree_scene_reach_of(const scree_scene *scene) {
   double low[3], high[3];
   for (size_t w = 0; w < scree_world_wall_count(scene->world); w++) take_in_wall(scene, w, &reach);
   for (size_t i = 0; i < plan->inlets.count; i++) {
-    const scree_plan_inlet *inlet = SCREE_PLAN_AT(plan, inlets, scree_plan_inlet, i);
+    const scree_plan_inlet *inlet = &plan->inlets.items[i];
     if (inlet->layers && inlet->layers->in) { /* that geometry is taken in already */
       reach.high[2] = INFINITY;
       continue;
@@ -87,11 +87,10 @@ scree_scene_reach scree_scene_domain(const scree_scene *scene) {
   double margin = 0;
   take_in(&reach, scene->table_low, scene->table_high);
   for (size_t i = 0; i < plan->outlets.count; i++) {
-    const scree_plan_box *box = SCREE_PLAN_AT(plan, outlets, scree_plan_outlet, i)->box;
+    const scree_plan_box *box = plan->outlets.items[i].box;
     take_in(&reach, box->min, box->max);
   }
-  for (size_t i = 0; i < plan->sensors.count; i++)
-    take_in_sensor(SCREE_PLAN_AT(plan, sensors, scree_plan_sensor, i), &reach);
+  for (size_t i = 0; i < plan->sensors.count; i++) take_in_sensor(&plan->sensors.items[i], &reach);
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++)
     margin = fmax(margin, least_margin * scene->shapes[i].extent.radius);
   for (int k = 0; k < 3; k++)

@@ -90,13 +90,13 @@ scree_status scree_scene_file_text(const scree_scene_file *file, char **text, sc
 /* The name of file `index` of the plan; NULL: there are no more. */
 static const char *input_at(const scree_plan *plan, size_t index) {
   for (size_t i = 0; i < plan->shapes.count; i++) {
-    const scree_plan_shape *s = SCREE_PLAN_AT(plan, shapes, scree_plan_shape, i);
+    const scree_plan_shape *s = &plan->shapes.items[i];
     const char *name = s->file || scree_plan_spheres(s) ? s->file : s->clump;
     if (name && index-- == 0) return name;
   }
   if (plan->bodies && index-- == 0) return plan->bodies->file;
   for (size_t i = 0; i < plan->geometry.count; i++) {
-    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
+    const scree_plan_geometry *g = &plan->geometry.items[i];
     if (index < g->file.count) return g->file.items[index];
     index -= g->file.count;
   }

@@ -18,18 +18,18 @@
 static const double pi = 3.14159265358979323846, newton_from = 1000;
 
 static const scree_plan_force *plan_of(const scree_scene *scene, size_t index) {
-  return SCREE_PLAN_AT(&scene->plan, forces, scree_plan_force, index);
+  return &scene->plan.forces.items[index];
 }
 
 /* ---- on whom ---- */
 
 static const char *family_of(const scree_scene *scene, size_t shape) {
-  size_t family = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, shape)->family;
-  return SCREE_PLAN_AT(&scene->plan, families, scree_plan_shape, family)->place.name;
+  size_t family = scene->plan.shapes.items[shape].family;
+  return scene->plan.families.items[family].place.name;
 }
 
 static bool acts_on(const scree_scene *scene, const scree_plan_force *f, size_t shape) {
-  const scree_plan_shape *plan = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, shape);
+  const scree_plan_shape *plan = &scene->plan.shapes.items[shape];
   for (size_t i = 0; i < f->of.count; i++)
     if (!strcmp(f->of.items[i], family_of(scene, shape)) ||
         (plan->material && !strcmp(f->of.items[i], plan->material)))

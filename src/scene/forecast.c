@@ -113,12 +113,10 @@ static void remark_cylinders(const scree_scene *scene, remarks *r) {
 
 static void remark_densities(const scree_scene *scene, remarks *r) {
   for (size_t m = 0; m < scene->plan.materials.count; m++) {
-    const scree_plan_material *material =
-        SCREE_PLAN_AT(&scene->plan, materials, scree_plan_material, m);
+    const scree_plan_material *material = &scene->plan.materials.items[m];
     bool used = false;
     for (size_t s = 0; s < SCREE_SCENE_SHAPES(scene); s++)
-      used = used || (scene->shapes[s].material == m &&
-                      !(SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, s)->density > 0));
+      used = used || (scene->shapes[s].material == m && !(scene->plan.shapes.items[s].density > 0));
     if (used && scene->usual_density && scene->usual_density[m] && is_asked(r))
       snprintf(r->text, SCREE_REMARK, "%s: no density is given: %g kg/m3 is taken",
                material->place.path, material->density);
@@ -150,7 +148,7 @@ static double largest_other(const scree_scene *scene, size_t geometry) {
 
 static void remark_units(const scree_scene *scene, remarks *r) {
   for (size_t i = 0; i < scene->plan.geometry.count; i++) {
-    const scree_plan_geometry *g = SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, i);
+    const scree_plan_geometry *g = &scene->plan.geometry.items[i];
     double here = diagonal_of(scene, i), other = largest_other(scene, i);
     bool fits = !(here > 0) || !(other > 0) ||
                 (here < MOST_DIFFERENT * other && MOST_DIFFERENT * here > other);

@@ -12,7 +12,7 @@
 static const double degree = 0.017453292519943295, two_pi = 6.283185307179586;
 
 static const scree_plan_geometry *plan_of(const scree_scene *scene, size_t index) {
-  return SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, index);
+  return &scene->plan.geometry.items[index];
 }
 
 /* ---- into the world ---- */
@@ -35,7 +35,7 @@ static void turn_mesh(const scree_plan_geometry *g, scree_mesh *mesh) {
 }
 
 static size_t material_of(const scree_scene *scene, const char *name) {
-  return name ? scree_plan_find(&scene->plan.materials, sizeof(scree_plan_material), name) : 0;
+  return name ? SCREE_PLAN_FIND(scene->plan.materials, name) : 0;
 }
 
 void scree_scene_belt_loop(const scree_plan_geometry *g, double loop[3]) {
@@ -273,7 +273,7 @@ static size_t put_path(const scree_plan_path *path, scree_wall_motion *motions) 
 static size_t put_motions(const scree_plan_geometry *g, size_t copy, scree_wall_motion *motions) {
   size_t count = 0;
   for (size_t i = 0; i < g->motion.count; i++) {
-    const scree_plan_motion *plan = &((const scree_plan_motion *)g->motion.items)[i];
+    const scree_plan_motion *plan = &g->motion.items[i];
     const size_t first = count;
     if (plan->path)
       count += put_path(plan->path, motions + count);

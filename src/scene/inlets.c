@@ -149,7 +149,7 @@ static scree_status check_shape(scree_scene *scene, size_t index, size_t shape,
     if (scree_scene_is_clear(scene, &p, &wall)) return SCREE_OK;
     if (within > FIRST_TRIES / 8) break;
   }
-  const char *name = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, shape)->place.name;
+  const char *name = scene->plan.shapes.items[shape].place.name;
   if (!within)
     return scree_scene_fail(scene, place, error,
                             "is too small for '%s', %.4g x %.4g x %.4g m with the room about it",

@@ -91,11 +91,10 @@ static void measure_contact(const scree_scene *scene, const scree_wall *wall, do
 static double rate_of(const scree_scene *scene, const size_t made_of[2]) {
   const scree_plan *plan = &scene->plan;
   for (size_t i = plan->pairs.count; i-- > 0;) {
-    const scree_plan_pair *p = SCREE_PLAN_AT(plan, pairs, scree_plan_pair, i);
+    const scree_plan_pair *p = &plan->pairs.items[i];
     size_t k[2];
     for (int side = 0; side < 2; side++)
-      k[side] =
-          scree_plan_find(&plan->materials, sizeof(scree_plan_material), p->between.items[side]);
+      k[side] = SCREE_PLAN_FIND(plan->materials, p->between.items[side]);
     if ((k[0] == made_of[0] && k[1] == made_of[1]) || (k[0] == made_of[1] && k[1] == made_of[0]))
       return p->wear;
   }

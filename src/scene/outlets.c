@@ -24,7 +24,7 @@ static double energy_of(const scree_scene *scene, size_t b, const scree_body *bo
 static size_t outlet_at(const scree_scene *scene, const double p[3], double time) {
   size_t count = scene->plan.outlets.count;
   for (size_t i = 0; i < count; i++) {
-    const scree_plan_outlet *o = SCREE_PLAN_AT(&scene->plan, outlets, scree_plan_outlet, i);
+    const scree_plan_outlet *o = &scene->plan.outlets.items[i];
     if (time >= o->from && (isnan(o->until) || time < o->until) &&
         scree_is_in(p, o->box->min, o->box->max))
       return i;

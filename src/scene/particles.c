@@ -86,7 +86,7 @@ static scree_status make_unscaled(const scree_plan_shape *plan, const char *fold
 
 scree_status scree_scene_make_shape(scree_scene *scene, size_t index, const char *folder,
                                     const scree_scene_making *making, scree_error *error) {
-  const scree_plan_shape *plan = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, index);
+  const scree_plan_shape *plan = &scene->plan.shapes.items[index];
   scree_scene_shape *s = &scene->shapes[index];
   scree_shape_made *made = making->made;
   bool again = index && plan->family == (plan - 1)->family; /* another size of the last one */

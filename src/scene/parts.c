@@ -16,13 +16,12 @@
 #include "base/math.h"
 
 static const scree_plan_part *plan_of(const scree_scene *scene, size_t geometry) {
-  const scree_plan_geometry *g =
-      SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, geometry);
+  const scree_plan_geometry *g = &scene->plan.geometry.items[geometry];
   return g->slide ? g->slide : g->hinge;
 }
 
 static bool turns(const scree_scene *scene, size_t geometry) {
-  return SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, geometry)->hinge != NULL;
+  return scene->plan.geometry.items[geometry].hinge != NULL;
 }
 
 static vec3 axis_of(const scree_plan_part *plan) {

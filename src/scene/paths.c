@@ -76,11 +76,10 @@ static scree_status read_path(scree_scene *scene, scree_plan_path *path, const c
 
 scree_status scree_scene_read_paths(scree_scene *scene, size_t geometry, const char *folder,
                                     scree_error *error) {
-  const scree_plan_geometry *g =
-      SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, geometry);
+  const scree_plan_geometry *g = &scene->plan.geometry.items[geometry];
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < g->motion.count; i++) {
-    scree_plan_path *path = ((scree_plan_motion *)g->motion.items)[i].path;
+    scree_plan_path *path = g->motion.items[i].path;
     if (path && !path->is_read) status = read_path(scene, path, folder, error);
     if (path) path->is_read = status == SCREE_OK;
   }

@@ -6,8 +6,7 @@
 
 static const scree_plan_phase *phase_of(const scree_scene *scene) {
   size_t count = scene->plan.phases.count;
-  return scene->phase < count ? SCREE_PLAN_AT(&scene->plan, phases, scree_plan_phase, scene->phase)
-                              : NULL;
+  return scene->phase < count ? &scene->plan.phases.items[scene->phase] : NULL;
 }
 
 /* ---- motions ---- */
@@ -33,7 +32,7 @@ static scree_status move_wall(scree_scene *scene, size_t wall_index, const scree
 scree_status scree_scene_lead_by_phase(scree_scene *scene, scree_error *error) {
   scree_status status = SCREE_OK;
   for (size_t i = 0; i < scene->plan.geometry.count; i++) {
-    const scree_plan_geometry *g = SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, i);
+    const scree_plan_geometry *g = &scene->plan.geometry.items[i];
     const scree_scene_geometry *made = &scene->geometry[i];
     const scree_plan_motion *m = g->motion.items;
     if (g->motion.count == 0 || !m->during) continue;
@@ -52,7 +51,7 @@ scree_status scree_scene_begin_phases(scree_scene *scene, scree_error *error) {
 /* ---- their ends ---- */
 
 static bool is_above_all(const scree_scene *scene, const char *name) {
-  size_t g = scree_plan_find(&scene->plan.geometry, sizeof(scree_plan_geometry), name);
+  size_t g = SCREE_PLAN_FIND(scene->plan.geometry, name);
   scree_wall wall;
   scree_world_get_wall(scene->world, scene->geometry[g].first_wall, &wall);
   return wall.position[2] > scree_scene_highest(scene, NULL, -INFINITY);
@@ -93,7 +92,7 @@ const char *scree_scene_phase(const scree_scene *scene) {
 
 const char *scree_scene_phase_name(const scree_scene *scene, size_t index) {
   if (index >= scene->plan.phases.count) return NULL;
-  return SCREE_PLAN_AT(&scene->plan, phases, scree_plan_phase, index)->place.name;
+  return scene->plan.phases.items[index].place.name;
 }
 
 double scree_scene_phase_end(const scree_scene *scene) {
@@ -103,8 +102,7 @@ double scree_scene_phase_end(const scree_scene *scene) {
 
 double scree_scene_phase_times(const scree_scene *scene) {
   double sum = 0;
-  for (size_t i = 0; i < scene->plan.phases.count; i++)
-    sum += SCREE_PLAN_AT(&scene->plan, phases, scree_plan_phase, i)->time;
+  for (size_t i = 0; i < scene->plan.phases.count; i++) sum += scene->plan.phases.items[i].time;
   return sum;
 }
 
@@ -112,7 +110,7 @@ double scree_scene_fraction(const scree_scene *scene) {
   double time = scree_world_time(scene->world), all = scree_scene_phase_times(scene), done = 0;
   if (scene->plan.phases.count == 0) return fmin(1, time / scree_scene_duration(scene));
   for (size_t i = 0; i < scene->phase && i < scene->plan.phases.count; i++)
-    done += SCREE_PLAN_AT(&scene->plan, phases, scree_plan_phase, i)->time;
+    done += scene->plan.phases.items[i].time;
   if (phase_of(scene)) done += fmin(time - scene->phase_start, phase_of(scene)->time);
   return all > 0 ? done / all : 1;
 }

@@ -1,387 +1,538 @@
 /* What a scene's file says: plain records, in an arena. */
 #pragma once
 
-#include "base/schema.h"
+#include "base/schema_rows.h"
+
+#include <math.h>
 
 #define SCREE_PLAN_UNITS "m|cm|mm|um|inch|ft|km"
 
-typedef struct scree_plan_material {
-  scree_place place;
-  double young, density, restitution, friction, rolling_friction, surface_energy, poisson;
-} scree_plan_material;
+enum { SCREE_MOST_CLASSES = 100 };
+/* A window of time. */
+#define SCREE_PLAN_WINDOW(ROW, T)                                                                  \
+  ROW(T, REAL, from, 0, 0, 1e9, "s", "")                                                           \
+  ROW(T, REAL, until, NAN, 0, 1e9, "s", "not given: to the end")
 
-typedef struct scree_plan_pair {
-  scree_place place;
-  scree_texts between;
-  double restitution, friction, rolling_friction, surface_energy, pull_off, wear;
-} scree_plan_pair;
+#define SCREE_PLAN_MATERIAL(ROW, T)                                                                \
+  ROW(T, REAL, young, 1e8, 1, 1e16, "Pa",                                                          \
+      "stiffness of a contact over size; of the law hertz Young's modulus")                        \
+  ROW(T, REAL, density, 2000, 1e-3, 1e6, "kg/m3", "of particles")                                  \
+  ROW(T, REAL, restitution, 0.3, 0.01, 1, "",                                                      \
+      "of a pair, the lower of the two, unless `pairs` says more")                                 \
+  ROW(T, REAL, friction, 0.5, 0, 100, "", "likewise")                                              \
+  ROW(T, REAL, rolling_friction, 0, 0, 100, "", "of spheres, likewise; 0: they roll freely")       \
+  ROW(T, REAL, surface_energy, 0, 0, 1e6, "J/m2", "of cohesion, likewise; 0: nothing sticks")      \
+  ROW(T, REAL, poisson, 0.3, 0, 0.5, "", "Poisson's ratio, of the law hertz")
+SCREE_RECORD_TYPE(scree_plan_material, SCREE_PLAN_MATERIAL)
+
+#define SCREE_PLAN_PAIR(ROW, T)                                                                    \
+  ROW(T, TEXTS, between, "two materials, or one twice")                                            \
+  ROW(T, REAL, restitution, NAN, 0.01, 1, "", "")                                                  \
+  ROW(T, REAL, friction, NAN, 0, 100, "", "")                                                      \
+  ROW(T, REAL, rolling_friction, NAN, 0, 100, "", "of spheres")                                    \
+  ROW(T, REAL, surface_energy, NAN, 0, 1e6, "J/m2", "of cohesion")                                 \
+  ROW(T, REAL, pull_off, NAN, 0, 1e9, "N", "that holds any two that touch")                        \
+  ROW(T, REAL, wear, 0, 0, 1, "1/Pa",                                                              \
+      "Archard's: volume that geometry loses over load and way of sliding")
+SCREE_RECORD_TYPE(scree_plan_pair, SCREE_PLAN_PAIR)
 
 /* Rosin-Rammler: size d', spread n; lognormal: median, standard deviation of the logarithm. */
-typedef struct scree_plan_rosin_rammler {
-  scree_place place;
-  double size, spread;
-} scree_plan_rosin_rammler;
+#define SCREE_PLAN_ROSIN_RAMMLER(ROW, T)                                                           \
+  ROW(T, REAL, size, NAN, 1e-9, 1e3, "m", "63.2 % is finer")                                       \
+  ROW(T, REAL, spread, NAN, 0.1, 100, "", "exponent n: the greater the narrower")
+SCREE_RECORD_TYPE(scree_plan_rosin_rammler, SCREE_PLAN_ROSIN_RAMMLER)
 
-typedef struct scree_plan_lognormal {
-  scree_place place;
-  double median, deviation;
-} scree_plan_lognormal;
+#define SCREE_PLAN_LOGNORMAL(ROW, T)                                                               \
+  ROW(T, REAL, median, NAN, 1e-9, 1e3, "m", "half is finer")                                       \
+  ROW(T, REAL, deviation, NAN, 1e-3, 5, "", "standard deviation of the natural logarithm")
+SCREE_RECORD_TYPE(scree_plan_lognormal, SCREE_PLAN_LOGNORMAL)
 
 /* One of distribution, rosin_rammler, lognormal, uniform. */
-typedef struct scree_plan_size {
-  scree_place place;
-  scree_table distribution;
-  scree_plan_rosin_rammler *rosin_rammler;
-  scree_plan_lognormal *lognormal;
-  bool uniform, cumulative;
-  int by; /* 0 mass, 1 number */
-  double least, most;
-  size_t classes;
-} scree_plan_size;
+#define SCREE_PLAN_SIZE(ROW, T)                                                                    \
+  ROW(T, TABLE, distribution, 0, 1e6, "m|", "[size in m, share]")                                  \
+  ROW(T, FLAG, cumulative, false,                                                                  \
+      "the shares are of what is finer, from 0 to 1; even between two sizes")                      \
+  ROW(T, GROUP, rosin_rammler, scree_plan_rosin_rammler, "")                                       \
+  ROW(T, GROUP, lognormal, scree_plan_lognormal, "")                                               \
+  ROW(T, FLAG, uniform, false, "even from least to most")                                          \
+  ROW(T, WORD, by, 0, "mass|number", "what the shares are of")                                     \
+  ROW(T, REAL, least, NAN, 1e-9, 1e3, "m", "none is finer")                                        \
+  ROW(T, REAL, most, NAN, 1e-9, 1e3, "m", "none is coarser")                                       \
+  ROW(T, COUNT, classes, 8, 1, SCREE_MOST_CLASSES, "of a continuous one")
+SCREE_RECORD_TYPE(scree_plan_size, SCREE_PLAN_SIZE)
 
 /* One of file, sample, sphere, clump (a table), box; a clump that is a count is one of the others'
  * surface. */
-typedef struct scree_plan_shape {
-  scree_place place;
-  const char *file, *sample, *clump, *triangles, *rp, *material;
-  double sphere, box[3], resolution, noise, density;
-  uint64_t sample_seed;
-  int unit, method, mass_from; /* mass_from: 0 mesh, 1 scan */
-  bool repair;
-  scree_plan_size *size;
-  double scaled; /* m: to this size; NAN: as it is (of scree_plan_expand, as family) */
-  size_t family; /* index among the families */
-} scree_plan_shape;
+#define SCREE_PLAN_SHAPE(ROW, T)                                                                   \
+  ROW(T, TEXT, file, "a scan, or a table of spheres")                                              \
+  ROW(T, TEXT, sample, "a built-in one, as sp-1")                                                  \
+  ROW(T, REAL, sphere, NAN, 1e-9, 1e3, "m", "diameter")                                            \
+  ROW(T, TEXT, clump, "a table of spheres: x, y, z, radius; or so many that stand for the shape")  \
+  ROW(T, VECTOR, box, SCREE_NONE, 1e-9, 1e3, "m", "three sides")                                   \
+  ROW(T, WORD, unit, -1, SCREE_PLAN_UNITS,                                                         \
+      "of the file's lengths; not given: as the file says, else mm")                               \
+  ROW(T, REAL, resolution, NAN, 0.02e-3, 5e-3, "m", "of a sample's vertices")                      \
+  ROW(T, REAL, noise, NAN, 0, 2e-3, "m", "of a sample's vertices")                                 \
+  ROW(T, SEED, sample_seed, 1, "of that noise")                                                    \
+  ROW(T, FLAG, repair, true, "what is no closed surface; false: it is refused")                    \
+  ROW(T, TEXT, triangles, "recommended (as `scree choose` does), all, or at most so many")         \
+  ROW(T, TEXT, rp,                                                                                 \
+      "or its level: this share of the triangles; recommended, or as 0.5*recommended a multiple; " \
+      "scan; clump:20; spheres")                                                                   \
+  ROW(T, WORD, method, 0, "volume|qecd", "of decimation")                                          \
+  ROW(T, WORD, mass_from, 0, "mesh|scan",                                                          \
+      "volume that gives the mass: of the decimated mesh, or of the scan at every level")          \
+  ROW(T, TEXT, material, "")                                                                       \
+  ROW(T, REAL, density, NAN, 1e-3, 1e6, "kg/m3", "another than its material's")                    \
+  ROW(T, GROUP, size, scree_plan_size,                                                             \
+      "of many sizes, each the diameter of the sphere of equal volume")                            \
+  ROW(T, OWN, double scaled, scaled, NAN)                                                          \
+  ROW(T, OWN, size_t family, family, 0)
+SCREE_RECORD_TYPE(scree_plan_shape, SCREE_PLAN_SHAPE)
 
 /* Spheres of the clump that stands for the shape's surface; 0: its clump is a table, or none. */
 size_t scree_plan_spheres(const scree_plan_shape *shape);
 
-typedef struct scree_plan_turn {
-  scree_place place;
-  double axis[3], angle_deg;
-} scree_plan_turn;
+#define SCREE_PLAN_TURN(ROW, T)                                                                    \
+  ROW(T, VECTOR, axis, (0, 0, 1), 0, 0, "", "")                                                    \
+  ROW(T, REAL, angle_deg, 0, -360, 360, "deg", "right-handed about the axis")
+SCREE_RECORD_TYPE(scree_plan_turn, SCREE_PLAN_TURN)
 
-typedef struct scree_plan_disc {
-  scree_place place;
-  double normal[3], radius;
-} scree_plan_disc;
+#define SCREE_PLAN_DISC(ROW, T)                                                                    \
+  ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m", "")                                                    \
+  ROW(T, VECTOR, normal, (0, 0, 1), 0, 0, "", "")
+SCREE_RECORD_TYPE(scree_plan_disc, SCREE_PLAN_DISC)
 
 /* Of geometry, and as the region of an inlet. */
-typedef struct scree_plan_cylinder {
-  scree_place place;
-  double at[3], axis[3], radius, length;
-} scree_plan_cylinder;
+#define SCREE_PLAN_CYLINDER(ROW, T)                                                                \
+  ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m",                                                        \
+      "inside; of geometry with layers in it not given: as wide as what they pour will be high")   \
+  ROW(T, REAL, length, 0, 0, 1e6, "m", "along the axis; of geometry 0: endless")                   \
+  ROW(T, VECTOR, axis, (0, 0, 1), 0, 0, "", "")                                                    \
+  ROW(T, VECTOR, at, SCREE_NONE, -1e6, 1e6, "m", "of a region: the middle of the end it begins at")
+SCREE_RECORD_TYPE(scree_plan_cylinder, SCREE_PLAN_CYLINDER)
 
-typedef struct scree_plan_box {
-  scree_place place;
-  double min[3], max[3];
-} scree_plan_box;
+#define SCREE_PLAN_BOX(ROW, T)                                                                     \
+  ROW(T, VECTOR, min, SCREE_NONE, -1e6, 1e6, "m", "corner")                                        \
+  ROW(T, VECTOR, max, SCREE_NONE, -1e6, 1e6, "m", "opposite corner")
+SCREE_RECORD_TYPE(scree_plan_box, SCREE_PLAN_BOX)
 
-typedef struct scree_plan_translate {
-  scree_place place;
-  double velocity[3], along[3];
-  scree_table table, positions;
-} scree_plan_translate;
+#define SCREE_PLAN_TRANSLATE(ROW, T)                                                               \
+  ROW(T, VECTOR, velocity, SCREE_NONE, -1e3, 1e3, "m/s", "")                                       \
+  ROW(T, VECTOR, along, SCREE_NONE, 0, 0, "", "direction of what the table says")                  \
+  ROW(T, TABLE, table, 0, 0, "s|m/s", "[time in s, speed in m/s], linear between")                 \
+  ROW(T, TABLE, positions, 0, 0, "s|m", "or [time in s, way in m], linear between")
+SCREE_RECORD_TYPE(scree_plan_translate, SCREE_PLAN_TRANSLATE)
 
-typedef struct scree_plan_rotate {
-  scree_place place;
-  double axis[3], through[3], speed;
-  double amplitude, frequency, phase; /* rad, Hz, rad: it rocks */
-  scree_table table, positions;
-} scree_plan_rotate;
+#define SCREE_PLAN_ROTATE(ROW, T)                                                                  \
+  ROW(T, VECTOR, axis, (0, 0, 1), 0, 0, "", "")                                                    \
+  ROW(T, VECTOR, through, SCREE_ZERO, -1e6, 1e6, "m", "a point of the axis")                       \
+  ROW(T, REAL, speed, NAN, -1e4, 1e4, "rad/s", "right-handed about the axis")                      \
+  ROW(T, TABLE, table, 0, 0, "s|rad/s", "[time in s, speed in rad/s], linear between")             \
+  ROW(T, TABLE, positions, 0, 0, "s|rad", "or [time in s, angle in rad], linear between")          \
+  ROW(T, REAL, amplitude, NAN, 0, 1e3, "rad", "or it rocks so far both ways")                      \
+  ROW(T, REAL, frequency, NAN, 0, 1e5, "Hz", "")                                                   \
+  ROW(T, REAL, phase, 0, -7, 7, "rad", "of the sine")
+SCREE_RECORD_TYPE(scree_plan_rotate, SCREE_PLAN_ROTATE)
 
-typedef struct scree_plan_vibrate {
-  scree_place place;
-  double along[3], amplitude, frequency, phase;
-} scree_plan_vibrate;
+#define SCREE_PLAN_VIBRATE(ROW, T)                                                                 \
+  ROW(T, VECTOR, along, (0, 0, 1), 0, 0, "", "")                                                   \
+  ROW(T, REAL, amplitude, NAN, 0, 1e3, "m", "")                                                    \
+  ROW(T, REAL, frequency, NAN, 0, 1e5, "Hz", "")                                                   \
+  ROW(T, REAL, phase, 0, -7, 7, "rad", "of the sine")
+SCREE_RECORD_TYPE(scree_plan_vibrate, SCREE_PLAN_VIBRATE)
 
-typedef struct scree_plan_crank {
-  scree_place place;
-  double along[3], radius, rod, speed, phase;
-} scree_plan_crank;
+#define SCREE_PLAN_CRANK(ROW, T)                                                                   \
+  ROW(T, VECTOR, along, (0, 0, 1), 0, 0, "", "away from the shaft")                                \
+  ROW(T, REAL, radius, NAN, 1e-9, 1e3, "m", "of the crank: half the stroke")                       \
+  ROW(T, REAL, rod, NAN, 1e-9, 1e6, "m", "its length, more than the radius")                       \
+  ROW(T, REAL, speed, NAN, 1e-9, 1e5, "rad/s", "of the shaft")                                     \
+  ROW(T, REAL, phase, 0, -7, 7, "rad", "at the start; 0: farthest out")
+SCREE_RECORD_TYPE(scree_plan_crank, SCREE_PLAN_CRANK)
 
 /* The copies are carried along their way. */
-typedef struct scree_plan_travel {
-  scree_place place;
-  double speed;
-} scree_plan_travel;
+#define SCREE_PLAN_TRAVEL(ROW, T)                                                                  \
+  ROW(T, REAL, speed, NAN, -1e3, 1e3, "m/s", "of the chain; above 0 right-handed about the axis")
+SCREE_RECORD_TYPE(scree_plan_travel, SCREE_PLAN_TRAVEL)
 
 /* Rows of time and value, one table for each of x, y, z and the angles about them. */
 enum { SCREE_PATH_COLUMNS = 6 };
-typedef struct scree_plan_path {
-  scree_place place;
-  const char *file;
-  double through[3];
-  scree_table tables[SCREE_PATH_COLUMNS]; /* without rows: not there */
-  bool is_read;                           /* scree_scene_read_paths */
-} scree_plan_path;
+#define SCREE_PLAN_PATH(ROW, T)                                                                    \
+  ROW(T, TEXT, file,                                                                               \
+      "a table: t and any of x, y, z, angle_x, angle_y, angle_z, with units as `x [mm]`")          \
+  ROW(T, VECTOR, through, SCREE_ZERO, -1e6, 1e6, "m", "about which it turns, by angle_x first")    \
+  ROW(T, OWN, scree_table tables[SCREE_PATH_COLUMNS], tables, {{0}})                               \
+  ROW(T, OWN, bool is_read, is_read, false)
+SCREE_RECORD_TYPE(scree_plan_path, SCREE_PLAN_PATH)
 
-typedef struct scree_plan_motion {
-  scree_place place;
-  scree_plan_translate *translate;
-  scree_plan_rotate *rotate;
-  scree_plan_vibrate *vibrate;
-  scree_plan_crank *crank;
-  scree_plan_travel *round;
-  scree_plan_path *path;
-  double from, until;
-  const char *during; /* a phase */
-} scree_plan_motion;
+#define SCREE_PLAN_MOTION(ROW, T)                                                                  \
+  ROW(T, GROUP, translate, scree_plan_translate, "")                                               \
+  ROW(T, GROUP, rotate, scree_plan_rotate, "")                                                     \
+  ROW(T, GROUP, vibrate, scree_plan_vibrate, "")                                                   \
+  ROW(T, GROUP, crank, scree_plan_crank, "to and fro by crank and rod")                            \
+  ROW(T, GROUP, round, scree_plan_travel, "of copies along a chain: with it")                      \
+  ROW(T, GROUP, path, scree_plan_path, "by a table in a file")                                     \
+  SCREE_PLAN_WINDOW(ROW, T)                                                                        \
+  ROW(T, TEXT, during, "a phase: only while it lasts")
+SCREE_RECORD_TYPE(scree_plan_motion, SCREE_PLAN_MOTION)
 
 /* Four endless planes about a vertical axis. */
-typedef struct scree_plan_shaft {
-  scree_place place;
-  double width, depth;
-} scree_plan_shaft;
+#define SCREE_PLAN_SHAFT(ROW, T)                                                                   \
+  ROW(T, REAL, width, NAN, 1e-9, 1e6, "m",                                                         \
+      "inside, along x; with layers in it not given: as wide as what they pour will be high")      \
+  ROW(T, REAL, depth, NAN, 1e-9, 1e6, "m", "along y; not given: the width")
+SCREE_RECORD_TYPE(scree_plan_shaft, SCREE_PLAN_SHAFT)
 
-/* Keeps a force (N) or torque (N m) on bodies; speed: m/s or rad/s, at most. */
-typedef struct scree_plan_servo {
-  scree_place place;
-  double force, speed;
-} scree_plan_servo;
+/* Keeps a force (N) or torque (N m) on bodies. */
+#define SCREE_PLAN_SERVO(ROW, T)                                                                   \
+  ROW(T, REAL, force, NAN, -1e12, 1e12, "N", "on bodies, along the slide")                         \
+  ROW(T, REAL, speed, NAN, 1e-9, 1e3, "m/s", "at most")
+SCREE_RECORD_TYPE(scree_plan_servo, SCREE_PLAN_SERVO)
+
+#define SCREE_PLAN_TURNING_SERVO(ROW, T)                                                           \
+  ROW(T, AS, "torque", REAL, force, NAN, -1e12, 1e12, "N m", "on bodies, about the hinge")         \
+  ROW(T, REAL, speed, NAN, 1e-9, 1e4, "rad/s", "at most")
+SCREE_RECORD_LIKE(scree_plan_servo, scree_plan_turning_servo);
 
 /* What moves by forces along one coordinate, a slide (m) or a hinge (rad). */
-typedef struct scree_plan_part {
-  scree_place place;
-  double axis[3], through[3], centre[3]; /* of a hinge: a point of its axis, the centre of mass */
-  double mass, inertia, spring, rest, damper;
-  double force, amplitude, frequency; /* of the drive; of a hinge a torque */
-  double from, least, most;
-  scree_plan_servo *servo;
-} scree_plan_part;
+#define SCREE_PLAN_HINGE(ROW, T)                                                                   \
+  ROW(T, VECTOR, axis, (0, 0, 1), 0, 0, "", "")                                                    \
+  ROW(T, VECTOR, through, SCREE_ZERO, -1e6, 1e6, "m", "a point of the axis")                       \
+  ROW(T, REAL, inertia, NAN, 1e-15, 1e15, "kg m2", "about the axis")                               \
+  ROW(T, REAL, mass, 0, 0, 1e12, "kg", "for its weight")                                           \
+  ROW(T, VECTOR, centre, SCREE_NONE, -1e6, 1e6, "m",                                               \
+      "of mass, at the start; not given: on the axis")                                             \
+  ROW(T, REAL, spring, 0, 0, 1e15, "N m/rad", "")                                                  \
+  ROW(T, REAL, rest, 0, -1e6, 1e6, "rad", "angle at which the spring is loose")                    \
+  ROW(T, REAL, damper, 0, 0, 1e15, "N m s/rad", "")                                                \
+  ROW(T, AS, "torque", REAL, force, 0, -1e12, 1e12, "N m", "that drives it")                       \
+  ROW(T, REAL, amplitude, 0, 0, 1e12, "N m", "of a torque that swings besides")                    \
+  ROW(T, REAL, frequency, 0, 0, 1e5, "Hz", "")                                                     \
+  ROW(T, REAL, from, 0, 0, 1e9, "s", "held until then")                                            \
+  ROW(T, REAL, least, NAN, -1e6, 1e6, "rad", "where it stops; not given: nowhere")                 \
+  ROW(T, REAL, most, NAN, -1e6, 1e6, "rad", "likewise")                                            \
+  ROW(T, GROUP, servo, scree_plan_turning_servo, "instead of inertia and torques")
+SCREE_RECORD_TYPE(scree_plan_hinge, SCREE_PLAN_HINGE)
+
+#define SCREE_PLAN_SLIDE(ROW, T)                                                                   \
+  ROW(T, AS, "along", VECTOR, axis, (0, 0, 1), 0, 0, "", "")                                       \
+  ROW(T, REAL, mass, NAN, 1e-9, 1e12, "kg", "")                                                    \
+  ROW(T, REAL, spring, 0, 0, 1e15, "N/m", "")                                                      \
+  ROW(T, REAL, rest, 0, -1e6, 1e6, "m", "way at which the spring is loose")                        \
+  ROW(T, REAL, damper, 0, 0, 1e15, "N s/m", "")                                                    \
+  ROW(T, REAL, force, 0, -1e12, 1e12, "N", "that drives it")                                       \
+  ROW(T, REAL, amplitude, 0, 0, 1e12, "N", "of a force that swings besides")                       \
+  ROW(T, REAL, frequency, 0, 0, 1e5, "Hz", "")                                                     \
+  ROW(T, REAL, from, 0, 0, 1e9, "s", "held until then")                                            \
+  ROW(T, REAL, least, NAN, -1e6, 1e6, "m", "where it stops; not given: nowhere")                   \
+  ROW(T, REAL, most, NAN, -1e6, 1e6, "m", "likewise")                                              \
+  ROW(T, GROUP, servo, scree_plan_servo, "instead of mass and forces")
+SCREE_RECORD_LIKE(scree_plan_hinge, scree_plan_slide);
+typedef scree_plan_hinge scree_plan_part; /* either */
 
 /* A sheet round two wheels, of which one is at the geometry's origin. */
-typedef struct scree_plan_loop {
-  scree_place place;
-  double axis[3], span[3], radius, width;
-} scree_plan_loop;
+#define SCREE_PLAN_LOOP(ROW, T)                                                                    \
+  ROW(T, VECTOR, span, SCREE_NONE, -1e6, 1e6, "m", "from the wheel at `at` to the other")          \
+  ROW(T, VECTOR, axis, (0, 1, 0), 0, 0, "", "of the wheels, square to the span")                   \
+  ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m", "of the wheels")                                       \
+  ROW(T, REAL, width, NAN, 1e-9, 1e6, "m", "along the axis")
+SCREE_RECORD_TYPE(scree_plan_loop, SCREE_PLAN_LOOP)
 
 /* A flight of a helix about its axis, from the geometry's origin on, and its shaft. */
-typedef struct scree_plan_screw {
-  scree_place place;
-  double axis[3], radius, shaft, pitch, length, thickness;
-} scree_plan_screw;
+#define SCREE_PLAN_SCREW(ROW, T)                                                                   \
+  ROW(T, VECTOR, axis, (1, 0, 0), 0, 0, "", "from `at` on; the flight is right-handed")            \
+  ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m", "of the flight")                                       \
+  ROW(T, REAL, shaft, NAN, 1e-9, 1e6, "m", "radius of the shaft")                                  \
+  ROW(T, REAL, pitch, NAN, 1e-9, 1e6, "m", "")                                                     \
+  ROW(T, REAL, length, NAN, 1e-9, 1e6, "m", "")                                                    \
+  ROW(T, REAL, thickness, NAN, 1e-9, 1e6, "m", "of the flight, along the axis")
+SCREE_RECORD_TYPE(scree_plan_screw, SCREE_PLAN_SCREW)
 
 /* A plate with round holes in a square pattern, about the geometry's origin: size along x and y; or
  * bent about a line of that radius above it, along y. */
-typedef struct scree_plan_sieve {
-  scree_place place;
-  double size[3], hole, pitch, bend;
-} scree_plan_sieve;
+#define SCREE_PLAN_SIEVE(ROW, T)                                                                   \
+  ROW(T, VECTOR, size, SCREE_NONE, 1e-9, 1e6, "m", "along x and y, and its thickness")             \
+  ROW(T, REAL, hole, NAN, 1e-9, 1e6, "m", "diameter")                                              \
+  ROW(T, REAL, pitch, NAN, 1e-9, 1e6, "m", "from hole to hole, along x and y")                     \
+  ROW(T, REAL, bend, NAN, 1e-9, 1e6, "m",                                                          \
+      "radius of the upper face about a line along y above it; not given: flat")
+SCREE_RECORD_TYPE(scree_plan_sieve, SCREE_PLAN_SIEVE)
 
 /* The surface of closed loops about an axis runs along itself. */
-typedef struct scree_plan_belt {
-  scree_place place;
-  double axis[3], speed;
-} scree_plan_belt;
+#define SCREE_PLAN_BELT(ROW, T)                                                                    \
+  ROW(T, VECTOR, axis, (0, 1, 0), 0, 0, "", "of its pulleys")                                      \
+  ROW(T, REAL, speed, NAN, -1e3, 1e3, "m/s", "along itself; above 0 right-handed about the axis")
+SCREE_RECORD_TYPE(scree_plan_belt, SCREE_PLAN_BELT)
 
 /* Copies at equal ways round two wheels `span` apart, of which one is at `through`, from the strand
  * that leads to the other on; without a span about the axis. */
-typedef struct scree_plan_round {
-  scree_place place;
-  double axis[3], through[3], span[3], radius;
-  size_t count;
-} scree_plan_round;
+#define SCREE_PLAN_ROUND(ROW, T)                                                                   \
+  ROW(T, COUNT, count, 0, 1, 1000, "of all, at equal distances")                                   \
+  ROW(T, VECTOR, axis, (0, 0, 1), 0, 0, "", "about which they stand")                              \
+  ROW(T, VECTOR, through, SCREE_ZERO, -1e6, 1e6, "m", "a point of it")                             \
+  ROW(T, VECTOR, span, SCREE_ZERO, -1e6, 1e6, "m",                                                 \
+      "of a chain: from the wheel there to the other; the first copy begins the strand along it")  \
+  ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m", "of the wheels, to the chain")
+SCREE_RECORD_TYPE(scree_plan_round, SCREE_PLAN_ROUND)
 
 /* One of file, box, plane, disc, cylinder, shaft, loop, screw, sieve. */
-typedef struct scree_plan_geometry {
-  scree_place place;
-  scree_texts file;
-  const char *material;
-  int unit, side; /* side: 0 auto, 1 outside, 2 inside, 3 both */
-  double box[3], plane[3], at[3], surface_velocity[3];
-  scree_plan_disc *disc;
-  scree_plan_cylinder *cylinder;
-  scree_plan_shaft *shaft;
-  scree_plan_loop *loop;
-  scree_plan_screw *screw;
-  scree_plan_sieve *sieve;
-  scree_plan_belt *belt;
-  scree_plan_turn *turn;
-  scree_plan_round *copies;
-  scree_records motion; /* of scree_plan_motion */
-  scree_plan_part *slide, *hinge;
-} scree_plan_geometry;
+#define SCREE_PLAN_GEOMETRY(ROW, T)                                                                \
+  ROW(T, TEXTS, file, "a mesh, or several that move together")                                     \
+  ROW(T, VECTOR, box, SCREE_NONE, 1e-9, 1e6, "m", "three sides, about `at`")                       \
+  ROW(T, VECTOR, plane, SCREE_NONE, 0, 0, "", "normal, out of the solid")                          \
+  ROW(T, GROUP, disc, scree_plan_disc, "")                                                         \
+  ROW(T, GROUP, cylinder, scree_plan_cylinder, "a sheet from `at` along its axis")                 \
+  ROW(T, GROUP, shaft, scree_plan_shaft, "four endless walls about z")                             \
+  ROW(T, GROUP, loop, scree_plan_loop, "a sheet round two wheels, one of them at `at`")            \
+  ROW(T, GROUP, screw, scree_plan_screw, "a flight on a shaft")                                    \
+  ROW(T, GROUP, sieve, scree_plan_sieve, "a plate with round holes, flat or bent")                 \
+  ROW(T, WORD, unit, 2, SCREE_PLAN_UNITS, "of the file's lengths")                                 \
+  ROW(T, VECTOR, at, SCREE_ZERO, -1e6, 1e6, "m", "where its origin goes")                          \
+  ROW(T, GROUP, turn, scree_plan_turn, "about its origin, before it goes there")                   \
+  ROW(T, WORD, side, 0, "auto|outside|inside|both",                                                \
+      "of a closed mesh or box: where bodies are; auto: where the inlets are")                     \
+  ROW(T, TEXT, material, "")                                                                       \
+  ROW(T, GROUP, copies, scree_plan_round, "of it, about an axis or along a chain")                 \
+  ROW(T, LIST, motion, scree_plan_motion, "in this order")                                         \
+  ROW(T, GROUP, slide, scree_plan_slide, "moved by forces along a direction")                      \
+  ROW(T, GROUP, hinge, scree_plan_hinge, "turned by forces about an axis")                         \
+  ROW(T, VECTOR, surface_velocity, SCREE_NONE, -1e3, 1e3, "m/s",                                   \
+      "of a belt that stays where it is")                                                          \
+  ROW(T, GROUP, belt, scree_plan_belt,                                                             \
+      "of a file or loop that is closed about an axis: its surface runs round")
+SCREE_RECORD_TYPE(scree_plan_geometry, SCREE_PLAN_GEOMETRY)
 
-typedef struct scree_plan_layers {
-  scree_place place;
-  const char *in;    /* a geometry: what they cover */
-  int packed, begin; /* 0 random, 1 grid; 0 at the bottom, 1 at the top */
-  double pack_time, above, bottom, clearance;
-} scree_plan_layers;
+#define SCREE_PLAN_LAYERS(ROW, T)                                                                  \
+  ROW(T, WORD, packed, 0, "random|grid",                                                           \
+      "as many as random places hold, or one in every cell of a square grid")                      \
+  ROW(T, REAL, pack_time, NAN, 0, 1e6, "s",                                                        \
+      "in which all enter; not given: each layer as the one before has made room by falling")      \
+  ROW(T, TEXT, in,                                                                                 \
+      "a cylinder or shaft that they fill, in place of a box or cylinder of their own")            \
+  ROW(T, WORD, begin, 0, "heap|top",                                                               \
+      "in it: from near its bottom, or above where all will lie loosely")                          \
+  ROW(T, REAL, bottom, NAN, 0, 1e6, "m",                                                           \
+      "from near its bottom: height of the first; not given: as `above`")                          \
+  ROW(T, REAL, above, 0, 0, 1e3, "m", "the highest body, at least")                                \
+  ROW(T, REAL, clearance, NAN, 0, 1e3, "m",                                                        \
+      "kept free around a body; not given: half a hundredth of the mean size")
+SCREE_RECORD_TYPE(scree_plan_layers, SCREE_PLAN_LAYERS)
 
-typedef struct scree_plan_inlet {
-  scree_place place;
-  scree_plan_layers *layers;
-  scree_plan_box *box;
-  scree_plan_cylinder *cylinder;
-  scree_weights shapes;
-  double rate, mass_rate, from, until, velocity[3];
-  size_t count;
-  int orientation; /* 0 random, 1 fixed */
-} scree_plan_inlet;
+#define SCREE_PLAN_INLET(ROW, T)                                                                   \
+  ROW(T, GROUP, box, scree_plan_box, "bodies begin wholly inside")                                 \
+  ROW(T, GROUP, cylinder, scree_plan_cylinder, "likewise")                                         \
+  ROW(T, WEIGHTS, shapes, 0, 1e12, "", "and their shares by number")                               \
+  ROW(T, REAL, rate, NAN, 0, 1e9, "1/s", "bodies a second")                                        \
+  ROW(T, REAL, mass_rate, NAN, 0, 1e9, "kg/s", "or mass a second")                                 \
+  ROW(T, COUNT, count, 0, 1, 1e9, "at most so many; without a rate as soon as there is room")      \
+  SCREE_PLAN_WINDOW(ROW, T)                                                                        \
+  ROW(T, VECTOR, velocity, SCREE_ZERO, -1e3, 1e3, "m/s", "on entering")                            \
+  ROW(T, WORD, orientation, 0, "random|fixed", "fixed: axes as in the shape's file")               \
+  ROW(T, GROUP, layers, scree_plan_layers,                                                         \
+      "batches, each above all that is there; the region is what they cover and where they begin")
+SCREE_RECORD_TYPE(scree_plan_inlet, SCREE_PLAN_INLET)
 
-typedef struct scree_plan_outlet {
-  scree_place place;
-  scree_plan_box *box;
-  double from, until;
-} scree_plan_outlet;
+#define SCREE_PLAN_OUTLET(ROW, T)                                                                  \
+  ROW(T, GROUP, box, scree_plan_box, "bodies whose centre is inside are taken out")                \
+  SCREE_PLAN_WINDOW(ROW, T)
+SCREE_RECORD_TYPE(scree_plan_outlet, SCREE_PLAN_OUTLET)
 
-typedef struct scree_plan_domain {
-  scree_place place;
-  double min[3], max[3];
-  scree_texts periodic;
-} scree_plan_domain;
+#define SCREE_PLAN_DOMAIN(ROW, T)                                                                  \
+  ROW(T, VECTOR, min, SCREE_NONE, -1e9, 1e9, "m", "corner")                                        \
+  ROW(T, VECTOR, max, SCREE_NONE, -1e9, 1e9, "m", "opposite corner")                               \
+  ROW(T, TEXTS, periodic, "axes along which what leaves enters again")
+SCREE_RECORD_TYPE(scree_plan_domain, SCREE_PLAN_DOMAIN)
 
-typedef struct scree_plan_flow {
-  scree_place place;
-  double through[3], normal[3], radius;
-} scree_plan_flow;
+#define SCREE_PLAN_FLOW(ROW, T)                                                                    \
+  ROW(T, VECTOR, through, SCREE_NONE, -1e6, 1e6, "m", "a point of the plane")                      \
+  ROW(T, VECTOR, normal, (0, 0, 1), 0, 0, "", "along it counts up, against it down")               \
+  ROW(T, REAL, radius, NAN, 0, 1e6, "m", "about the point; not given: all of it")
+SCREE_RECORD_TYPE(scree_plan_flow, SCREE_PLAN_FLOW)
 
-typedef struct scree_plan_region {
-  scree_place place;
-  scree_plan_box *box;
-} scree_plan_region;
+#define SCREE_PLAN_REGION(ROW, T) ROW(T, GROUP, box, scree_plan_box, "")
+SCREE_RECORD_TYPE(scree_plan_region, SCREE_PLAN_REGION)
 
-typedef struct scree_plan_pile {
-  scree_place place;
-  double floor, cell, disc, reach, size, every;
-  double band_low, band_high;
-  size_t sectors;
-  scree_texts during;
-} scree_plan_pile;
+#define SCREE_PLAN_PILE(ROW, T)                                                                    \
+  ROW(T, REAL, floor, 0, -1e6, 1e6, "m", "height of what the pile stands on")                      \
+  ROW(T, REAL, cell, 0, 0, 1e3, "m", "of the height field; 0: a tenth of the size")                \
+  ROW(T, REAL, disc, NAN, 1e-9, 1e6, "m",                                                          \
+      "radius about the origin; bodies beyond are not of the pile; not given: all are")            \
+  ROW(T, REAL, reach, NAN, 1e-9, 1e6, "m",                                                         \
+      "of the height field with a disc; not given: one and a half of the longest shape beyond it") \
+  ROW(T, REAL, size, NAN, 1e-9, 1e3, "m",                                                          \
+      "of a body; not given: the mean of what layers pour, else of those there")                   \
+  ROW(T, COUNT, sectors, 36, 1, 3600, "in azimuth")                                                \
+  ROW(T, REAL, band_low, 0.2, 0, 1, "", "of the height: the flank begins")                         \
+  ROW(T, REAL, band_high, 0.8, 0, 1, "", "and ends")                                               \
+  ROW(T, REAL, every, NAN, 0, 1e9, "s",                                                            \
+      "between lines of the series that have it; 0: only the last; not given: all")                \
+  ROW(T, TEXTS, during, "phases; not given: all")
+SCREE_RECORD_TYPE(scree_plan_pile, SCREE_PLAN_PILE)
 
-typedef struct scree_plan_slope {
-  scree_place place;
-  double axis[3];
-  scree_plan_box *box; /* NULL: all bodies */
-} scree_plan_slope;
+#define SCREE_PLAN_SLOPE(ROW, T)                                                                   \
+  ROW(T, VECTOR, axis, (1, 0, 0), 0, 0, "", "the surface is seen along it")                        \
+  ROW(T, GROUP, box, scree_plan_box, "of the bodies in it; not given: about the middle of all")
+SCREE_RECORD_TYPE(scree_plan_slope, SCREE_PLAN_SLOPE)
 
-typedef struct scree_plan_segregation {
-  scree_place place;
-  double cells;
-  int by; /* SCREE_BY_... */
-} scree_plan_segregation;
+#define SCREE_PLAN_SEGREGATION(ROW, T)                                                             \
+  ROW(T, REAL, cells, NAN, 1e-9, 1e6, "m", "side of the cells that are compared")                  \
+  ROW(T, WORD, by, 0, "size|shape|material",                                                       \
+      "classes: of a shape's sizes each, all of a shape, all of a material")
+SCREE_RECORD_TYPE(scree_plan_segregation, SCREE_PLAN_SEGREGATION)
 
-typedef struct scree_plan_impacts {
-  scree_place place;
-  int by; /* 0 shape, 1 material */
-  double least, most, threshold, window;
-  size_t bins;
-} scree_plan_impacts;
+#define SCREE_PLAN_IMPACTS(ROW, T)                                                                 \
+  ROW(T, WORD, by, 0, "shape|material", "classes of bodies; geometry by name")                     \
+  ROW(T, REAL, least, 1e-9, 1e-18, 1e12, "J", "where the spectra begin")                           \
+  ROW(T, REAL, most, 1e3, 1e-18, 1e12, "J", "and end")                                             \
+  ROW(T, COUNT, bins, 5, 1, 100, "in a decade of energy")                                          \
+  ROW(T, REAL, threshold, 0, 0, 1e12, "J", "damage is what the energy of approach exceeds it by")  \
+  ROW(T, REAL, window, NAN, 1e-9, 1e9, "s", "a spectrum for each; not given: one of all")
+SCREE_RECORD_TYPE(scree_plan_impacts, SCREE_PLAN_IMPACTS)
 
-typedef struct scree_plan_grid {
-  scree_place place;
-  scree_plan_box *box;
-  scree_plan_cylinder *cylinder;
-  double cells[3], width, every;
-  const char *with; /* a geometry */
-} scree_plan_grid;
+#define SCREE_PLAN_GRID(ROW, T)                                                                    \
+  ROW(T, GROUP, box, scree_plan_box, "")                                                           \
+  ROW(T, GROUP, cylinder, scree_plan_cylinder, "instead of a box")                                 \
+  ROW(T, VECTOR, cells, SCREE_NONE, 1, 1000, "",                                                   \
+      "along x, y and z; of a cylinder outward, around and along")                                 \
+  ROW(T, REAL, width, NAN, 1e-9, 1e3, "m",                                                         \
+      "of coarse graining; not given: the largest body's size")                                    \
+  ROW(T, REAL, every, NAN, 1e-9, 1e9, "s", "between samples; not given: as the series")            \
+  ROW(T, TEXT, with, "a geometry: the grid is in its frame and moves with it")
+SCREE_RECORD_TYPE(scree_plan_grid, SCREE_PLAN_GRID)
 
-typedef struct scree_plan_residence {
-  scree_place place;
-  int by;                     /* SCREE_BY_... */
-  const char *inlet, *outlet; /* NULL: any */
-  size_t bins;
-} scree_plan_residence;
+#define SCREE_PLAN_RESIDENCE(ROW, T)                                                               \
+  ROW(T, WORD, by, 0, "size|shape|material",                                                       \
+      "classes: of a shape's sizes each, all of a shape, all of a material")                       \
+  ROW(T, TEXT, inlet, "of those that came by it; not given: all")                                  \
+  ROW(T, TEXT, outlet, "of those that left by it; not given: all")                                 \
+  ROW(T, COUNT, bins, 20, 1, 10000, "of the histogram")
+SCREE_RECORD_TYPE(scree_plan_residence, SCREE_PLAN_RESIDENCE)
 
 /* One of them. */
-typedef struct scree_plan_sensor {
-  scree_place place;
-  double from, until; /* s: what is gathered, and means; until NaN: to the end */
-  scree_plan_flow *flow;
-  scree_plan_region *region;
-  const char *wall, *position, *part; /* of a geometry */
-  scree_plan_pile *pile;
-  scree_plan_slope *slope;
-  scree_plan_segregation *segregation;
-  scree_plan_residence *residence;
-  scree_plan_impacts *impacts;
-  scree_plan_grid *grid;
-} scree_plan_sensor;
+#define SCREE_PLAN_SENSOR(ROW, T)                                                                  \
+  ROW(T, GROUP, flow, scree_plan_flow, "count and mass through a plane, by shape")                 \
+  ROW(T, GROUP, region, scree_plan_region, "what is in a box")                                     \
+  ROW(T, TEXT, wall, "force, torque, power and wear of a geometry")                                \
+  ROW(T, TEXT, position, "where a geometry is")                                                    \
+  ROW(T, TEXT, part, "of a geometry that forces move")                                             \
+  ROW(T, GROUP, pile, scree_plan_pile, "angle of repose three ways")                               \
+  ROW(T, GROUP, slope, scree_plan_slope, "angle of the surface")                                   \
+  ROW(T, GROUP, segregation, scree_plan_segregation, "Lacey's index by shape")                     \
+  ROW(T, GROUP, residence, scree_plan_residence, "time from inlet to outlet")                      \
+  ROW(T, GROUP, grid, scree_plan_grid, "fields of means over time, for ParaView")                  \
+  ROW(T, GROUP, impacts, scree_plan_impacts, "energies of contacts, by class")                     \
+  ROW(T, REAL, from, 0, 0, 1e9, "s", "what comes before is neither gathered nor in means")         \
+  ROW(T, REAL, until, NAN, 1e-9, 1e9, "s", "nor what comes after; not given: all")
+SCREE_RECORD_TYPE(scree_plan_sensor, SCREE_PLAN_SENSOR)
 
 /* law: 0 Schiller and Naumann, 1 Stokes */
-typedef struct scree_plan_drag {
-  scree_place place;
-  double density, viscosity, velocity[3];
-  int law;
-  bool buoyancy;
-} scree_plan_drag;
+#define SCREE_PLAN_DRAG(ROW, T)                                                                    \
+  ROW(T, REAL, density, NAN, 0, 1e6, "kg/m3", "of the fluid")                                      \
+  ROW(T, REAL, viscosity, NAN, 1e-12, 1e9, "Pa s", "dynamic")                                      \
+  ROW(T, VECTOR, velocity, (0, 0, 0), -1e3, 1e3, "m/s", "of the fluid")                            \
+  ROW(T, WORD, law, 0, "schiller-naumann|stokes", "of a sphere of equal volume")                   \
+  ROW(T, FLAG, buoyancy, true, "the weight of the fluid lifts")
+SCREE_RECORD_TYPE(scree_plan_drag, SCREE_PLAN_DRAG)
 
 /* One of force, acceleration, per_volume, drag. */
-typedef struct scree_plan_force {
-  scree_place place;
-  scree_texts of;
-  scree_plan_box *box;
-  scree_plan_cylinder *cylinder;
-  double from, until, force[3], acceleration[3], per_volume[3];
-  scree_plan_drag *drag;
-  int by; /* of the table: 0 x, 1 y, 2 z, 3 t */
-  scree_table table;
-} scree_plan_force;
+#define SCREE_PLAN_FORCE(ROW, T)                                                                   \
+  ROW(T, TEXTS, of, "shapes or materials; not given: all")                                         \
+  ROW(T, GROUP, box, scree_plan_box, "where; not given: everywhere")                               \
+  ROW(T, GROUP, cylinder, scree_plan_cylinder, "likewise")                                         \
+  SCREE_PLAN_WINDOW(ROW, T)                                                                        \
+  ROW(T, VECTOR, force, SCREE_NONE, -1e12, 1e12, "N", "on each body")                              \
+  ROW(T, VECTOR, acceleration, SCREE_NONE, -1e9, 1e9, "m/s2", "times its mass")                    \
+  ROW(T, VECTOR, per_volume, SCREE_NONE, -1e15, 1e15, "N/m3", "times its volume")                  \
+  ROW(T, GROUP, drag, scree_plan_drag, "of a fluid")                                               \
+  ROW(T, WORD, by, 0, "x|y|z|t", "of the table (m or s)")                                          \
+  ROW(T, TABLE, table, 0, 0, "|",                                                                  \
+      "[where or when, factor] of the force or of the fluid's velocity, linear between")
+SCREE_RECORD_TYPE(scree_plan_force, SCREE_PLAN_FORCE)
 
-typedef struct scree_plan_stop {
-  scree_place place;
-  double still, rest, filled, after;
-  bool empty;
-} scree_plan_stop;
+#define SCREE_PLAN_STOP(ROW, T)                                                                    \
+  ROW(T, REAL, still, NAN, 0, 1e9, "J", "all have entered and move with less energy a body")       \
+  ROW(T, REAL, rest, NAN, 0, 1e9, "s", "for so long; not given: for ten ticks")                    \
+  ROW(T, REAL, filled, NAN, 0, 1e9, "s", "so long after all have entered")                         \
+  ROW(T, FLAG, empty, false, "all have entered and left")                                          \
+  ROW(T, REAL, after, 0, 0, 1e9, "s", "not before")
+SCREE_RECORD_TYPE(scree_plan_stop, SCREE_PLAN_STOP)
 
-typedef struct scree_plan_phase {
-  scree_place place;
-  double time, still, rest;
-  bool filled, early;
-  const char *clear; /* a geometry */
-} scree_plan_phase;
+#define SCREE_PLAN_PHASE(ROW, T)                                                                   \
+  ROW(T, REAL, time, NAN, 0, 1e9, "s", "it lasts, at most")                                        \
+  ROW(T, FLAG, filled, false, "it lasts until all have entered, however long")                     \
+  ROW(T, REAL, still, NAN, 0, 1e9, "J", "it ends early when all move with less energy a body")     \
+  ROW(T, REAL, rest, 0.1, 0, 1e9, "s", "for so long")                                              \
+  ROW(T, FLAG, early, true, "false: `still` does not end it")                                      \
+  ROW(T, TEXT, clear, "a geometry: it ends early only when that is above all bodies")
+SCREE_RECORD_TYPE(scree_plan_phase, SCREE_PLAN_PHASE)
 
-typedef struct scree_plan_output {
-  scree_place place;
-  double frames, series, checkpoint, motion;
-  int bodies; /* of frames: 0 instances, 1 surfaces */
-} scree_plan_output;
+#define SCREE_PLAN_OUTPUT(ROW, T)                                                                  \
+  ROW(T, REAL, frames, 0, 0, 1e9, "s", "between files for ParaView; 0: none")                      \
+  ROW(T, WORD, bodies, 0, "instances|surfaces",                                                    \
+      "of files for ParaView: a point for each, and each shape once; or all their triangles")      \
+  ROW(T, REAL, series, 0.01, 1e-9, 1e9, "s", "between the lines of series.csv")                    \
+  ROW(T, REAL, motion, 0, 0, 1e9, "s", "between moments of report.html; 0: a 240th of the time")   \
+  ROW(T, REAL, checkpoint, 60, 0.01, 1e9, "s", "of the clock")
+SCREE_RECORD_TYPE(scree_plan_output, SCREE_PLAN_OUTPUT)
 
-typedef struct scree_plan_bodies {
-  scree_place place;
-  const char *file;
-} scree_plan_bodies;
+#define SCREE_PLAN_BODIES(ROW, T) ROW(T, TEXT, file, "a table with a line for each")
+SCREE_RECORD_TYPE(scree_plan_bodies, SCREE_PLAN_BODIES)
 
-typedef struct scree_plan_contact {
-  scree_place place;
-  int law;
-  double steps, stiffness_factor, tangential_ratio, time_step;
-} scree_plan_contact;
+#define SCREE_PLAN_CONTACT(ROW, T)                                                                 \
+  ROW(T, WORD, law, 0, "linear|hysteretic|hertz", "docs/background/physics.md")                    \
+  ROW(T, REAL, steps, 20, 15, 1e6, "", "time steps in a quarter of the fastest contact's period")  \
+  ROW(T, REAL, stiffness_factor, 1, 1e-9, 1e9, "",                                                 \
+      "multiplies every stiffness: below 1 steps are longer and overlaps deeper")                  \
+  ROW(T, REAL, tangential_ratio, 1, 1e-6, 1, "", "tangential over normal stiffness")               \
+  ROW(T, REAL, time_step, 0, 0, 1, "s", "0: by steps")
+SCREE_RECORD_TYPE(scree_plan_contact, SCREE_PLAN_CONTACT)
 
 /* A name for fields that are set together. */
-typedef struct scree_scene_parameter {
-  scree_place place;
-  const char *name;
-  scree_texts sets;
-  double factor, least, most;
-  double below, power; /* of the size of the largest shape over `below`, where it is less */
-} scree_scene_parameter;
+#define SCREE_PLAN_PARAMETER(ROW, T)                                                               \
+  ROW(T, TEXT, name, "")                                                                           \
+  ROW(T, TEXTS, sets, "fields; * is every name of a group")                                        \
+  ROW(T, REAL, factor, NAN, -1e9, 1e9, "", "times the value")                                      \
+  ROW(T, REAL, least, NAN, -1e300, 1e300, "", "of the value")                                      \
+  ROW(T, REAL, most, NAN, -1e300, 1e300, "", "")                                                   \
+  ROW(T, REAL, below, NAN, 1e-9, 1e3, "m",                                                         \
+      "where the largest shape is smaller, the fields shrink")                                     \
+  ROW(T, REAL, power, NAN, 0, 10, "",                                                              \
+      "of the share of that size that they shrink by; 0, once they are set: they do not")
+SCREE_RECORD_TYPE(scree_scene_parameter, SCREE_PLAN_PARAMETER)
 
-typedef struct scree_plan_preset {
-  scree_place place;
-  const char *name, *about;
-  scree_values set;
-} scree_plan_preset;
+#define SCREE_PLAN_PRESET(ROW, T)                                                                  \
+  ROW(T, TEXT, name, "")                                                                           \
+  ROW(T, TEXT, about, "")                                                                          \
+  ROW(T, VALUES, set, "values of parameters and fields")
+SCREE_RECORD_TYPE(scree_plan_preset, SCREE_PLAN_PRESET)
 
-typedef struct scree_plan {
-  scree_place place;
-  const char *title, *preset;
-  double time, gravity[3];
-  uint64_t seed;
-  size_t tick;
-  scree_plan_contact *contact;
-  scree_records families; /* the shapes of the file (scree_plan_expand) */
-  scree_records materials, pairs, shapes, geometry, inlets, outlets, sensors, phases, forces;
-  scree_records parameters, presets;
-  scree_plan_domain *domain;
-  scree_plan_bodies *bodies;
-  scree_plan_stop *stop;
-  scree_plan_output *output;
-} scree_plan;
+#define SCREE_PLAN_SCENE(ROW, T)                                                                   \
+  ROW(T, TEXT, title, "")                                                                          \
+  ROW(T, TEXT, preset, "of those below, whose values it has")                                      \
+  ROW(T, REAL, time, NAN, 1e-9, 1e9, "s", "simulated, at most")                                    \
+  ROW(T, SEED, seed, 1, "of places, orientations and order")                                       \
+  ROW(T, VECTOR, gravity, (0, 0, -9.81), -1e3, 1e3, "m/s2", "")                                    \
+  ROW(T, COUNT, tick, 0, 1, 1e6,                                                                   \
+      "steps between looks at inlets, outlets, flows and the end; not given: by the bodies' size") \
+  ROW(T, GROUP, contact, scree_plan_contact, "")                                                   \
+  ROW(T, NAMED, materials, scree_plan_material, "")                                                \
+  ROW(T, LIST, pairs, scree_plan_pair, "")                                                         \
+  ROW(T, NAMED, shapes, scree_plan_shape, "")                                                      \
+  ROW(T, NAMED, geometry, scree_plan_geometry, "")                                                 \
+  ROW(T, GROUP, bodies, scree_plan_bodies, "that are there from the start")                        \
+  ROW(T, NAMED, inlets, scree_plan_inlet, "")                                                      \
+  ROW(T, NAMED, outlets, scree_plan_outlet, "")                                                    \
+  ROW(T, GROUP, domain, scree_plan_domain, "what leaves it is taken out")                          \
+  ROW(T, NAMED, sensors, scree_plan_sensor, "")                                                    \
+  ROW(T, NAMED, forces, scree_plan_force, "on bodies")                                             \
+  ROW(T, NAMED, phases, scree_plan_phase, "follow each other; after the last the scene ends")      \
+  ROW(T, GROUP, stop, scree_plan_stop, "what ends it before its time")                             \
+  ROW(T, GROUP, output, scree_plan_output, "")                                                     \
+  ROW(T, LIST, parameters, scree_scene_parameter, "names for fields set together")                 \
+  ROW(T, LIST, presets, scree_plan_preset, "values for many")                                      \
+  ROW(T, OWN, scree_plan_shape_list families, families, {0})
+SCREE_RECORD_TYPE(scree_plan, SCREE_PLAN_SCENE)
 
-extern const scree_record scree_plan_record;
 /* plan_check.c: of a whole scree_plan, whose records are good each. */
 scree_status scree_plan_check(const scree_reader *reader, const void *plan);
 
@@ -394,24 +545,16 @@ scree_size_class *scree_plan_size_classes(const scree_plan_size *size, scree_are
                                           size_t *count);
 /* A shape of many sizes becomes one for each class, in inlets by its share. */
 scree_status scree_plan_expand(scree_plan *plan, scree_arena *arena, scree_error *error);
-extern const scree_record scree_plan_size_record;
-/* plan_solids.c */
-extern const scree_record scree_plan_loop_record, scree_plan_screw_record, scree_plan_sieve_record,
-    scree_plan_belt_record, scree_plan_copies_record;
-/* plan_motions.c */
-extern const scree_record scree_plan_motion_record;
-/* plan_parts.c */
-extern const scree_record scree_plan_slide_record, scree_plan_hinge_record;
-/* plan_forces.c */
-extern const scree_record scree_plan_force_record;
 
 /* Reads and checks it all but the files it names. */
 scree_status scree_plan_read(const scree_reader *reader, const scree_yaml *root, scree_plan *plan);
 
-/* The records by index. */
-#define SCREE_PLAN_AT(plan, list, type, index) (&((const type *)(plan)->list.items)[index])
-
-/* Index of the named record; its count where there is none. */
-size_t scree_plan_find(const scree_records *records, size_t size, const char *name);
+/* Index of the record of that name in a list of records; its count where there is none. */
+#define SCREE_PLAN_FIND(list, name)                                                                \
+  scree_plan_find((list).items, (list).count, sizeof *(list).items, name)
+size_t scree_plan_find(const void *items, size_t count, size_t size, const char *name);
+/* The name of one; NULL past the last. */
+#define SCREE_PLAN_NAME(list, index)                                                               \
+  ((index) < (list).count ? (list).items[index].place.name : NULL)
 /* Metres of the unit. */
 double scree_plan_unit(int unit);

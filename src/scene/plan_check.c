@@ -7,53 +7,48 @@
 #include <string.h>
 
 /* A name that another record must have. */
-static scree_status need_name(const scree_reader *r, const scree_place *place,
-                              const scree_records *records, size_t size, const char *what,
-                              const char *name) {
+static scree_status need_name(const scree_reader *r, const scree_place *place, const void *items,
+                              size_t item_count, size_t size, const char *what, const char *name) {
   const char *names[64] = {NULL};
   size_t count = 0;
-  if (scree_plan_find(records, size, name) < records->count) return SCREE_OK;
-  for (size_t i = 0; i < records->count && count < 64; i++) {
-    const scree_place *other = (const void *)((const char *)records->items + i * size);
-    names[count++] = other->name;
-  }
+  if (scree_plan_find(items, item_count, size, name) < item_count) return SCREE_OK;
+  for (; count < item_count && count < 64; count++)
+    names[count] = ((const scree_place *)(const void *)((const char *)items + count * size))->name;
   return scree_fail_name(r, place, what, name, names, count);
 }
 
-#define NEED(records, type, what, name, place)                                                     \
-  need_name(r, place, &plan->records, sizeof(type), what, name)
+#define NEED(list, what, name, place)                                                              \
+  need_name(r, place, plan->list.items, plan->list.count, sizeof *plan->list.items, what, name)
 
 static bool are_same(const scree_texts *a, const scree_texts *b) {
   bool crossed = strcmp(a->items[0], b->items[0]) != 0;
   return !strcmp(a->items[0], b->items[crossed]) && !strcmp(a->items[1], b->items[!crossed]);
 }
 
+static scree_status check_material(const scree_reader *r, const scree_plan *plan,
+                                   const scree_place *place, const char *material) {
+  if (material) return NEED(materials, "material", material, place);
+  if (plan->materials.count < 2) return SCREE_OK;
+  return scree_fail_place(r, place, "needs a material: there are several");
+}
+
 static scree_status check_materials(const scree_reader *r, const scree_plan *plan) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < plan->pairs.count; i++) {
-    const scree_plan_pair *p = SCREE_PLAN_AT(plan, pairs, scree_plan_pair, i);
-    for (size_t k = 0; status == SCREE_OK && k < 2; k++)
-      status = NEED(materials, scree_plan_material, "material", p->between.items[k], &p->place);
-    for (size_t k = 0; status == SCREE_OK && k < i; k++)
-      if (are_same(&p->between, &SCREE_PLAN_AT(plan, pairs, scree_plan_pair, k)->between))
-        status = scree_fail_place(r, &p->place, "'%.60s' and '%.60s' are a pair already",
-                                  p->between.items[0], p->between.items[1]);
+  for (size_t i = 0; i < plan->pairs.count; i++) {
+    const scree_plan_pair *p = &plan->pairs.items[i];
+    for (size_t k = 0; k < 2; k++)
+      SCREE_TRY(NEED(materials, "material", p->between.items[k], &p->place));
+    for (size_t k = 0; k < i; k++)
+      if (are_same(&p->between, &plan->pairs.items[k].between))
+        return scree_fail_place(r, &p->place, "'%.60s' and '%.60s' are a pair already",
+                                p->between.items[0], p->between.items[1]);
   }
-  for (size_t i = 0; status == SCREE_OK && i < plan->shapes.count; i++) {
-    const scree_plan_shape *s = SCREE_PLAN_AT(plan, shapes, scree_plan_shape, i);
-    if (s->material)
-      status = NEED(materials, scree_plan_material, "material", s->material, &s->place);
-    else if (plan->materials.count > 1)
-      status = scree_fail_place(r, &s->place, "needs a material: there are several");
-  }
-  for (size_t i = 0; status == SCREE_OK && i < plan->geometry.count; i++) {
-    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
-    if (g->material)
-      status = NEED(materials, scree_plan_material, "material", g->material, &g->place);
-    else if (plan->materials.count > 1)
-      status = scree_fail_place(r, &g->place, "needs a material: there are several");
-  }
-  return status;
+  for (size_t i = 0; i < plan->shapes.count; i++)
+    SCREE_TRY(
+        check_material(r, plan, &plan->shapes.items[i].place, plan->shapes.items[i].material));
+  for (size_t i = 0; i < plan->geometry.count; i++)
+    SCREE_TRY(
+        check_material(r, plan, &plan->geometry.items[i].place, plan->geometry.items[i].material));
+  return SCREE_OK;
 }
 
 static scree_status check_inside(const scree_reader *r, const scree_plan *plan,
@@ -77,21 +72,21 @@ static scree_status check_inside(const scree_reader *r, const scree_plan *plan,
 /* Layers in a geometry; what has no width of its own needs such. */
 static scree_status check_containers(const scree_reader *r, const scree_plan *plan) {
   for (size_t i = 0; i < plan->inlets.count; i++) {
-    const scree_plan_layers *l = SCREE_PLAN_AT(plan, inlets, scree_plan_inlet, i)->layers;
+    const scree_plan_layers *l = plan->inlets.items[i].layers;
     if (!l || !l->in) continue;
-    SCREE_TRY(NEED(geometry, scree_plan_geometry, "geometry", l->in, &l->place));
-    size_t index = scree_plan_find(&plan->geometry, sizeof(scree_plan_geometry), l->in);
-    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, index);
+    SCREE_TRY(NEED(geometry, "geometry", l->in, &l->place));
+    size_t index = SCREE_PLAN_FIND(plan->geometry, l->in);
+    const scree_plan_geometry *g = &plan->geometry.items[index];
     bool upright = g->cylinder && g->cylinder->axis[0] == 0 && g->cylinder->axis[1] == 0;
     if ((!upright && !g->shaft) || g->turn)
       return scree_fail_place(r, &l->place, "in '%.60s': must be a cylinder along z or a shaft",
                               l->in);
   }
   for (size_t i = 0; i < plan->geometry.count; i++) {
-    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
+    const scree_plan_geometry *g = &plan->geometry.items[i];
     bool open = (g->cylinder && isnan(g->cylinder->radius)) || (g->shaft && isnan(g->shaft->width));
     for (size_t k = 0; open && k < plan->inlets.count; k++) {
-      const scree_plan_layers *l = SCREE_PLAN_AT(plan, inlets, scree_plan_inlet, k)->layers;
+      const scree_plan_layers *l = plan->inlets.items[k].layers;
       if (l && l->in && !strcmp(l->in, g->place.name)) open = false;
     }
     if (open)
@@ -104,9 +99,9 @@ static scree_status check_containers(const scree_reader *r, const scree_plan *pl
 
 static scree_status check_inlets(const scree_reader *r, const scree_plan *plan) {
   for (size_t i = 0; i < plan->inlets.count; i++) {
-    const scree_plan_inlet *inlet = SCREE_PLAN_AT(plan, inlets, scree_plan_inlet, i);
+    const scree_plan_inlet *inlet = &plan->inlets.items[i];
     for (size_t k = 0; k < inlet->shapes.count; k++)
-      SCREE_TRY(NEED(shapes, scree_plan_shape, "shape", inlet->shapes.names[k], &inlet->place));
+      SCREE_TRY(NEED(shapes, "shape", inlet->shapes.names[k], &inlet->place));
     SCREE_TRY(check_inside(r, plan, inlet));
     if (inlet->layers && plan->gravity[2] > 0)
       return scree_fail_place(r, &inlet->layers->place, "layers need a gravity that points down");
@@ -117,7 +112,7 @@ static scree_status check_inlets(const scree_reader *r, const scree_plan *plan) 
 static scree_status check_outlets(const scree_reader *r, const scree_plan *plan) {
   const scree_plan_domain *d = plan->domain;
   for (size_t i = 0; d && i < plan->outlets.count; i++) {
-    const scree_plan_outlet *o = SCREE_PLAN_AT(plan, outlets, scree_plan_outlet, i);
+    const scree_plan_outlet *o = &plan->outlets.items[i];
     for (int k = 0; k < 3; k++)
       if (o->box->min[k] >= d->max[k] || o->box->max[k] <= d->min[k])
         return scree_fail_place(
@@ -133,30 +128,27 @@ static bool is_along(const double *v, const double *g) {
 
 static scree_status check_sensors(const scree_reader *r, const scree_plan *plan) {
   for (size_t i = 0; i < plan->sensors.count; i++) {
-    const scree_plan_sensor *s = SCREE_PLAN_AT(plan, sensors, scree_plan_sensor, i);
+    const scree_plan_sensor *s = &plan->sensors.items[i];
     if (s->grid && s->grid->with)
-      SCREE_TRY(NEED(geometry, scree_plan_geometry, "geometry", s->grid->with, &s->grid->place));
+      SCREE_TRY(NEED(geometry, "geometry", s->grid->with, &s->grid->place));
     const char *of = s->wall ? s->wall : s->part ? s->part : s->position;
-    if (of) SCREE_TRY(NEED(geometry, scree_plan_geometry, "geometry", of, &s->place));
+    if (of) SCREE_TRY(NEED(geometry, "geometry", of, &s->place));
     if (s->part) {
       const scree_plan_geometry *g =
-          SCREE_PLAN_AT(plan, geometry, scree_plan_geometry,
-                        scree_plan_find(&plan->geometry, sizeof(scree_plan_geometry), s->part));
+          &plan->geometry.items[SCREE_PLAN_FIND(plan->geometry, s->part)];
       if (!g->slide && !g->hinge)
         return scree_fail_place(r, &s->place, "'%.60s' has neither slide nor hinge", s->part);
     }
     for (size_t k = 0; s->pile && k < s->pile->during.count; k++)
-      SCREE_TRY(NEED(phases, scree_plan_phase, "phase", s->pile->during.items[k], &s->pile->place));
+      SCREE_TRY(NEED(phases, "phase", s->pile->during.items[k], &s->pile->place));
     if (s->residence && s->residence->inlet)
-      SCREE_TRY(NEED(inlets, scree_plan_inlet, "inlet", s->residence->inlet, &s->residence->place));
+      SCREE_TRY(NEED(inlets, "inlet", s->residence->inlet, &s->residence->place));
     if (s->residence && s->residence->outlet)
-      SCREE_TRY(
-          NEED(outlets, scree_plan_outlet, "outlet", s->residence->outlet, &s->residence->place));
+      SCREE_TRY(NEED(outlets, "outlet", s->residence->outlet, &s->residence->place));
     if (s->slope && is_along(s->slope->axis, plan->gravity))
       return scree_fail_place(r, &s->place,
                               "axis along gravity: from above a surface has no slope");
-    if (s->segregation && plan->shapes.count < 2 &&
-        !SCREE_PLAN_AT(plan, shapes, scree_plan_shape, 0)->size)
+    if (s->segregation && plan->shapes.count < 2 && !plan->shapes.items[0].size)
       return scree_fail_place(r, &s->place, "segregation needs two shapes at least");
   }
   return SCREE_OK;
@@ -165,12 +157,11 @@ static scree_status check_sensors(const scree_reader *r, const scree_plan *plan)
 /* Each acts on shapes or materials that there are. */
 static scree_status check_forces(const scree_reader *r, const scree_plan *plan) {
   for (size_t i = 0; i < plan->forces.count; i++) {
-    const scree_plan_force *f = SCREE_PLAN_AT(plan, forces, scree_plan_force, i);
+    const scree_plan_force *f = &plan->forces.items[i];
     for (size_t k = 0; k < f->of.count; k++) {
       const char *name = f->of.items[k];
-      if (scree_plan_find(&plan->materials, sizeof(scree_plan_material), name) ==
-          plan->materials.count)
-        SCREE_TRY(NEED(shapes, scree_plan_shape, "shape or material", name, &f->place));
+      if (SCREE_PLAN_FIND(plan->materials, name) == plan->materials.count)
+        SCREE_TRY(NEED(shapes, "shape or material", name, &f->place));
     }
   }
   return SCREE_OK;
@@ -178,14 +169,13 @@ static scree_status check_forces(const scree_reader *r, const scree_plan *plan) 
 
 static scree_status check_phases(const scree_reader *r, const scree_plan *plan) {
   for (size_t i = 0; i < plan->phases.count; i++) {
-    const scree_plan_phase *p = SCREE_PLAN_AT(plan, phases, scree_plan_phase, i);
-    if (p->clear) SCREE_TRY(NEED(geometry, scree_plan_geometry, "geometry", p->clear, &p->place));
+    const scree_plan_phase *p = &plan->phases.items[i];
+    if (p->clear) SCREE_TRY(NEED(geometry, "geometry", p->clear, &p->place));
   }
   for (size_t i = 0; i < plan->geometry.count; i++) {
-    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
+    const scree_plan_geometry *g = &plan->geometry.items[i];
     const scree_plan_motion *m = g->motion.items;
-    if (g->motion.count && m->during)
-      SCREE_TRY(NEED(phases, scree_plan_phase, "phase", m->during, &m->place));
+    if (g->motion.count && m->during) SCREE_TRY(NEED(phases, "phase", m->during, &m->place));
   }
   return SCREE_OK;
 }
@@ -194,7 +184,7 @@ static scree_status check_phases(const scree_reader *r, const scree_plan *plan) 
 static scree_status check_periodic(const scree_reader *r, const scree_plan *plan) {
   if (!plan->domain || plan->domain->periodic.count == 0) return SCREE_OK;
   for (size_t i = 0; i < plan->geometry.count; i++) {
-    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
+    const scree_plan_geometry *g = &plan->geometry.items[i];
     const scree_plan_motion *m = g->motion.items;
     if (g->slide || g->hinge)
       return scree_fail_place(r, &g->place, "in a periodic domain nothing moves by forces");

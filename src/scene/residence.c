@@ -18,13 +18,9 @@ static bool stay_of(const scree_scene *scene, const scree_scene_sensor *sensor, 
                     double *stay) {
   const scree_plan_residence *plan = plan_of(sensor);
   const scree_scene_stay *s = &scene->stays.items[body];
-  const scree_records *inlets = &scene->plan.inlets, *outlets = &scene->plan.outlets;
   if (isnan(s->left) || s->left < sensor->plan->from || s->left > sensor->plan->until) return false;
-  if (plan->inlet && s->inlet != scree_plan_find(inlets, sizeof(scree_plan_inlet), plan->inlet))
-    return false;
-  if (plan->outlet &&
-      s->outlet != scree_plan_find(outlets, sizeof(scree_plan_outlet), plan->outlet))
-    return false;
+  if (plan->inlet && s->inlet != SCREE_PLAN_FIND(scene->plan.inlets, plan->inlet)) return false;
+  if (plan->outlet && s->outlet != SCREE_PLAN_FIND(scene->plan.outlets, plan->outlet)) return false;
   *stay = s->left - scene->entered_at.items[body];
   return true;
 }

@@ -40,7 +40,7 @@ static scree_world_options world_options(const scree_scene *scene, double time_s
 }
 
 static const scree_plan_material *material_at(const scree_scene *scene, size_t index) {
-  return SCREE_PLAN_AT(&scene->plan, materials, scree_plan_material, index);
+  return &scene->plan.materials.items[index];
 }
 
 static void take_given(double *value, double given) {
@@ -77,11 +77,10 @@ static scree_status add_materials(const scree_scene *scene, scree_world *world,
     SCREE_TRY(scree_world_add_material(world, &made, NULL, error));
   }
   for (size_t i = 0; i < plan->pairs.count; i++) {
-    const scree_plan_pair *p = SCREE_PLAN_AT(plan, pairs, scree_plan_pair, i);
+    const scree_plan_pair *p = &plan->pairs.items[i];
     size_t k[2];
     for (int side = 0; side < 2; side++)
-      k[side] =
-          scree_plan_find(&plan->materials, sizeof(scree_plan_material), p->between.items[side]);
+      k[side] = SCREE_PLAN_FIND(plan->materials, p->between.items[side]);
     SCREE_TRY(set_pair(world, k, p, error));
   }
   return SCREE_OK;
@@ -174,14 +173,12 @@ scree_placement scree_placement_of(const scree_particle *p, double more) {
 
 void scree_scene_measure_shape(scree_scene *scene, size_t index) {
   scree_scene_shape *s = &scene->shapes[index];
-  const scree_plan_shape *plan = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, index);
+  const scree_plan_shape *plan = &scene->plan.shapes.items[index];
   scree_particle_measures m;
   scree_particle_measure(s->particle, &m);
   s->extent = scree_placement_of(s->particle, 0.5 * clearance_share * m.size);
   s->as_given = (quat){m.orientation[0], m.orientation[1], m.orientation[2], m.orientation[3]};
-  s->material = plan->material ? scree_plan_find(&scene->plan.materials,
-                                                 sizeof(scree_plan_material), plan->material)
-                               : 0;
+  s->material = plan->material ? SCREE_PLAN_FIND(scene->plan.materials, plan->material) : 0;
   s->density = plan->density > 0             ? plan->density
                : scene->plan.materials.count ? material_at(scene, s->material)->density
                                              : scree_default_material().density;
@@ -207,15 +204,14 @@ static scree_status allocate_inlets(scree_scene *scene) {
   const scree_plan *plan = &scene->plan;
   for (size_t i = 0; i < plan->inlets.count; i++) {
     scree_scene_inlet *inlet = &scene->inlets[i];
-    inlet->plan = SCREE_PLAN_AT(plan, inlets, scree_plan_inlet, i);
+    inlet->plan = &plan->inlets.items[i];
     size_t count = inlet->plan->shapes.count;
     inlet->shapes = scree_arena_take(&scene->arena, count, sizeof *inlet->shapes);
     inlet->counts = scree_arena_take(&scene->arena, count, sizeof *inlet->counts);
     if (!inlet->shapes || !inlet->counts) return SCREE_OUT_OF_MEMORY;
     memset(inlet->counts, 0, count * sizeof *inlet->counts);
     for (size_t k = 0; k < count; k++)
-      inlet->shapes[k] =
-          scree_plan_find(&plan->shapes, sizeof(scree_plan_shape), inlet->plan->shapes.names[k]);
+      inlet->shapes[k] = SCREE_PLAN_FIND(plan->shapes, inlet->plan->shapes.names[k]);
   }
   return SCREE_OK;
 }
@@ -269,7 +265,7 @@ static scree_status make_particles(scree_scene *scene, const char *folder, scree
   scree_shape_made made = {0};
   const scree_scene_making making = {store, progress, &made};
   for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(scene); i++) {
-    const scree_plan_shape *plan = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, i);
+    const scree_plan_shape *plan = &scene->plan.shapes.items[i];
     scree_error why;
     status = scree_scene_make_shape(scene, i, folder, &making, &why);
     status = scree_scene_blame(scene, &plan->place, status, &why, error);
@@ -582,13 +578,8 @@ const scree_world *scree_scene_view(const scree_scene *scene) {
   return scene->world;
 }
 
-static const char *name_at(const scree_records *records, size_t size, size_t index) {
-  if (index >= records->count) return NULL;
-  return ((const scree_place *)(const void *)((const char *)records->items + index * size))->name;
-}
-
 const char *scree_scene_shape_name(const scree_scene *scene, size_t index) {
-  return name_at(&scene->plan.shapes, sizeof(scree_plan_shape), index);
+  return SCREE_PLAN_NAME(scene->plan.shapes, index);
 }
 const char *scree_scene_shape_family(const scree_scene *scene, size_t index) {
   return index < SCREE_SCENE_SHAPES(scene)
@@ -602,16 +593,16 @@ scree_particle *scree_scene_shape_particle(const scree_scene *scene, size_t inde
   return scene->shapes[index].particle;
 }
 const char *scree_scene_geometry_name(const scree_scene *scene, size_t index) {
-  return name_at(&scene->plan.geometry, sizeof(scree_plan_geometry), index);
+  return SCREE_PLAN_NAME(scene->plan.geometry, index);
 }
 const char *scree_scene_geometry_note(const scree_scene *scene, size_t index) {
   return scene->geometry[index].note;
 }
 const char *scree_scene_inlet_name(const scree_scene *scene, size_t index) {
-  return name_at(&scene->plan.inlets, sizeof(scree_plan_inlet), index);
+  return SCREE_PLAN_NAME(scene->plan.inlets, index);
 }
 const char *scree_scene_outlet_name(const scree_scene *scene, size_t index) {
-  return name_at(&scene->plan.outlets, sizeof(scree_plan_outlet), index);
+  return SCREE_PLAN_NAME(scene->plan.outlets, index);
 }
 size_t scree_scene_body_shape(const scree_scene *scene, size_t index) {
   return scene->shape_of.items[index];

@@ -31,10 +31,9 @@ size_t scree_scene_class_of(const scree_scene *scene, int by, size_t shape) {
 const char *scree_scene_class_name(const scree_scene *scene, int by, size_t index) {
   const scree_plan *plan = &scene->plan;
   if (by == SCREE_BY_SIZE) return scree_scene_shape_name(scene, index);
-  if (by == SCREE_BY_SHAPE)
-    return SCREE_PLAN_AT(plan, families, scree_plan_shape, index)->place.name;
+  if (by == SCREE_BY_SHAPE) return plan->families.items[index].place.name;
   if (plan->materials.count == 0) return "bodies";
-  return SCREE_PLAN_AT(plan, materials, scree_plan_material, index)->place.name;
+  return plan->materials.items[index].place.name;
 }
 
 /* ---- columns ---- */
@@ -128,7 +127,7 @@ static bool add_impacts(scree_scene *scene, const scree_scene_sensor *sensor) {
 }
 
 static bool is_hinge(const scree_scene *scene, const scree_scene_sensor *sensor) {
-  return SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, sensor->geometry)->hinge;
+  return scene->plan.geometry.items[sensor->geometry].hinge;
 }
 
 static bool add_sensor(scree_scene *scene, const scree_scene_sensor *sensor) {
@@ -213,15 +212,13 @@ scree_status scree_scene_plan_columns(scree_scene *scene, scree_error *error) {
     good = add_column(scene, base_columns[i].unit, "%s", base_columns[i].name);
   for (size_t i = 0; good && i < scene->plan.sensors.count; i++) {
     scree_scene_sensor *sensor = &scene->sensors[i];
-    sensor->plan = SCREE_PLAN_AT(&scene->plan, sensors, scree_plan_sensor, i);
+    sensor->plan = &scene->plan.sensors.items[i];
     sensor->first_column = scene->columns.count;
     const scree_plan_sensor *p = sensor->plan;
     if (p->grid && p->grid->with)
-      sensor->geometry =
-          scree_plan_find(&scene->plan.geometry, sizeof(scree_plan_geometry), p->grid->with);
+      sensor->geometry = SCREE_PLAN_FIND(scene->plan.geometry, p->grid->with);
     const char *of = p->wall ? p->wall : p->part ? p->part : p->position;
-    if (of)
-      sensor->geometry = scree_plan_find(&scene->plan.geometry, sizeof(scree_plan_geometry), of);
+    if (of) sensor->geometry = SCREE_PLAN_FIND(scene->plan.geometry, of);
     scree_status status =
         sensor->plan->impacts ? scree_scene_plan_impacts(scene, sensor, error) : SCREE_OK;
     if (status == SCREE_OK && p->grid) status = scree_scene_plan_grid(scene, sensor, error);

@@ -11,60 +11,30 @@
 
 #include <string.h>
 
-enum { SLICES = 200, MOST_CLASSES = 100 }; /* of a class, for its integrals */
+enum { SLICES = 200 }; /* of a class, for its integrals */
 
 /* ---- fields ---- */
 
-#define RECORD scree_plan_rosin_rammler
-static const scree_field rosin_rammler_fields[] = {
-    REAL(size, 1e-9, 1e3, "m", "63.2 % is finer"),
-    REAL(spread, 0.1, 100, "", "exponent n: the greater the narrower"),
-};
-#undef RECORD
 static scree_status check_rosin_rammler(const scree_reader *r, const void *record) {
   const scree_plan_rosin_rammler *d = record;
   if (given(&d->size) && given(&d->spread)) return SCREE_OK;
   return scree_fail_place(r, &d->place, "needs size and spread");
 }
-static const scree_plan_rosin_rammler rosin_rammler_defaults = {{0}, NAN, NAN};
-static const scree_record rosin_rammler_record = SCREE_RECORD(
-    "rosin_rammler", rosin_rammler_fields, rosin_rammler_defaults, check_rosin_rammler);
+SCREE_RECORD_TABLE(scree_plan_rosin_rammler, SCREE_PLAN_ROSIN_RAMMLER, "rosin_rammler",
+                   check_rosin_rammler)
 
-#define RECORD scree_plan_lognormal
-static const scree_field lognormal_fields[] = {
-    REAL(median, 1e-9, 1e3, "m", "half is finer"),
-    REAL(deviation, 1e-3, 5, "", "standard deviation of the natural logarithm"),
-};
-#undef RECORD
 static scree_status check_lognormal(const scree_reader *r, const void *record) {
   const scree_plan_lognormal *d = record;
   if (given(&d->median) && given(&d->deviation)) return SCREE_OK;
   return scree_fail_place(r, &d->place, "needs median and deviation");
 }
-static const scree_plan_lognormal lognormal_defaults = {{0}, NAN, NAN};
-static const scree_record lognormal_record =
-    SCREE_RECORD("lognormal", lognormal_fields, lognormal_defaults, check_lognormal);
-
-#define RECORD scree_plan_size
-static const scree_field size_fields[] = {
-    {"distribution", SCREE_FIELD_TABLE, offsetof(RECORD, distribution), 0, 1e6, "m|",
-     "[size in m, share]", NULL},
-    FLAG(cumulative, "the shares are of what is finer, from 0 to 1; even between two sizes"),
-    GROUP(rosin_rammler, "", &rosin_rammler_record),
-    GROUP(lognormal, "", &lognormal_record),
-    FLAG(uniform, "even from least to most"),
-    WORD(by, "mass|number", "what the shares are of"),
-    REAL(least, 1e-9, 1e3, "m", "none is finer"),
-    REAL(most, 1e-9, 1e3, "m", "none is coarser"),
-    COUNT(classes, 1, MOST_CLASSES, "of a continuous one"),
-};
-#undef RECORD
+SCREE_RECORD_TABLE(scree_plan_lognormal, SCREE_PLAN_LOGNORMAL, "lognormal", check_lognormal)
 
 static scree_status check_table(const scree_reader *r, const scree_plan_size *s) {
   const scree_table *t = &s->distribution;
   double sum = 0;
-  if (t->count > MOST_CLASSES)
-    return scree_fail_place(r, &s->place, "%zu sizes: at most %d", t->count, MOST_CLASSES);
+  if (t->count > SCREE_MOST_CLASSES)
+    return scree_fail_place(r, &s->place, "%zu sizes: at most %d", t->count, SCREE_MOST_CLASSES);
   for (size_t i = 0; i < t->count; i++) {
     sum += t->items[i][1];
     if (!(t->items[i][0] > 1e-9))
@@ -99,9 +69,7 @@ static scree_status check_size(const scree_reader *r, const void *record) {
     return scree_fail_place(r, &s->place, "needs least and most, where it is cut off");
   return SCREE_OK;
 }
-static const scree_plan_size size_defaults = {.least = NAN, .most = NAN, .classes = 8};
-const scree_record scree_plan_size_record =
-    SCREE_RECORD("size", size_fields, size_defaults, check_size);
+SCREE_RECORD_TABLE(scree_plan_size, SCREE_PLAN_SIZE, "size", check_size)
 
 /* ---- classes ---- */
 
@@ -180,10 +148,10 @@ static bool expand_shapes(scree_plan *plan, const family *families, size_t total
                           scree_arena *arena) {
   scree_plan_shape *made = scree_arena_take(arena, total, sizeof *made);
   if (!made) return false;
-  plan->shapes = (scree_records){made, total};
+  plan->shapes = (scree_plan_shape_list){made, total};
   for (size_t i = 0; i < plan->families.count; i++)
     for (size_t k = 0; k < families[i].count; k++) {
-      *made = *SCREE_PLAN_AT(plan, families, scree_plan_shape, i);
+      *made = plan->families.items[i];
       made->family = i;
       if (made->size) {
         made->scaled = families[i].classes[k].size;
@@ -201,16 +169,14 @@ static bool expand_weights(const scree_plan *plan, const family *families, scree
                            scree_arena *arena) {
   size_t total = 0, at = 0;
   for (size_t i = 0; i < weights->count; i++)
-    total += families[scree_plan_find(&plan->families, sizeof(scree_plan_shape), weights->names[i])]
-                 .count;
+    total += families[SCREE_PLAN_FIND(plan->families, weights->names[i])].count;
   scree_weights made = {scree_arena_take(arena, total, sizeof *made.names),
                         scree_arena_take(arena, total, sizeof *made.values), total};
   if (!made.names || !made.values) return false;
   for (size_t i = 0; i < weights->count; i++) {
-    const family *f =
-        &families[scree_plan_find(&plan->families, sizeof(scree_plan_shape), weights->names[i])];
+    const family *f = &families[SCREE_PLAN_FIND(plan->families, weights->names[i])];
     for (size_t k = 0; k < f->count; k++, at++) {
-      made.names[at] = SCREE_PLAN_AT(plan, shapes, scree_plan_shape, f->first + k)->place.name;
+      made.names[at] = plan->shapes.items[f->first + k].place.name;
       made.values[at] = weights->values[i] * (f->classes ? f->classes[k].share : 1);
     }
   }
@@ -224,7 +190,7 @@ scree_status scree_plan_expand(scree_plan *plan, scree_arena *arena, scree_error
   family *families = scree_arena_take(arena, plan->families.count, sizeof *families);
   bool good = families != NULL;
   for (size_t i = 0; good && i < plan->families.count; i++) {
-    const scree_plan_shape *s = SCREE_PLAN_AT(plan, families, scree_plan_shape, i);
+    const scree_plan_shape *s = &plan->families.items[i];
     families[i] = (family){NULL, total, 1};
     if (s->size) families[i].classes = scree_plan_size_classes(s->size, arena, &families[i].count);
     good = !s->size || families[i].classes;

@@ -43,8 +43,7 @@ static double arm_of(const scree_scene *scene, size_t geometry, vec3 axis, vec3 
 
 /* m/s of what stands out of a chain, as it goes round a wheel. */
 static double speed_round(const scree_scene *scene, size_t geometry, double speed) {
-  const scree_plan_round *c =
-      SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, geometry)->copies;
+  const scree_plan_round *c = scene->plan.geometry.items[geometry].copies;
   const vec3 axis = vec3_unit(vec3_load(c->axis)), first = vec3_load(c->through);
   const double far = fmin(arm_of(scene, geometry, axis, first),
                           arm_of(scene, geometry, axis, vec3_add(first, vec3_load(c->span))));
@@ -66,10 +65,10 @@ static const double two_pi = 6.283185307179586;
 
 /* m/s of its fastest point; motions act together. */
 static double speed_of_geometry(const scree_scene *scene, size_t index) {
-  const scree_plan_geometry *g = SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, index);
+  const scree_plan_geometry *g = &scene->plan.geometry.items[index];
   double speed = 0;
   for (size_t i = 0; i < g->motion.count; i++) {
-    const scree_plan_motion *m = &((const scree_plan_motion *)g->motion.items)[i];
+    const scree_plan_motion *m = &g->motion.items[i];
     const scree_plan_translate *t = m->translate;
     const scree_plan_rotate *r = m->rotate;
     const scree_plan_vibrate *v = m->vibrate;
@@ -237,8 +236,7 @@ static void describe(const scree_scene *scene, const scree_scene_softness *s, ch
   size_t material = scene->shapes[s->shape].material;
   if (isfinite(young) && scene->plan.materials.count)
     snprintf(remedy, sizeof remedy, "materials.%.60s.young %.3g Pa or more",
-             SCREE_PLAN_AT(&scene->plan, materials, scree_plan_material, material)->place.name,
-             ceil(young / round) * round);
+             scene->plan.materials.items[material].place.name, ceil(young / round) * round);
   else
     snprintf(remedy, sizeof remedy, "contact.stiffness_factor %.3g or more",
              ceil(10 * s->stiffer * scene->plan.contact->stiffness_factor) / 10);

@@ -113,8 +113,7 @@ static void put_field(FILE *stream, const scree_scene *scene, const scree_scene_
 static void put_shares(FILE *stream, const scree_scene *scene, const scree_scene_sensor *sensor) {
   for (size_t s = 0; s < scene->plan.families.count; s++) {
     char name[96];
-    snprintf(name, sizeof name, "share of %s",
-             SCREE_PLAN_AT(&scene->plan, families, scree_plan_shape, s)->place.name);
+    snprintf(name, sizeof name, "share of %s", scene->plan.families.items[s].place.name);
     begin_array(stream, name, 1);
     for (size_t c = 0; c < sensor->grid->cell_count; c++) {
       scree_grid_fields f = scree_grid_fields_at(scene, sensor, c);

@@ -141,7 +141,7 @@ static size_t region_of_inlet(const scree_scene *scene, const division *d,
 static void mark_bodies(const scree_scene *scene, const scree_plan_geometry *g, division *d) {
   size_t count = d->pieces.count;
   for (size_t i = 0; i < scene->plan.inlets.count && g->side == 0; i++) {
-    const scree_plan_inlet *inlet = SCREE_PLAN_AT(&scene->plan, inlets, scree_plan_inlet, i);
+    const scree_plan_inlet *inlet = &scene->plan.inlets.items[i];
     d->bodies[region_of_inlet(scene, d, inlet, vec3_load(g->at))] = true;
   }
   if (g->side == 0) return;

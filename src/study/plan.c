@@ -4,7 +4,6 @@
 #include "scene/plan.h"
 #include "base/file.h"
 #include "base/number.h"
-#include "base/schema_rows.h"
 #include "study/design.h"
 #include "study/study.h"
 
@@ -17,105 +16,52 @@ static const double most_points = 1e6;
 
 /* ---- what its fields are ---- */
 
-typedef struct sample_fields {
-  scree_place place;
-  double resolution, noise;
-  uint64_t seed;
-} sample_fields;
+#define SCREE_STUDY_SAMPLE(ROW, T)                                                                 \
+  ROW(T, REAL, resolution, NAN, 0.02e-3, 5e-3, "m", "")                                            \
+  ROW(T, REAL, noise, NAN, 0, 1.25e-3, "m", "")                                                    \
+  ROW(T, SEED, seed, 1, "")
+SCREE_RECORD_TYPE(scree_study_sample, SCREE_STUDY_SAMPLE)
+SCREE_RECORD_TABLE(scree_study_sample, SCREE_STUDY_SAMPLE, "sample", NULL)
 
-typedef struct analysis_fields {
-  scree_place place;
-  int angle;
-  double margin_deg, confidence;
-} analysis_fields;
+#define SCREE_STUDY_ANALYSIS(ROW, T)                                                               \
+  ROW(T, WORD, angle, 0, "sector|cone|silhouette", "")                                             \
+  ROW(T, REAL, margin_deg, 2, 1e-6, 90, "deg", "")                                                 \
+  ROW(T, REAL, confidence, 0.95, 0.5, 0.9999, "", "")
+SCREE_RECORD_TYPE(scree_study_analysis, SCREE_STUDY_ANALYSIS)
+SCREE_RECORD_TABLE(scree_study_analysis, SCREE_STUDY_ANALYSIS, "analysis", NULL)
 
-typedef struct study_fields {
-  scree_place place;
-  const char *name;
-  uint64_t seed;
-  size_t replicates, attempts, points;
-  int design, method, unit;
-  sample_fields *sample;
-  analysis_fields *analysis;
-  const scree_yaml *base, *shapes, *answers, *factors;
-} study_fields;
+#define SCREE_STUDY(ROW, T)                                                                        \
+  ROW(T, TEXT, name, "")                                                                           \
+  ROW(T, SEED, seed, 0, "")                                                                        \
+  ROW(T, COUNT, replicates, 10, 1, 100000, "")                                                     \
+  ROW(T, COUNT, attempts, 5, 1, 1000, "")                                                          \
+  ROW(T, NODE, shapes, "")                                                                         \
+  ROW(T, WORD, unit, 2, SCREE_PLAN_UNITS, "")                                                      \
+  ROW(T, GROUP, sample, scree_study_sample, "")                                                    \
+  ROW(T, WORD, method, 0, "volume|qecd", "")                                                       \
+  ROW(T, NODE, base, "")                                                                           \
+  ROW(T, NODE, answers, "")                                                                        \
+  ROW(T, NODE, factors, "")                                                                        \
+  ROW(T, WORD, design, 0, "grid|latin|sobol|list", "")                                             \
+  ROW(T, COUNT, points, 0, 1, 1e6, "")                                                             \
+  ROW(T, GROUP, analysis, scree_study_analysis, "")
+SCREE_RECORD_TYPE(scree_study_fields, SCREE_STUDY)
+SCREE_RECORD_TABLE(scree_study_fields, SCREE_STUDY, "a study", NULL)
 
-typedef struct range_fields {
-  scree_place place;
-  double from, to;
-  int scale;
-  size_t levels;
-} range_fields;
+#define SCREE_STUDY_RANGE(ROW, T)                                                                  \
+  ROW(T, REAL, from, NAN, -1e300, 1e300, "", "")                                                   \
+  ROW(T, REAL, to, NAN, -1e300, 1e300, "", "")                                                     \
+  ROW(T, WORD, scale, 0, "linear|log", "")                                                         \
+  ROW(T, COUNT, levels, 0, 2, 10000, "")
+SCREE_RECORD_TYPE(scree_study_range, SCREE_STUDY_RANGE)
+SCREE_RECORD_TABLE(scree_study_range, SCREE_STUDY_RANGE, "a range", NULL)
 
-typedef struct window_fields {
-  scree_place place;
-  double from, until, at;
-} window_fields;
-
-#define RECORD sample_fields
-static const scree_field sample_table[] = {
-    REAL(resolution, 0.02e-3, 5e-3, "m", ""),
-    REAL(noise, 0, 1.25e-3, "m", ""),
-    SEED(seed, ""),
-};
-#undef RECORD
-static const sample_fields sample_defaults = {.resolution = NAN, .noise = NAN, .seed = 1};
-static const scree_record sample_record =
-    SCREE_RECORD("sample", sample_table, sample_defaults, NULL);
-
-#define RECORD analysis_fields
-static const scree_field analysis_table[] = {
-    WORD(angle, "sector|cone|silhouette", ""),
-    REAL(margin_deg, 1e-6, 90, "deg", ""),
-    REAL(confidence, 0.5, 0.9999, "", ""),
-};
-#undef RECORD
-static const analysis_fields analysis_defaults = {.margin_deg = 2, .confidence = 0.95};
-static const scree_record analysis_record =
-    SCREE_RECORD("analysis", analysis_table, analysis_defaults, NULL);
-
-#define RECORD study_fields
-static const scree_field study_table[] = {
-    TEXT(name, ""),
-    SEED(seed, ""),
-    COUNT(replicates, 1, 100000, ""),
-    COUNT(attempts, 1, 1000, ""),
-    NODE(shapes, ""),
-    WORD(unit, SCREE_PLAN_UNITS, ""),
-    GROUP(sample, "", &sample_record),
-    WORD(method, "volume|qecd", ""),
-    NODE(base, ""),
-    NODE(answers, ""),
-    NODE(factors, ""),
-    WORD(design, "grid|latin|sobol|list", ""),
-    COUNT(points, 1, 1e6, ""),
-    GROUP(analysis, "", &analysis_record),
-};
-#undef RECORD
-static const study_fields study_defaults = {.replicates = 10, .attempts = 5, .unit = 2};
-static const scree_record study_record = SCREE_RECORD("a study", study_table, study_defaults, NULL);
-
-#define RECORD range_fields
-static const scree_field range_table[] = {
-    REAL(from, -1e300, 1e300, "", ""),
-    REAL(to, -1e300, 1e300, "", ""),
-    WORD(scale, "linear|log", ""),
-    COUNT(levels, 2, 10000, ""),
-};
-#undef RECORD
-static const range_fields range_defaults = {.from = NAN, .to = NAN};
-static const scree_record range_record = SCREE_RECORD("a range", range_table, range_defaults, NULL);
-
-#define RECORD window_fields
-static const scree_field window_table[] = {
-    REAL(from, 0, 1e9, "s", ""),
-    REAL(until, 0, 1e9, "s", ""),
-    REAL(at, -1e9, 1e9, "s", ""),
-};
-#undef RECORD
-static const window_fields window_defaults = {.from = NAN, .until = NAN, .at = NAN};
-static const scree_record window_record =
-    SCREE_RECORD("an answer", window_table, window_defaults, NULL);
+#define SCREE_STUDY_WINDOW(ROW, T)                                                                 \
+  ROW(T, REAL, from, NAN, 0, 1e9, "s", "")                                                         \
+  ROW(T, REAL, until, NAN, 0, 1e9, "s", "")                                                        \
+  ROW(T, REAL, at, NAN, -1e9, 1e9, "s", "")
+SCREE_RECORD_TYPE(scree_study_window, SCREE_STUDY_WINDOW)
+SCREE_RECORD_TABLE(scree_study_window, SCREE_STUDY_WINDOW, "an answer", NULL)
 
 /* ---- reading ---- */
 
@@ -289,9 +235,9 @@ static scree_status read_answer(const reader *r, const scree_yaml *item, scree_a
     a->from = a->until = NAN;
     if (!a->mean && !a->sd) return fail_at(r, only, "%s: must be mean, sd, or a window", column);
   } else if (only && only->kind == SCREE_YAML_MAPPING) {
-    window_fields window;
+    scree_study_window window;
     column = only->key;
-    SCREE_TRY(read_record(r, only, column, &window_record, &window));
+    SCREE_TRY(read_record(r, only, column, &scree_study_window_record, &window));
     bool at = !isnan(window.at), mean = !isnan(window.from) || !isnan(window.until);
     if (at && mean) return fail_at(r, only, "%s: at, or from and until", column);
     a->mean = !at;
@@ -500,8 +446,8 @@ static scree_status check_range(const reader *r, const scree_yaml *node, scree_f
 
 /* {from: A, to: B, scale: linear|log, levels: N} */
 static scree_status read_range(const reader *r, const scree_yaml *node, scree_factor *f) {
-  range_fields range;
-  SCREE_TRY(read_record(r, node, f->key, &range_record, &range));
+  scree_study_range range;
+  SCREE_TRY(read_record(r, node, f->key, &scree_study_range_record, &range));
   if (isnan(range.from) || isnan(range.to))
     return fail_at(r, node, "%s: a range needs from and to", f->key);
   f->range = true;
@@ -604,9 +550,9 @@ static scree_status check_whole(const reader *r, const scree_yaml *root) {
   return SCREE_OK;
 }
 
-static void take_fields(scree_study *study, const study_fields *f) {
+static void take_fields(scree_study *study, const scree_study_fields *f) {
   static const char *const angles[] = {"sector", "cone", "silhouette"};
-  const analysis_fields *analysis = f->analysis ? f->analysis : &analysis_defaults;
+  const scree_study_analysis *analysis = f->analysis ? f->analysis : &scree_study_analysis_defaults;
   if (f->name) study->name = f->name;
   study->replicate_count = f->replicates;
   study->attempt_limit = f->attempts;
@@ -625,7 +571,7 @@ static void take_fields(scree_study *study, const study_fields *f) {
 
 static scree_status read_root(const reader *r, const scree_yaml *root) {
   scree_study *study = r->study;
-  study_fields f;
+  scree_study_fields f;
   if (root->kind != SCREE_YAML_MAPPING) return fail_at(r, root, "a study is `key: value` lines");
   size_t most = count_items(root); /* factors, sets: no more than there are nodes */
   study->factors = scree_arena_take(&study->arena, most, sizeof *study->factors);
@@ -633,7 +579,7 @@ static scree_status read_root(const reader *r, const scree_yaml *root) {
   study->shapes = scree_arena_take(&study->arena, SCREE_MOST_SHAPES, sizeof *study->shapes);
   if (!study->factors || !study->sets || !study->shapes) return fail_memory(r);
   size_t set;
-  SCREE_TRY(read_record(r, root, "", &study_record, &f));
+  SCREE_TRY(read_record(r, root, "", &scree_study_fields_record, &f));
   take_fields(study, &f);
   const scree_yaml none = {.kind = SCREE_YAML_MAPPING, .line = root->line, .column = root->column};
   SCREE_TRY(read_base(r, f.base ? f.base : &none));

@@ -174,18 +174,15 @@ scree_status scree_study_look(scree_study *study, scree_error *error) {
   study->phases = scree_arena_take(&study->arena, plan.phases.count, sizeof *study->phases);
   if (!study->phases) return scree_fail_memory(error, 0, study->path);
   study->moving_phase = 0;
-  for (size_t i = 0; i < plan.phases.count; i++)
-    study->phases[i] = SCREE_PLAN_AT(&plan, phases, scree_plan_phase, i)->place.name;
+  for (size_t i = 0; i < plan.phases.count; i++) study->phases[i] = plan.phases.items[i].place.name;
   for (size_t i = 0; i < plan.geometry.count; i++) {
-    const scree_plan_geometry *g = SCREE_PLAN_AT(&plan, geometry, scree_plan_geometry, i);
+    const scree_plan_geometry *g = &plan.geometry.items[i];
     const scree_plan_motion *m = g->motion.items;
-    if (g->motion.count && m->during)
-      study->moving_phase = scree_plan_find(&plan.phases, sizeof(scree_plan_phase), m->during);
+    if (g->motion.count && m->during) study->moving_phase = SCREE_PLAN_FIND(plan.phases, m->during);
   }
   study->has_pile = false;
   for (size_t i = 0; i < plan.sensors.count; i++)
-    study->has_pile =
-        study->has_pile || SCREE_PLAN_AT(&plan, sensors, scree_plan_sensor, i)->pile != NULL;
+    study->has_pile = study->has_pile || plan.sensors.items[i].pile != NULL;
   return SCREE_OK;
 }
 
@@ -212,7 +209,7 @@ scree_status scree_study_stock(const scree_study *study, size_t run, const scree
   if (!study->own_shapes) return SCREE_OK;
   scree_status status = scree_scene_file_plan(file, &arena, &plan, error);
   for (size_t i = 0; status == SCREE_OK && i < set->count; i++) {
-    const scree_plan_shape *shape = SCREE_PLAN_AT(&plan, shapes, scree_plan_shape, i);
+    const scree_plan_shape *shape = &plan.shapes.items[i];
     scree_shape_made made;
     status = scree_study_make_shape(study, set->shapes[i], study->points[point].rp, &made, error);
     if (status != SCREE_OK) break;
@@ -354,7 +351,7 @@ static void record_costs(const scree_scene *scene, scree_record_costs *costs) {
 static bool ends_still(const scree_scene *scene, const scree_observation *o) {
   size_t count = scene->plan.phases.count;
   if (count == 0) return scree_scene_end(scene) && !strcmp(scree_scene_end(scene), "still");
-  const scree_plan_phase *last = SCREE_PLAN_AT(&scene->plan, phases, scree_plan_phase, count - 1);
+  const scree_plan_phase *last = &scene->plan.phases.items[count - 1];
   return o->kinetic + o->rotational < last->still * (double)o->body_count;
 }
 

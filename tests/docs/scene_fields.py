@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every field of a scene that the program reads (the tables of src/scene/plan*.c) stands in docs/reference/scenes.md, and
+"""Every field of a scene that the program reads (the lists of src/scene/plan.h) stands in docs/reference/scenes.md, and
 so does every template. usage: scene_fields.py ROOT PROGRAM"""
 import re
 import subprocess
@@ -15,10 +15,9 @@ def read(path):
 
 page = read("docs/reference/scenes.md")
 named = set(re.findall(r"[\w-]+", " ".join(re.findall(r"`[^`\n]+`", page))))
-source = "".join(read(f"src/scene/{name}.c") for name in ("plan", "plan_sensors", "plan_parts", "plan_forces", "sizes"))
-tables = re.findall(r"^static const scree_field (\w+)_fields\[\] = \{\n(.*?)^\};", source, re.MULTILINE | re.DOTALL)
-missing = [f"{record}: {key}" for record, body in tables for key in re.findall(r'^ +(?:\{"|[A-Z]+\()\s*(\w+)"?,', body, re.MULTILINE)
-           if key not in named]
+tables = re.findall(r"^#define SCREE_PLAN_(\w+)\(ROW, T\) *\\\n(.*?)^\S", read("src/scene/plan.h"), re.MULTILINE | re.DOTALL)
+missing = [f"{record}: {key}" for record, body in tables
+           for kind, key in re.findall(r'ROW\(T, ([A-Z]+),\s*(?:\\\n\s*)?"?(\w+)"?,', body) if kind != "OWN" and key not in named]
 said = subprocess.run([program, "run", "--template", "-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 templates = re.search(r"there are (.*)", said.stderr)[1].split(", ")
 for name in templates:
