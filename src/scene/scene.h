@@ -6,6 +6,10 @@
 #include "scene/plan.h"
 #include "world/world.h"
 
+SCREE_DEFINE_DROP(scree_world)
+SCREE_DEFINE_DROP(scree_scene)
+SCREE_DEFINE_DROP(scree_scene_file)
+
 struct scree_scene_file {
   scree_yaml root;
   char *name;   /* for messages */
@@ -443,8 +447,11 @@ void scree_scene_measure_shape(scree_scene *scene, size_t index);
 /* save.c: a checkpoint, for scree_world_keep_all. */
 scree_status scree_scene_pack(const void *scene, unsigned char **bytes, size_t *byte_count,
                               scree_error *error);
-/* complete.c: a checkpoint's scene goes on by this file, where it says the same but for title,
- * time, stop and output, of which frames and series must be the same. */
+/* change.c: that this printed file says the same as the scene's, but for title, time, stop and
+ * output, of which frames and series must be the same. `path`: of the scene's checkpoint. */
+scree_status scree_scene_check_same(scree_scene *scene, const char *text, const char *path,
+                                    scree_error *error);
+/* complete.c: a checkpoint's scene goes on by this file, where it says the same. */
 scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *file,
                                    const char *path, scree_error *error);
 

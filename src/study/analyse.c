@@ -9,14 +9,30 @@
 #include <sqlite3.h>
 #include <string.h>
 
+/* Numbers of a run; of the first of them a point has a summary. */
+enum {
+  ANGLE,
+  SECONDS,
+  HEIGHT,
+  RUN_OUT,
+  COORDINATION,
+  PACKING,
+  LEFT,
+  PEAK_ROTATION, /* from its series */
+  SUMMARIES,
+  TRIANGLES = SUMMARIES,
+  WALL,
+  FRACTION,
+  NUMBERS
+};
+
 /* A run's row. */
 typedef struct row {
   size_t point, replicate;
   char key[SCREE_RUN_KEY_BYTES], state[12], version[32];
   const char *reason;
-  double angle, seconds, wall, height, run_out, coordination, packing, left, triangles, fraction;
-  double peak_rotation;
   bool still;
+  double number[NUMBERS];
   double *answers;         /* of a scene */
   double *time, *rotation; /* since the lift began */
   size_t series_count;
@@ -34,12 +50,6 @@ typedef struct analysis {
 
 static scree_status no_memory(const analysis *a) {
   return scree_fail_memory(a->error, 0, "the analysis of a study");
-}
-
-static void *take(const analysis *a, size_t count, size_t size) {
-  void *block = scree_arena_take(a->arena, count ? count : 1, size);
-  if (block) memset(block, 0, count * size);
-  return block;
 }
 
 /* ---- reading ---- */
@@ -60,46 +70,31 @@ static scree_status read_row(analysis *a, sqlite3_stmt *s, row *r) {
   text_of(s, 3, r->state, sizeof r->state);
   r->reason = scree_arena_text(a->arena, reason ? (const char *)reason : "");
   text_of(s, 5, r->version, sizeof r->version);
-  r->angle = real_of(s, 6);
-  r->seconds = real_of(s, 7);
-  r->wall = real_of(s, 8);
-  r->height = real_of(s, 9);
-  r->run_out = real_of(s, 10);
-  r->coordination = real_of(s, 11);
-  r->packing = real_of(s, 12);
-  double bodies = real_of(s, 13), left = real_of(s, 14);
-  r->left = left / (bodies + left);
-  r->triangles = real_of(s, 15);
-  r->still = sqlite3_column_int64(s, 16) != 0;
-  r->fraction = real_of(s, 17);
-  r->peak_rotation = NAN;
+  r->still = sqlite3_column_int64(s, 6) != 0;
+  for (int i = 0; i < NUMBERS; i++) r->number[i] = real_of(s, 7 + i);
   return r->reason ? SCREE_OK : no_memory(a);
 }
 
 static scree_status read_rows(analysis *a) {
   char sql[512];
-  sqlite3_stmt *s;
-  bool more;
+  SCREE_STATEMENT s = NULL;
   size_t most = scree_study_run_count(a->study);
-  a->rows = take(a, most, sizeof *a->rows);
-  if (!a->rows) return no_memory(a);
+  SCREE_TRY_TAKE(a->rows, a->arena, most, a->error);
   snprintf(sql, sizeof sql,
-           "SELECT point, replicate, key, state, reason, version, %s_deg, processor_seconds, "
-           "wall_seconds, height, run_out, coordination, packing_fraction, body_count, left_count, "
-           "triangle_count, still, fraction FROM run WHERE planned = 1 ORDER BY run",
+           "SELECT point, replicate, key, state, reason, version, still, %s_deg, "
+           "processor_seconds, height, run_out, coordination, packing_fraction, "
+           "CAST(left_count AS REAL) / (body_count + left_count), NULL, triangle_count, "
+           "wall_seconds, fraction FROM run WHERE planned = 1 ORDER BY run",
            a->study->analysis_angle);
-  scree_status status = scree_database_prepare(&a->database, sql, &s, a->error);
-  if (status != SCREE_OK) return status;
-  for (;;) {
-    status = scree_database_step(&a->database, s, &more, a->error);
-    if (status != SCREE_OK || !more || a->row_count == most) break;
+  SCREE_TRY(scree_database_prepare(&a->database, sql, &s, a->error));
+  for (bool more; a->row_count < most;) {
     row *r = &a->rows[a->row_count];
-    status = read_row(a, s, r);
-    if (status != SCREE_OK) break;
-    if (r->point < a->study->point_count) a->row_count++;
+    SCREE_TRY(scree_database_step(&a->database, s, &more, a->error));
+    if (!more) break;
+    SCREE_TRY(read_row(a, s, r));
+    a->row_count += r->point < a->study->point_count;
   }
-  sqlite3_finalize(s);
-  return status;
+  return SCREE_OK;
 }
 
 /* Whether it is a phase before the one in which something moves. */
@@ -109,90 +104,72 @@ static bool is_early(const scree_study *study, const char *phase) {
   return false;
 }
 
+typedef struct number_list {
+  double *items;
+  size_t count, capacity;
+} number_list;
+
+static void free_numbers(number_list *list) {
+  scree_free(list->items);
+}
+
 /* The series since the lift began; a run without one has none. */
 static scree_status read_series(analysis *a, row *r, sqlite3_stmt *s) {
-  struct {
-    double *items;
-    size_t count, capacity;
-  } list = {0};
+  SCREE_CLEANUP(free_numbers) number_list list = {0};
   double start = NAN;
-  bool more = true;
+  sqlite3_reset(s);
   sqlite3_bind_text(s, 1, r->key, -1, SQLITE_STATIC);
-  scree_status status = SCREE_OK;
-  while (status == SCREE_OK) {
-    status = scree_database_step(&a->database, s, &more, a->error);
-    if (status != SCREE_OK || !more) break;
+  for (bool more;;) {
+    SCREE_TRY(scree_database_step(&a->database, s, &more, a->error));
+    if (!more) break;
     const unsigned char *phase = sqlite3_column_text(s, 2);
     bool early = phase && is_early(a->study, (const char *)phase);
     if (isnan(start) && !early) start = real_of(s, 0);
-    if (!SCREE_PUSH(&list, real_of(s, 0)) || !SCREE_PUSH(&list, real_of(s, 1)))
-      status = no_memory(a);
+    if (!SCREE_PUSH(&list, real_of(s, 0)) || !SCREE_PUSH(&list, real_of(s, 1))) return no_memory(a);
   }
-  sqlite3_reset(s);
   r->series_count = list.count / 2;
-  r->time = take(a, r->series_count, sizeof *r->time);
-  r->rotation = take(a, r->series_count, sizeof *r->rotation);
-  if (status == SCREE_OK && (!r->time || !r->rotation)) status = no_memory(a);
-  for (size_t i = 0; status == SCREE_OK && i < r->series_count; i++) {
+  SCREE_TRY_TAKE(r->time, a->arena, r->series_count, a->error);
+  SCREE_TRY_TAKE(r->rotation, a->arena, r->series_count, a->error);
+  for (size_t i = 0; i < r->series_count; i++) {
     r->time[i] = list.items[2 * i] - start;
     r->rotation[i] = list.items[2 * i + 1];
-    if (r->time[i] >= 0) r->peak_rotation = fmax(r->peak_rotation, r->rotation[i]);
+    if (r->time[i] >= 0) r->number[PEAK_ROTATION] = fmax(r->number[PEAK_ROTATION], r->rotation[i]);
   }
   if (isnan(start)) r->series_count = 0;
-  scree_free(list.items);
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status read_all_series(analysis *a) {
-  sqlite3_stmt *s;
-  scree_status status = scree_database_prepare(
+  SCREE_STATEMENT s = NULL;
+  SCREE_TRY(scree_database_prepare(
       &a->database, "SELECT time, mean_rotation, phase FROM series WHERE key = ?1 ORDER BY time",
-      &s, a->error);
-  if (status != SCREE_OK) return status;
-  for (size_t i = 0; status == SCREE_OK && i < a->row_count; i++)
-    if (!strcmp(a->rows[i].state, "done")) status = read_series(a, &a->rows[i], s);
-  sqlite3_finalize(s);
-  return status;
+      &s, a->error));
+  for (size_t i = 0; i < a->row_count; i++)
+    if (!strcmp(a->rows[i].state, "done")) SCREE_TRY(read_series(a, &a->rows[i], s));
+  return SCREE_OK;
 }
 
 /* ---- answers of a scene ---- */
 
 static scree_status read_answers(analysis *a) {
   const scree_study *study = a->study;
-  sqlite3_stmt *s;
-  bool more;
+  SCREE_STATEMENT s = NULL;
   for (size_t i = 0; i < a->row_count; i++) {
-    a->rows[i].answers = take(a, study->answer_count, sizeof(double));
-    if (!a->rows[i].answers) return no_memory(a);
+    SCREE_TRY_TAKE(a->rows[i].answers, a->arena, study->answer_count, a->error);
     for (size_t k = 0; k < study->answer_count; k++) a->rows[i].answers[k] = NAN;
   }
   if (!study->answer_count) return SCREE_OK;
-  scree_status status = scree_database_prepare(
-      &a->database, "SELECT number, value FROM answer WHERE key = ?1", &s, a->error);
-  for (size_t i = 0; status == SCREE_OK && i < a->row_count; i++) {
+  SCREE_TRY(scree_database_prepare(&a->database, "SELECT number, value FROM answer WHERE key = ?1",
+                                   &s, a->error));
+  for (size_t i = 0; i < a->row_count; i++) {
+    sqlite3_reset(s);
     sqlite3_bind_text(s, 1, a->rows[i].key, -1, SQLITE_STATIC);
-    for (;;) {
-      status = scree_database_step(&a->database, s, &more, a->error);
-      if (status != SCREE_OK || !more) break;
+    for (bool more;;) {
+      SCREE_TRY(scree_database_step(&a->database, s, &more, a->error));
+      if (!more) break;
       size_t number = (size_t)sqlite3_column_int64(s, 0);
       if (number < study->answer_count) a->rows[i].answers[number] = real_of(s, 1);
     }
-    sqlite3_reset(s);
-  }
-  sqlite3_finalize(s);
-  return status;
-}
-
-static scree_status summarise_answers(const analysis *a, size_t point, scree_point_result *p,
-                                      double *scratch) {
-  p->answers = take(a, a->study->answer_count, sizeof *p->answers);
-  if (!p->answers) return no_memory(a);
-  for (size_t k = 0; k < a->study->answer_count; k++) {
-    size_t count = 0;
-    for (size_t i = 0; i < a->row_count; i++)
-      if (a->rows[i].point == point && !strcmp(a->rows[i].state, "done"))
-        scratch[count++] = a->rows[i].answers[k];
-    p->answers[k] = scree_summarise(scratch, count, a->study->confidence);
   }
   return SCREE_OK;
 }
@@ -200,10 +177,9 @@ static scree_status summarise_answers(const analysis *a, size_t point, scree_poi
 static scree_status name_columns(const analysis *a) {
   scree_study_result *r = a->result;
   r->answer_count = a->study->answer_count;
-  r->answers = take(a, r->answer_count, sizeof *r->answers);
-  r->units = take(a, r->answer_count, sizeof *r->units);
-  r->factors = take(a, r->factor_count, sizeof *r->factors);
-  if (!r->answers || !r->units || !r->factors) return no_memory(a);
+  SCREE_TRY_TAKE(r->answers, a->arena, r->answer_count, a->error);
+  SCREE_TRY_TAKE(r->units, a->arena, r->answer_count, a->error);
+  SCREE_TRY_TAKE(r->factors, a->arena, r->factor_count, a->error);
   for (size_t k = 0; k < r->answer_count; k++) {
     const scree_answer *answer = &a->study->answers[k];
     r->units[k] = answer->outline ? "m" : answer->unit ? answer->unit : "";
@@ -225,12 +201,13 @@ static void count_state(scree_study_counts *counts, const char *state) {
   counts->failed += !strcmp(state, "failed");
 }
 
-/* Summary of one field over the point's finished runs. */
-static scree_summary summarise(const analysis *a, size_t point, size_t offset, double *scratch) {
+/* Summary of one number, or one answer, over the point's finished runs. */
+static scree_summary summarise(const analysis *a, size_t point, bool answer, size_t which,
+                               double *scratch) {
   size_t count = 0;
   for (size_t i = 0; i < a->row_count; i++)
     if (a->rows[i].point == point && !strcmp(a->rows[i].state, "done"))
-      scratch[count++] = *(const double *)(const void *)((const char *)&a->rows[i] + offset);
+      scratch[count++] = answer ? a->rows[i].answers[which] : a->rows[i].number[which];
   return scree_summarise(scratch, count, a->study->confidence);
 }
 
@@ -275,8 +252,7 @@ static scree_status average_rotation(const analysis *a, size_t point, scree_poin
   if (!(first <= end)) return SCREE_OK;
   size_t count = (size_t)floor((end - first) / step) + 1;
   double **all[] = {&p->time, &p->rotation, &p->rotation_low, &p->rotation_high};
-  for (int k = 0; k < 4; k++)
-    if (!(*all[k] = take(a, count, sizeof(double)))) return no_memory(a);
+  for (int k = 0; k < 4; k++) SCREE_TRY_TAKE(*all[k], a->arena, count, a->error);
   for (size_t t = 0; t < count; t++) {
     size_t n = 0;
     p->time[t] = first + step * (double)t;
@@ -315,8 +291,9 @@ static scree_status make_point(const analysis *a, size_t index, double *scratch)
   p->label = scree_arena_text(a->arena, point->label);
   p->rp = scree_arena_text(a->arena, point->rp);
   p->shapes = scree_arena_text(a->arena, a->study->sets[point->set].label);
-  p->values = take(a, a->study->factor_count, sizeof *p->values);
-  if (!p->label || !p->rp || !p->shapes || !p->values) return no_memory(a);
+  SCREE_TRY_TAKE(p->values, a->arena, a->study->factor_count, a->error);
+  SCREE_TRY_TAKE(p->answers, a->arena, a->study->answer_count, a->error);
+  if (!p->label || !p->rp || !p->shapes) return no_memory(a);
   for (size_t k = 0; k < a->study->factor_count; k++)
     if (!(p->values[k] = scree_arena_text(a->arena, point->values[k]))) return no_memory(a);
   p->rp_value = rp_value(a->study, point);
@@ -328,17 +305,14 @@ static scree_status make_point(const analysis *a, size_t index, double *scratch)
     p->pile = scree_arena_text(a->arena, r->key);
     if (!p->pile) return no_memory(a);
   }
-  p->triangle_count = summarise(a, index, offsetof(row, triangles), scratch).mean;
-  p->angle_deg = summarise(a, index, offsetof(row, angle), scratch);
+  scree_summary *const summaries[SUMMARIES] = {&p->angle_deg, &p->seconds,      &p->height,
+                                               &p->run_out,   &p->coordination, &p->packing,
+                                               &p->left,      &p->peak_rotation};
+  for (size_t k = 0; k < SUMMARIES; k++) *summaries[k] = summarise(a, index, false, k, scratch);
+  p->triangle_count = summarise(a, index, false, TRIANGLES, scratch).mean;
   p->heap_count = p->angle_deg.count;
-  p->seconds = summarise(a, index, offsetof(row, seconds), scratch);
-  p->height = summarise(a, index, offsetof(row, height), scratch);
-  p->run_out = summarise(a, index, offsetof(row, run_out), scratch);
-  p->coordination = summarise(a, index, offsetof(row, coordination), scratch);
-  p->packing = summarise(a, index, offsetof(row, packing), scratch);
-  p->left = summarise(a, index, offsetof(row, left), scratch);
-  p->peak_rotation = summarise(a, index, offsetof(row, peak_rotation), scratch);
-  SCREE_TRY(summarise_answers(a, index, p, scratch));
+  for (size_t k = 0; k < a->study->answer_count; k++)
+    p->answers[k] = summarise(a, index, true, k, scratch);
   return average_rotation(a, index, p, scratch);
 }
 
@@ -442,14 +416,15 @@ static void gather_picks(const analysis *a, size_t point, scree_family_result *f
 }
 
 static scree_status fit_time(const analysis *a, scree_family_result *family) {
-  double *x = take(a, a->row_count, sizeof *x), *y = take(a, a->row_count, sizeof *y);
+  double *x, *y;
   size_t count = 0;
-  if (!x || !y) return no_memory(a);
+  SCREE_TRY_TAKE(x, a->arena, a->row_count, a->error);
+  SCREE_TRY_TAKE(y, a->arena, a->row_count, a->error);
   for (size_t i = 0; i < a->row_count; i++)
     for (size_t k = 0; k < family->level_count; k++)
-      if (a->rows[i].point == family->levels[k] && a->rows[i].seconds > 0) {
+      if (a->rows[i].point == family->levels[k] && a->rows[i].number[SECONDS] > 0) {
         x[count] = a->result->points[family->levels[k]].rp_value;
-        y[count++] = a->rows[i].seconds;
+        y[count++] = a->rows[i].number[SECONDS];
       }
   /* too few levels yet: counts stay 0 */
   scree_fit_power(x, y, count, a->study->confidence, &family->time_law, NULL);
@@ -458,10 +433,10 @@ static scree_status fit_time(const analysis *a, scree_family_result *family) {
 }
 
 static scree_status make_family(const analysis *a, size_t first, scree_family_result *family) {
-  family->levels = take(a, a->study->point_count, sizeof *family->levels);
-  family->comparisons = take(a, a->study->point_count, sizeof *family->comparisons);
+  SCREE_TRY_TAKE(family->levels, a->arena, a->study->point_count, a->error);
+  SCREE_TRY_TAKE(family->comparisons, a->arena, a->study->point_count, a->error);
   family->label = family_label(a, first);
-  if (!family->levels || !family->comparisons || !family->label) return no_memory(a);
+  if (!family->label) return no_memory(a);
   gather_levels(a, first, family);
   if (family->level_count < 2) return SCREE_OK;
   test_convergence(a, family);
@@ -472,8 +447,7 @@ static scree_status make_family(const analysis *a, size_t first, scree_family_re
 static scree_status make_families(analysis *a) {
   scree_study_result *r = a->result;
   if (rp_factor(a->study) == SIZE_MAX || a->study->design != SCREE_DESIGN_GRID) return SCREE_OK;
-  r->families = take(a, a->study->point_count, sizeof *r->families);
-  if (!r->families) return no_memory(a);
+  SCREE_TRY_TAKE(r->families, a->arena, a->study->point_count, a->error);
   for (size_t p = 0; p < a->study->point_count; p++) {
     bool seen = false;
     for (size_t q = 0; q < p && !seen; q++) seen = same_family(a->study, p, q);
@@ -491,8 +465,7 @@ static scree_status make_whole(analysis *a) {
   scree_study_result *r = a->result;
   double wall = 0, left = 0;
   const char *version = NULL;
-  r->failures = take(a, a->row_count, sizeof *r->failures);
-  if (!r->failures) return no_memory(a);
+  SCREE_TRY_TAKE(r->failures, a->arena, a->row_count, a->error);
   for (size_t i = 0; i < a->row_count; i++) {
     const row *w = &a->rows[i];
     count_state(&r->counts, w->state);
@@ -501,10 +474,11 @@ static scree_status make_whole(analysis *a) {
           (scree_failure){r->points[w->point].label, w->reason, w->replicate};
     if (!strcmp(w->state, "waiting")) left += 1;
     if (!strcmp(w->state, "leased")) left += 1;
-    if (!strcmp(w->state, "running")) left += isnan(w->fraction) ? 1 : 1 - w->fraction;
+    if (!strcmp(w->state, "running"))
+      left += isnan(w->number[FRACTION]) ? 1 : 1 - w->number[FRACTION];
     if (strcmp(w->state, "done") != 0) continue;
-    wall += w->wall;
-    r->seconds_spent += w->seconds;
+    wall += w->number[WALL];
+    r->seconds_spent += w->number[SECONDS];
     if (version && strcmp(version, w->version) != 0) r->mixed_versions = true;
     version = w->version;
   }
@@ -517,11 +491,10 @@ static scree_status make_whole(analysis *a) {
 }
 
 static scree_status make_result(analysis *a) {
-  static const char *const designs[] = {"grid", "latin", "sobol", "list"};
   const scree_study *s = a->study;
   scree_study_result *r = a->result;
   r->name = scree_arena_text(a->arena, s->name);
-  r->design = designs[s->design];
+  r->design = scree_study_design_name(s);
   r->method = scree_method_name(s->method);
   r->angle = scree_arena_text(a->arena, s->analysis_angle);
   r->version = scree_version();
@@ -531,9 +504,10 @@ static scree_status make_result(analysis *a) {
   r->seed = s->seed;
   r->margin_deg = s->margin_deg;
   r->confidence = s->confidence;
-  r->points = take(a, s->point_count, sizeof *r->points);
-  double *scratch = take(a, scree_study_run_count(s), sizeof *scratch);
-  if (!r->name || !r->angle || !r->points || !scratch) return no_memory(a);
+  double *scratch;
+  SCREE_TRY_TAKE(r->points, a->arena, s->point_count, a->error);
+  SCREE_TRY_TAKE(scratch, a->arena, scree_study_run_count(s), a->error);
+  if (!r->name || !r->angle) return no_memory(a);
   SCREE_TRY(read_rows(a));
   SCREE_TRY(read_all_series(a));
   SCREE_TRY(read_answers(a));
@@ -545,19 +519,17 @@ static scree_status make_result(analysis *a) {
 
 scree_status scree_study_analyse(const scree_study *study, scree_study_result *result,
                                  scree_error *error) {
-  scree_study_result made = {.memory = scree_alloc_zero(1, sizeof(scree_arena))};
-  if (!made.memory) return scree_fail_memory(error, sizeof(scree_arena), "the analysis of a study");
-  analysis a = {.study = study, .arena = made.memory, .result = &made, .error = error};
-  scree_status status = scree_database_open(study, false, &a.database, error);
-  if (status == SCREE_OK) {
-    status = make_result(&a);
-    scree_database_close(&a.database);
-  }
-  if (status == SCREE_OK)
-    *result = made;
-  else
-    scree_study_result_free(&made);
-  return status;
+  SCREE_CLEANUP(scree_study_result_free) scree_study_result made = {0};
+  analysis a = {.study = study, .result = &made, .error = error};
+  SCREE_TRY_ALLOC_ZERO(a.arena, 1, error);
+  made.memory = a.arena;
+  SCREE_TRY(scree_database_open(study, false, &a.database, error));
+  scree_status status = make_result(&a);
+  scree_database_close(&a.database);
+  SCREE_TRY(status);
+  *result = made;
+  made = (scree_study_result){0};
+  return SCREE_OK;
 }
 
 void scree_study_result_free(scree_study_result *result) {

@@ -1,13 +1,15 @@
 #include "study/database.h"
 
 #include "base/platform.h"
+#include "study/record.h"
 
 #include <sqlite3.h>
 
 /* "scrS" and the version of the tables */
 enum { APPLICATION = 0x73637253, SCHEMA = 2, BUSY_MS = 60000 };
 
-static const char schema[] =
+/* The columns of runs and of the series go on with the fields of records. */
+static const char tables[] =
     "CREATE TABLE study(name TEXT PRIMARY KEY, value);"
     "CREATE TABLE shape(name TEXT PRIMARY KEY, source TEXT, checksum TEXT, triangle_count INTEGER,"
     " area REAL, volume REAL, paper_rp REAL, robust_rp REAL,"
@@ -15,21 +17,27 @@ static const char schema[] =
     "CREATE TABLE point(point INTEGER PRIMARY KEY, label TEXT, rp TEXT, shapes TEXT);"
     "CREATE TABLE factor(point INTEGER, key TEXT, value TEXT, PRIMARY KEY(point, key));"
     "CREATE TABLE parameter(point INTEGER, key TEXT, value TEXT, PRIMARY KEY(point, key));"
-    "CREATE TABLE run(key TEXT PRIMARY KEY, planned INTEGER, run INTEGER, point INTEGER,"
-    " replicate INTEGER, seed INTEGER, state TEXT, reason TEXT, attempts INTEGER, worker TEXT,"
-    " fraction REAL, machine TEXT, version TEXT, started REAL, ended REAL, triangle_count REAL,"
-    " time_step REAL, step_count INTEGER, particle_steps INTEGER, wall_seconds REAL,"
-    " processor_seconds REAL, piece_count INTEGER, largest_overlap REAL, heap INTEGER,"
-    " heap_reason TEXT, sector_deg REAL, sector_sd_deg REAL, cone_deg REAL, silhouette_deg REAL,"
-    " silhouette_sd_deg REAL, height REAL, base_radius REAL, run_out REAL, body_count INTEGER,"
-    " left_count INTEGER, packing_fraction REAL, coordination REAL, particle_size REAL,"
-    " kinetic REAL, time REAL, still INTEGER, hash TEXT);"
-    "CREATE TABLE series(key TEXT, time REAL, phase TEXT, bodies INTEGER, mean_rotation REAL,"
-    " kinetic REAL, highest_speed REAL, largest_overlap REAL, coordination REAL,"
-    " cylinder_height REAL, sector_deg REAL, cone_deg REAL, silhouette_deg REAL, height REAL,"
-    " PRIMARY KEY(key, time)) WITHOUT ROWID;"
     "CREATE TABLE failure(key TEXT, number INTEGER, reason TEXT, worker TEXT, ended REAL,"
     " PRIMARY KEY(key, number));";
+static const char runs[] =
+    "CREATE TABLE run(key TEXT PRIMARY KEY, planned INTEGER, run INTEGER, point INTEGER,"
+    " replicate INTEGER, seed INTEGER, state TEXT, reason TEXT, attempts INTEGER, worker TEXT,"
+    " fraction REAL";
+enum { OF_RUNS = 3 }; /* fields that stand there already, or are no column */
+static const char series[] = "CREATE TABLE series(key TEXT, time REAL, phase TEXT, bodies INTEGER";
+
+static void write_schema(char sql[4096]) {
+  static const char *const types[] = {"REAL", "INTEGER", "INTEGER", "TEXT"};
+  snprintf(sql, 4096, "BEGIN IMMEDIATE; PRAGMA application_id = %d; PRAGMA user_version = %d; %s%s",
+           APPLICATION, SCHEMA, tables, runs);
+  for (size_t i = OF_RUNS; i + 1 < SCREE_RECORD_FIELDS; i++)
+    scree_add_text(sql, 4096, ", %s %s", scree_record_fields[i].key,
+                   types[scree_record_fields[i].kind]);
+  scree_add_text(sql, 4096, ");%s", series);
+  for (size_t i = 1; i < SCREE_RECORD_COLUMNS; i++)
+    scree_add_text(sql, 4096, ", %s REAL", scree_record_columns[i].key);
+  scree_add_text(sql, 4096, ", PRIMARY KEY(key, time)) WITHOUT ROWID; COMMIT;");
+}
 
 /* Of studies of scenes. */
 static const char answers_table[] =
@@ -65,29 +73,29 @@ scree_status scree_database_step(scree_database *d, sqlite3_stmt *statement, boo
   return code == SQLITE_ROW || code == SQLITE_DONE ? SCREE_OK : fail_database(d, error);
 }
 
+void scree_statement_end(sqlite3_stmt **statement) {
+  sqlite3_finalize(*statement);
+}
+
 static scree_status ask_number(scree_database *d, const char *sql, int64_t *number,
                                scree_error *error) {
-  sqlite3_stmt *statement;
+  SCREE_STATEMENT statement = NULL;
   bool row;
   SCREE_TRY(scree_database_prepare(d, sql, &statement, error));
-  scree_status status = scree_database_step(d, statement, &row, error);
-  if (status == SCREE_OK) *number = row ? sqlite3_column_int64(statement, 0) : 0;
-  sqlite3_finalize(statement);
-  return status;
+  SCREE_TRY(scree_database_step(d, statement, &row, error));
+  *number = row ? sqlite3_column_int64(statement, 0) : 0;
+  return SCREE_OK;
 }
 
 /* An empty file becomes ours; another one must be. */
 static scree_status adopt(scree_database *d, bool writing, scree_error *error) {
-  int64_t application = 0, version = 0, tables = 0;
+  int64_t application = 0, version = 0, table_count = 0;
   SCREE_TRY(ask_number(d, "PRAGMA application_id", &application, error));
   SCREE_TRY(ask_number(d, "PRAGMA user_version", &version, error));
-  SCREE_TRY(ask_number(d, "SELECT count(*) FROM sqlite_master", &tables, error));
-  if (writing && application == 0 && tables == 0) {
-    char sql[sizeof schema + 160];
-    snprintf(sql, sizeof sql,
-             "BEGIN IMMEDIATE; PRAGMA application_id = %d; PRAGMA user_version = "
-             "%d; %s COMMIT;",
-             APPLICATION, SCHEMA, schema);
+  SCREE_TRY(ask_number(d, "SELECT count(*) FROM sqlite_master", &table_count, error));
+  if (writing && application == 0 && table_count == 0) {
+    char sql[4096];
+    write_schema(sql);
     return scree_database_run(d, sql, error);
   }
   if (application != APPLICATION)
@@ -104,25 +112,22 @@ static scree_status adopt(scree_database *d, bool writing, scree_error *error) {
 /* A rollback journal, not WAL, which shared folders cannot do. */
 scree_status scree_database_open(const scree_study *study, bool writing, scree_database *database,
                                  scree_error *error) {
-  scree_database d = {0};
+  SCREE_CLEANUP(scree_database_close) scree_database d = {0};
   scree_study_path(study, "", "study.sqlite", "", d.path);
-  scree_status status = SCREE_OK;
   if (!writing && !scree_path_exists(d.path))
-    status = scree_fail(error, SCREE_IO, "%s: not there yet", d.path);
+    return scree_fail(error, SCREE_IO, "%s: not there yet", d.path);
   int flags = writing ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
-  if (status == SCREE_OK && sqlite3_open_v2(d.path, &d.handle, flags, NULL) != SQLITE_OK)
-    status = d.handle ? fail_database(&d, error) : scree_fail_memory(error, 0, d.path);
-  if (status == SCREE_OK) sqlite3_busy_timeout(d.handle, BUSY_MS);
-  if (status == SCREE_OK && writing)
-    status =
-        scree_database_run(&d, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL;", error);
-  if (status == SCREE_OK) status = adopt(&d, writing, error);
-  if (status == SCREE_OK && writing) status = scree_database_run(&d, answers_table, error);
-  if (status == SCREE_OK)
-    *database = d;
-  else
-    scree_database_close(&d);
-  return status;
+  if (sqlite3_open_v2(d.path, &d.handle, flags, NULL) != SQLITE_OK)
+    return d.handle ? fail_database(&d, error) : scree_fail_memory(error, 0, d.path);
+  sqlite3_busy_timeout(d.handle, BUSY_MS);
+  if (writing)
+    SCREE_TRY(
+        scree_database_run(&d, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL;", error));
+  SCREE_TRY(adopt(&d, writing, error));
+  if (writing) SCREE_TRY(scree_database_run(&d, answers_table, error));
+  *database = d;
+  d.handle = NULL;
+  return SCREE_OK;
 }
 
 void scree_database_close(scree_database *database) {

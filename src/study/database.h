@@ -6,6 +6,10 @@
 struct sqlite3;
 struct sqlite3_stmt;
 
+/* A statement that is finalized with its block. */
+#define SCREE_STATEMENT SCREE_CLEANUP(scree_statement_end) struct sqlite3_stmt *
+void scree_statement_end(struct sqlite3_stmt **statement);
+
 typedef struct scree_database {
   struct sqlite3 *handle;
   char path[SCREE_PATH_BYTES];
@@ -18,7 +22,6 @@ scree_status scree_database_open(const scree_study *study, bool writing, scree_d
 void scree_database_close(scree_database *database);
 
 scree_status scree_database_run(scree_database *database, const char *sql, scree_error *error);
-/* Free with sqlite3_finalize. */
 scree_status scree_database_prepare(scree_database *database, const char *sql,
                                     struct sqlite3_stmt **statement, scree_error *error);
 /* One step of a statement: *row whether it gave a row. */

@@ -550,6 +550,11 @@ static scree_status check_whole(const reader *r, const scree_yaml *root) {
   return SCREE_OK;
 }
 
+const char *scree_study_design_name(const scree_study *study) {
+  static const char *const designs[] = {"grid", "latin", "sobol", "list"};
+  return designs[study->design];
+}
+
 static void take_fields(scree_study *study, const scree_study_fields *f) {
   static const char *const angles[] = {"sector", "cone", "silhouette"};
   const scree_study_analysis *analysis = f->analysis ? f->analysis : &scree_study_analysis_defaults;

@@ -10,17 +10,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef enum kind { REAL, COUNT, WIDE, FLAG, TEXT } kind;
-typedef struct field {
-  const char *key;
-  kind kind;
-  size_t offset, size;
-} field;
-
 #define AT(key, kind, member)                                                                      \
-  { key, kind, offsetof(scree_study_record, member), sizeof(((scree_study_record *)0)->member) }
+  {                                                                                                \
+    key, SCREE_RECORD_##kind, offsetof(scree_study_record, member),                                \
+        sizeof(((scree_study_record *)0)->member)                                                  \
+  }
 
-static const field fields[] = {
+const scree_record_field scree_record_fields[SCREE_RECORD_FIELDS] = {
     AT("failed", FLAG, failed),
     AT("reason", TEXT, reason),
     AT("worker", TEXT, worker),
@@ -30,11 +26,11 @@ static const field fields[] = {
     AT("ended", REAL, ended),
     AT("triangle_count", REAL, triangle_count),
     AT("time_step", REAL, costs.time_step),
-    AT("step_count", WIDE, costs.step_count),
-    AT("particle_steps", WIDE, costs.particle_steps),
+    AT("step_count", WHOLE, costs.step_count),
+    AT("particle_steps", WHOLE, costs.particle_steps),
     AT("wall_seconds", REAL, costs.wall_seconds),
     AT("processor_seconds", REAL, costs.processor_seconds),
-    AT("piece_count", COUNT, costs.piece_count),
+    AT("piece_count", WHOLE, costs.piece_count),
     AT("largest_overlap", REAL, costs.largest_overlap),
     AT("heap", FLAG, result.repose.heap),
     AT("heap_reason", TEXT, result.repose.reason),
@@ -46,8 +42,8 @@ static const field fields[] = {
     AT("height", REAL, result.repose.height),
     AT("base_radius", REAL, result.repose.base_radius),
     AT("run_out", REAL, result.repose.run_out),
-    AT("body_count", COUNT, result.body_count),
-    AT("left_count", COUNT, result.left_count),
+    AT("body_count", WHOLE, result.body_count),
+    AT("left_count", WHOLE, result.left_count),
     AT("packing_fraction", REAL, result.packing_fraction),
     AT("coordination", REAL, result.coordination),
     AT("particle_size", REAL, result.particle_size),
@@ -57,36 +53,29 @@ static const field fields[] = {
     AT("hash", TEXT, hash),
     AT("answered", TEXT, answered),
 };
-enum { FIELD_COUNT = sizeof fields / sizeof *fields };
 
 #undef AT
 #define AT(member) offsetof(scree_record_point, member)
-/* Columns of the series, a row each; phase and body count are whole. */
-static const struct {
-  const char *key;
-  size_t offset;
-} columns[] = {
-    {"time", AT(time)},
-    {"mean_rotation", AT(mean_rotation)},
-    {"kinetic", AT(kinetic)},
-    {"highest_speed", AT(highest_speed)},
-    {"largest_overlap", AT(largest_overlap)},
-    {"coordination", AT(coordination)},
-    {"cylinder_height", AT(cylinder_height)},
-    {"sector_deg", AT(sector_deg)},
-    {"cone_deg", AT(cone_deg)},
-    {"silhouette_deg", AT(silhouette_deg)},
-    {"height", AT(height)},
+const scree_record_column scree_record_columns[SCREE_RECORD_COLUMNS] = {
+    {"time", "time", AT(time)},
+    {"mean_rotation", "mean_rotation", AT(mean_rotation)},
+    {"kinetic", "kinetic", AT(kinetic)},
+    {"highest_speed", "highest_speed", AT(highest_speed)},
+    {"largest_overlap", "largest_overlap", AT(largest_overlap)},
+    {"coordination", "coordination", AT(coordination)},
+    {"cylinder_height", "cylinder.z", AT(cylinder_height)},
+    {"sector_deg", "*.sector_deg", AT(sector_deg)},
+    {"cone_deg", "*.cone_deg", AT(cone_deg)},
+    {"silhouette_deg", "*.silhouette_deg", AT(silhouette_deg)},
+    {"height", "*.height", AT(height)},
 };
-enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
 
 void scree_study_record_free(scree_study_record *record) {
   scree_free(record->series);
   scree_free(record->answers);
   record->answers = NULL;
-  record->answer_count = 0;
   record->series = NULL;
-  record->series_count = 0;
+  record->answer_count = record->series_count = 0;
 }
 
 scree_record_result scree_no_result(void) {
@@ -118,22 +107,21 @@ static void write_text(FILE *stream, const char *text) {
   putc('"', stream);
 }
 
-static void write_field(FILE *stream, const field *f, const scree_study_record *record) {
+static void write_field(FILE *stream, const scree_record_field *f,
+                        const scree_study_record *record) {
   const void *value = (const char *)record + f->offset;
+  fprintf(stream, "\"%s\": ", f->key);
   switch (f->kind) {
-  case REAL:
+  case SCREE_RECORD_REAL:
     write_real(stream, *(const double *)value);
     break;
-  case COUNT:
-    fprintf(stream, "%zu", *(const size_t *)value);
-    break;
-  case WIDE:
+  case SCREE_RECORD_WHOLE:
     fprintf(stream, "%llu", (unsigned long long)*(const uint64_t *)value);
     break;
-  case FLAG:
+  case SCREE_RECORD_FLAG:
     fputs(*(const bool *)value ? "true" : "false", stream);
     break;
-  case TEXT:
+  case SCREE_RECORD_TEXT:
     write_text(stream, value);
     break;
   }
@@ -147,11 +135,11 @@ static void write_series(FILE *stream, const scree_study_record *record) {
   for (size_t i = 0; i < record->series_count; i++)
     fprintf(stream, "%s%zu", i ? ", " : "", record->series[i].body_count);
   fputs("]", stream);
-  for (int c = 0; c < COLUMN_COUNT; c++) {
-    fprintf(stream, ",\n \"series_%s\": [", columns[c].key);
+  for (size_t c = 0; c < SCREE_RECORD_COLUMNS; c++) {
+    fprintf(stream, ",\n \"series_%s\": [", scree_record_columns[c].key);
     for (size_t i = 0; i < record->series_count; i++) {
       if (i) fputs(", ", stream);
-      write_real(stream, *(const double *)((const char *)&record->series[i] + columns[c].offset));
+      write_real(stream, *scree_record_number(&record->series[i], c));
     }
     fputs("]", stream);
   }
@@ -162,12 +150,11 @@ scree_status scree_study_record_write(const scree_study_record *record, const ch
   scree_output output;
   SCREE_TRY(scree_output_open(path, true, &output, error));
   fputs("{", output.stream);
-  for (int i = 0; i < FIELD_COUNT; i++) {
-    fprintf(output.stream, "%s\"%s\": ", i ? " " : "", fields[i].key);
-    write_field(output.stream, &fields[i], record);
-    fputs(",\n", output.stream);
+  for (int i = 0; i < SCREE_RECORD_FIELDS; i++) {
+    write_field(output.stream, &scree_record_fields[i], record);
+    fputs(",\n ", output.stream);
   }
-  fputs(" \"answers\": [", output.stream);
+  fputs("\"answers\": [", output.stream);
   for (size_t i = 0; i < record->answer_count; i++) {
     if (i) fputs(", ", output.stream);
     write_real(output.stream, record->answers[i]);
@@ -188,30 +175,23 @@ static bool parse_real(const char *text, double *value) {
   return scree_number_read(text, value);
 }
 
-static bool parse_whole(const char *text, unsigned long long *value) {
+static bool parse_whole(const char *text, uint64_t *value) {
   char *end;
   *value = strtoull(text, &end, 10);
   return *text >= '0' && *text <= '9' && !*end;
 }
 
-static bool parse_field(const field *f, const char *text, scree_study_record *record) {
+static bool parse_field(const scree_record_field *f, const char *text, scree_study_record *record) {
   void *value = (char *)record + f->offset;
-  unsigned long long whole;
   switch (f->kind) {
-  case REAL:
+  case SCREE_RECORD_REAL:
     return parse_real(text, value);
-  case COUNT:
-    if (!parse_whole(text, &whole)) return false;
-    *(size_t *)value = (size_t)whole;
-    return true;
-  case WIDE:
-    if (!parse_whole(text, &whole)) return false;
-    *(uint64_t *)value = whole;
-    return true;
-  case FLAG:
+  case SCREE_RECORD_WHOLE:
+    return parse_whole(text, value);
+  case SCREE_RECORD_FLAG:
     *(bool *)value = !strcmp(text, "true");
     return *(bool *)value || !strcmp(text, "false");
-  case TEXT:
+  case SCREE_RECORD_TEXT:
     snprintf(value, f->size, "%s", text);
     return true;
   }
@@ -220,11 +200,12 @@ static bool parse_field(const field *f, const char *text, scree_study_record *re
 
 static scree_status read_fields(const char *path, const scree_yaml *root,
                                 scree_study_record *record, scree_error *error) {
-  for (int i = 0; i < FIELD_COUNT; i++) {
-    const scree_yaml *node = scree_yaml_find(root, fields[i].key);
-    if (!node || node->kind != SCREE_YAML_SCALAR || !parse_field(&fields[i], node->text, record))
+  for (int i = 0; i < SCREE_RECORD_FIELDS; i++) {
+    const scree_record_field *f = &scree_record_fields[i];
+    const scree_yaml *node = scree_yaml_find(root, f->key);
+    if (!node || node->kind != SCREE_YAML_SCALAR || !parse_field(f, node->text, record))
       return scree_fail(error, SCREE_BAD_FILE, "%s: is no record of a run: no good '%s'", path,
-                        fields[i].key);
+                        f->key);
   }
   return SCREE_OK;
 }
@@ -244,19 +225,18 @@ static bool read_columns(const scree_yaml *root, scree_study_record *record) {
                    *bodies = find_list(root, "bodies", count);
   bool good = phase && bodies;
   for (size_t i = 0; good && i < count; i++) {
-    unsigned long long p, b;
+    uint64_t p, b;
     good = parse_whole(phase->items[i].text, &p) && parse_whole(bodies->items[i].text, &b);
     if (good) record->series[i].phase = (size_t)p;
     if (good) record->series[i].body_count = (size_t)b;
   }
-  for (int c = 0; good && c < COLUMN_COUNT; c++) {
+  for (size_t c = 0; good && c < SCREE_RECORD_COLUMNS; c++) {
     char name[64];
-    snprintf(name, sizeof name, "series_%s", columns[c].key);
+    snprintf(name, sizeof name, "series_%s", scree_record_columns[c].key);
     const scree_yaml *list = find_list(root, name, count);
     good = list != NULL;
     for (size_t i = 0; good && i < count; i++)
-      good = parse_real(list->items[i].text,
-                        (double *)(void *)((char *)&record->series[i] + columns[c].offset));
+      good = parse_real(list->items[i].text, scree_record_number(&record->series[i], c));
   }
   return good;
 }
@@ -279,31 +259,24 @@ static scree_status read_answers(const char *path, const scree_yaml *root,
 scree_status scree_study_record_read(const char *path, scree_study_record *record,
                                      scree_error *error) {
   enum { LARGEST_RECORD = 256 << 20 };
-  char *bytes;
+  SCREE_CLEANUP(scree_free_at) char *bytes = NULL;
+  SCREE_CLEANUP(scree_yaml_free) scree_yaml root = {0};
+  SCREE_CLEANUP(scree_study_record_free) scree_study_record made = {0};
   size_t byte_count;
-  scree_yaml root;
-  scree_study_record made = {0};
   SCREE_TRY(scree_file_read(path, LARGEST_RECORD, &bytes, &byte_count, error));
-  scree_status status = scree_yaml_parse(bytes, byte_count, path, &root, error);
-  scree_free(bytes);
-  if (status != SCREE_OK) return status;
-  status = root.kind == SCREE_YAML_MAPPING
-               ? read_fields(path, &root, &made, error)
-               : scree_fail(error, SCREE_BAD_FILE, "%s: is no record of a run", path);
+  SCREE_TRY(scree_yaml_parse(bytes, byte_count, path, &root, error));
+  if (root.kind != SCREE_YAML_MAPPING)
+    return scree_fail(error, SCREE_BAD_FILE, "%s: is no record of a run", path);
+  SCREE_TRY(read_fields(path, &root, &made, error));
   const scree_yaml *phase = scree_yaml_find(&root, "phase");
-  if (status == SCREE_OK && phase) {
+  if (phase) {
     made.series_count = phase->item_count;
-    made.series = scree_alloc_zero(made.series_count, sizeof *made.series);
-    if (!made.series)
-      status = scree_fail_memory(error, made.series_count * sizeof *made.series, path);
+    SCREE_TRY_ALLOC_ZERO(made.series, made.series_count, error);
   }
-  if (status == SCREE_OK && !read_columns(&root, &made))
-    status = scree_fail(error, SCREE_BAD_FILE, "%s: is no record of a run: its series", path);
-  if (status == SCREE_OK) status = read_answers(path, &root, &made, error);
-  scree_yaml_free(&root);
-  if (status == SCREE_OK)
-    *record = made;
-  else
-    scree_study_record_free(&made);
-  return status;
+  if (!read_columns(&root, &made))
+    return scree_fail(error, SCREE_BAD_FILE, "%s: is no record of a run: its series", path);
+  SCREE_TRY(read_answers(path, &root, &made, error));
+  *record = made;
+  made = (scree_study_record){0};
+  return SCREE_OK;
 }

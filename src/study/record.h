@@ -7,14 +7,14 @@ typedef struct scree_record_costs {
   double time_step; /* s */
   uint64_t step_count, particle_steps;
   double wall_seconds, processor_seconds;
-  size_t piece_count;
+  uint64_t piece_count;
   double largest_overlap; /* m */
 } scree_record_costs;
 
 /* Of a scene with a pile its heap; else NaN. */
 typedef struct scree_record_result {
   scree_repose repose;
-  size_t body_count, left_count; /* in the heap, or inside; and not */
+  uint64_t body_count, left_count; /* in the heap, or inside; and not */
   double packing_fraction, coordination;
   double particle_size, kinetic, time; /* m, J, s */
   bool still;
@@ -43,6 +43,26 @@ typedef struct scree_study_record {
   size_t answer_count;
   char answered[SCREE_CHECKSUM_TEXT]; /* scree_study_answers_mark */
 } scree_study_record;
+
+/* Its fields, which file and database have alike. */
+typedef struct scree_record_field {
+  const char *key;
+  enum { SCREE_RECORD_REAL, SCREE_RECORD_WHOLE, SCREE_RECORD_FLAG, SCREE_RECORD_TEXT } kind;
+  size_t offset, size;
+} scree_record_field;
+/* The database has those between the first and the last. A run that failed has but some. */
+enum { SCREE_RECORD_FIELDS = 35, SCREE_RECORD_OF_FAILED = 8 };
+extern const scree_record_field scree_record_fields[SCREE_RECORD_FIELDS];
+/* Numbers of a row of the series; the column of the scene that each is, * being its pile. */
+typedef struct scree_record_column {
+  const char *key, *of_scene;
+  size_t offset;
+} scree_record_column;
+enum { SCREE_RECORD_COLUMNS = 11 };
+extern const scree_record_column scree_record_columns[SCREE_RECORD_COLUMNS];
+static inline double *scree_record_number(scree_record_point *point, size_t column) {
+  return (double *)(void *)((char *)point + scree_record_columns[column].offset);
+}
 
 /* Which answers the study asks for. They are not among what names a run: other answers go on with
  * the runs that were made, and take theirs from what these left (scree_study_answer_again). */

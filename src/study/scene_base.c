@@ -294,37 +294,34 @@ static double value_at(const scree_scene *scene, size_t row, const char *name) {
   return k < columns ? series[row * columns + k] : (double)NAN;
 }
 
-static double pile_at(const scree_scene *scene, size_t row, const char *what) {
+/* The column of a record's series; the column count: the scene has none such. */
+static size_t column_in(const scree_scene *scene, const char *of_scene) {
   const char *pile = scree_scene_pile_name(scene, 0);
   char name[96];
-  snprintf(name, sizeof name, "%s.%s", pile ? pile : "", what);
-  return value_at(scene, row, name);
+  if (*of_scene != '*') return column_of(scene, of_scene);
+  snprintf(name, sizeof name, "%s%s", pile ? pile : "", of_scene + 1);
+  return column_of(scene, name);
 }
 
 /* Of scenes in phases: what turns how fast while something moves. */
 static scree_status record_series(const scree_study *study, const scree_scene *scene,
                                   scree_study_record *record, scree_error *error) {
-  size_t rows;
-  (void)scree_scene_series(scene, &rows);
+  size_t rows, columns = scree_scene_column_count(scene);
+  const double *series = scree_scene_series(scene, &rows);
   if (study->phase_count == 0) return SCREE_OK;
-  record->series = scree_alloc(rows, sizeof *record->series);
-  if (!record->series) return scree_fail_memory(error, rows * sizeof *record->series, "a series");
+  SCREE_TRY_ALLOC(record->series, rows, error);
   record->series_count = rows;
-  for (size_t i = 0; i < rows; i++)
-    record->series[i] = (scree_record_point){
-        .time = value_at(scene, i, "time"),
-        .phase = (size_t)value_at(scene, i, "phase"),
-        .body_count = (size_t)value_at(scene, i, "inside"),
-        .kinetic = value_at(scene, i, "kinetic") + value_at(scene, i, "rotational"),
-        .mean_rotation = value_at(scene, i, "mean_rotation"),
-        .highest_speed = value_at(scene, i, "highest_speed"),
-        .largest_overlap = value_at(scene, i, "largest_overlap"),
-        .coordination = value_at(scene, i, "coordination"),
-        .cylinder_height = value_at(scene, i, "cylinder.z"),
-        .sector_deg = pile_at(scene, i, "sector_deg"),
-        .cone_deg = pile_at(scene, i, "cone_deg"),
-        .silhouette_deg = pile_at(scene, i, "silhouette_deg"),
-        .height = pile_at(scene, i, "height")};
+  for (size_t c = 0; c < SCREE_RECORD_COLUMNS; c++) {
+    size_t k = column_in(scene, scree_record_columns[c].of_scene);
+    for (size_t i = 0; i < rows; i++)
+      *scree_record_number(&record->series[i], c) =
+          k < columns ? series[i * columns + k] : (double)NAN;
+  }
+  for (size_t i = 0; i < rows; i++) {
+    record->series[i].phase = (size_t)value_at(scene, i, "phase");
+    record->series[i].body_count = (size_t)value_at(scene, i, "inside");
+    record->series[i].kinetic += value_at(scene, i, "rotational");
+  }
   return SCREE_OK;
 }
 
@@ -343,7 +340,7 @@ static void record_costs(const scree_scene *scene, scree_record_costs *costs) {
                                 .particle_steps = c.body_steps,
                                 .wall_seconds = c.wall_seconds,
                                 .processor_seconds = c.processor_seconds,
-                                .piece_count = (size_t)c.piece_count,
+                                .piece_count = c.piece_count,
                                 .largest_overlap = largest_overlap(scene)};
 }
 

@@ -98,6 +98,8 @@ struct scree_study {
   char (*keys)[SCREE_RUN_KEY_BYTES]; /* of every run; NULL before all shapes are known */
 };
 
+SCREE_DEFINE_DROP(scree_study)
+
 static inline size_t scree_study_run_point(const scree_study *study, size_t run) {
   return run % study->point_count;
 }
@@ -108,6 +110,8 @@ static inline size_t scree_study_run_replicate(const scree_study *study, size_t 
 /* Copies into the arena; NULL when memory is out. */
 const char *scree_arena_text(scree_arena *arena, const char *text);
 
+/* plan.c: "grid", "latin", "sobol" or "list". */
+const char *scree_study_design_name(const scree_study *study);
 /* points.c: the design's points with their labels; all values have been checked. */
 scree_status scree_study_make_points(scree_study *study, scree_error *error);
 /* The seed of a run: the study's, or its point's where seed is a factor, and the replicate. */
