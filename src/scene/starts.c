@@ -114,7 +114,7 @@ static bool is_in_outlet(const scree_scene *scene, vec3 at) {
   double p[3];
   vec3_store(p, at);
   for (size_t i = 0; i < scene->plan.outlets.count; i++) {
-    const scree_plan_box *box = SCREE_PLAN_AT(&scene->plan, outlets, scree_plan_outlet, i)->box;
+    const scree_plan_box *box = scene->plan.outlets.items[i].box;
     if (scree_is_in(p, box->min, box->max)) return true;
   }
   return false;
