@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The picture of the browser tutorial: the page with its sample, after the choice, in a headless Chromium.
-usage: picture.py PAGE PICTURE.png       PAGE: build/page/scree.html, as `make page` builds it"""
+"""A picture of the page with its sample, after the choice, or of the top of a report, in a headless Chromium.
+usage: picture.py PAGE PICTURE.png       PAGE: build/page/scree.html, as `make page` builds it, or a report.html"""
 import os
 import sys
 
@@ -15,8 +15,9 @@ with Browser() as browser:
     browser.look(1000, 860)
     browser.open(page)
     browser.wait("document.body?.dataset.ready")
-    browser.run("document.querySelector('#sample').click()")
-    browser.wait("document.body.dataset.chosen > 0 || document.querySelector('.error')", 300)
-    browser.wait("document.querySelector('#panel-0').dataset.busy === 'false'", 300)
+    if browser.run("return Boolean(document.querySelector('#sample'))"):
+        browser.run("document.querySelector('#sample').click()")
+        browser.wait("document.body.dataset.chosen > 0 || document.querySelector('.error')", 300)
+        browser.wait("document.querySelector('#panel-0').dataset.busy === 'false'", 300)
     browser.run("window.scrollTo(0, 0)")
     browser.screenshot(picture, whole=False)
