@@ -13,24 +13,24 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define ARGUMENTS cli_common
 const cli_option cli_common_options[] = {
-    {"threads", CLI_COUNT, offsetof(cli_common, threads), "N",
-     "Threads to use; 0 is one per processor, the default. The results do not depend on it.", 0,
-     4096, NULL},
-    {"backend", CLI_TEXT, offsetof(cli_common, backend), "NAME",
-     "Where worlds are stepped: cpu, the default, cuda, or cuda:N for the NVIDIA device N. The "
-     "results are the same bits.",
-     0, 0, NULL},
-    {"max-memory", CLI_BYTES, offsetof(cli_common, max_memory), "SIZE",
-     "Fail rather than hold more than SIZE bytes (suffixes K, M, G); 0, the default, is no limit.",
-     0, 0, NULL},
-    {"progress", CLI_FLAG, offsetof(cli_common, progress), NULL,
-     "Draw progress also where stderr is no terminal; a log gets a line now and then anyway.", 0, 0,
-     NULL},
-    {"quiet", CLI_FLAG, offsetof(cli_common, quiet), NULL, "Only results and errors.", 0, 0, NULL},
-    {"verbose", CLI_FLAG, offsetof(cli_common, verbose), NULL,
-     "Say at the end what it cost, on stderr: time, processor time, memory.", 0, 0, NULL},
-    {"help", CLI_FLAG, offsetof(cli_common, help), NULL, "Show this help.", 0, 0, NULL},
+    CLI_RANGE_ROW(
+        CLI_COUNT, "threads", threads, "N", 0, 4096,
+        "Threads to use; 0 is one per processor, the default. The results do not depend on it."),
+    CLI_ROW(CLI_TEXT, "backend", backend, "NAME",
+            "Where worlds are stepped: cpu, the default, cuda, or cuda:N for the NVIDIA device N. "
+            "The results are the same bits."),
+    CLI_ROW(CLI_BYTES, "max-memory", max_memory, "SIZE",
+            "Fail rather than hold more than SIZE bytes (suffixes K, M, G); 0, the default, is no "
+            "limit."),
+    CLI_FLAG_ROW(
+        "progress", progress,
+        "Draw progress also where stderr is no terminal; a log gets a line now and then anyway."),
+    CLI_FLAG_ROW("quiet", quiet, "Only results and errors."),
+    CLI_FLAG_ROW("verbose", verbose,
+                 "Say at the end what it cost, on stderr: time, processor time, memory."),
+    CLI_FLAG_ROW("help", help, "Show this help."),
 };
 const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_common_options;
 
@@ -76,13 +76,13 @@ bool cli_fraction_from_text(const char *text, double *value) {
   return end[*end == '%'] == 0;
 }
 
-int cli_fail(const scree_error *error) {
+scree_status cli_fail(const scree_error *error) {
   bool spared = strstr(error->message, "not overwritten");
   bool limited = error->status == SCREE_OUT_OF_MEMORY && strstr(error->message, "the limit of");
   cli_terminal_end();
   fprintf(stderr, "scree: %s%s%s\n", error->message, spared ? "; -f overwrites" : "",
           limited ? "; --max-memory sets it" : "");
-  return 1;
+  return CLI_TOLD;
 }
 
 const char *cli_printable(const char *text, char buffer[CLI_PRINTABLE_BYTES]) {
@@ -123,7 +123,7 @@ const char *cli_comma_hint(const char *text) {
   return "";
 }
 
-int cli_misuse(const cli_verb *verb, const char *format, ...) {
+scree_status cli_misuse(const cli_verb *verb, const char *format, ...) {
   va_list arguments;
   char message[CLI_PRINTABLE_BYTES];
   va_start(arguments, format);
@@ -136,7 +136,7 @@ int cli_misuse(const cli_verb *verb, const char *format, ...) {
             verb->name, verb->inputs, verb->name);
   else
     fprintf(stderr, "\nusage: scree VERB [options] INPUT...\n`scree help` lists the verbs.\n");
-  return 2;
+  return CLI_MISUSED;
 }
 
 /* ---- values ---- */
@@ -153,7 +153,7 @@ static const char *length_text(double metres, char buffer[32]) {
   return buffer;
 }
 
-static int out_of_range(const cli_verb *verb, const cli_option *option, const char *text) {
+static scree_status out_of_range(const cli_verb *verb, const cli_option *option, const char *text) {
   bool open = option->minimum == 0 && option->maximum == 0;
   if (option->kind == CLI_COUNT && open)
     return cli_misuse(verb, "--%s %s: too large", option->name, text);
@@ -174,13 +174,13 @@ static int out_of_range(const cli_verb *verb, const cli_option *option, const ch
                     percent ? text : "", percent ? "%?" : "");
 }
 
-static int parse_count(const cli_verb *verb, const cli_option *option, const char *text,
-                       void *value) {
+static scree_status parse_count(const cli_verb *verb, const cli_option *option, const char *text,
+                                void *value) {
   char *end;
   errno = 0;
   if (option->words && !strcmp(text, option->words)) {
     *(size_t *)value = SIZE_MAX;
-    return 0;
+    return SCREE_OK;
   }
   unsigned long long parsed = strtoull(text, &end, 10);
   if (*text < '0' || *text > '9' || *end)
@@ -188,7 +188,7 @@ static int parse_count(const cli_verb *verb, const cli_option *option, const cha
                       option->words ? " nor " : "", option->words ? option->words : "");
   if (errno || !in_range(option, (double)parsed)) return out_of_range(verb, option, text);
   *(size_t *)value = (size_t)parsed;
-  return 0;
+  return SCREE_OK;
 }
 
 /* As scree_render takes. */
@@ -200,15 +200,15 @@ static bool read_side(const char **text, size_t *side) {
   return *side >= LEAST && *side <= MOST;
 }
 
-int cli_parse_size(const cli_verb *verb, const char *text, size_t *width, size_t *height) {
+scree_status cli_parse_size(const cli_verb *verb, const char *text, size_t *width, size_t *height) {
   const char *at = text;
-  if (read_side(&at, width) && *at++ == 'x' && read_side(&at, height) && !*at) return 0;
+  if (read_side(&at, width) && *at++ == 'x' && read_side(&at, height) && !*at) return SCREE_OK;
   return cli_misuse(verb, "--size %s: not a size such as 1200x900, each side from 64 to 20000",
                     text);
 }
 
-static int parse_bytes(const cli_verb *verb, const cli_option *option, const char *text,
-                       void *value) {
+static scree_status parse_bytes(const cli_verb *verb, const cli_option *option, const char *text,
+                                void *value) {
   double parsed;
   const char *end = parse_decimal(text, &parsed);
   const char *suffixes = "KMG", *suffix = end && *end ? strchr(suffixes, *end) : NULL;
@@ -217,7 +217,7 @@ static int parse_bytes(const cli_verb *verb, const cli_option *option, const cha
   for (const char *s = suffixes; suffix && s <= suffix; s++) parsed *= 1024;
   if (parsed > 1e18) return cli_misuse(verb, "--%s %s: too large", option->name, text);
   *(size_t *)value = (size_t)parsed;
-  return 0;
+  return SCREE_OK;
 }
 
 bool cli_length_from_text(const char *text, double *metres) {
@@ -229,16 +229,6 @@ bool cli_length_from_text(const char *text, double *metres) {
   return true;
 }
 
-static int parse_length(const cli_verb *verb, const cli_option *option, const char *text,
-                        double *metres) {
-  if (!cli_length_from_text(text, metres))
-    return cli_misuse(
-        verb,
-        "--%s %s: not a length such as 0.27mm (m, cm, mm, um, km, inch, ft; without a unit, m)%s",
-        option->name, text, cli_comma_hint(text));
-  return in_range(option, *metres) ? 0 : out_of_range(verb, option, text);
-}
-
 /* The unit in which the number is meant: the value's name in the help, where that is one. */
 static const char *unit_of(const cli_option *option) {
   static const char *const wanted[][2] = {{"KG/M3", "kg/m3"}, {"PA", "Pa"}, {"DEG", "deg"}};
@@ -247,22 +237,27 @@ static const char *unit_of(const cli_option *option) {
   return "";
 }
 
-static int parse_real(const cli_verb *verb, const cli_option *option, const char *text,
-                      double *value) {
-  const char *wanted = unit_of(option), *rest = parse_decimal(text, value);
-  if (rest) rest += strspn(rest, " ");
-  if (!rest || (*rest && scree_unit_convert(rest, wanted, value) != SCREE_UNIT_FITS))
-    return cli_misuse(verb, "--%s %s: not a number%s%s%s", option->name, text,
+/* A number that stands for itself, a length or a share. */
+static scree_status parse_number(const cli_verb *verb, const cli_option *option, const char *text,
+                                 double *value) {
+  const char *what = "number", *wanted = "";
+  bool good;
+  if (option->kind == CLI_LENGTH || option->kind == CLI_LENGTH_TEXT) {
+    what = "length such as 0.27mm (m, cm, mm, um, km, inch, ft; without a unit, m)";
+    good = cli_length_from_text(text, value);
+  } else if (option->kind == CLI_SHARE || option->kind == CLI_SHARE_TEXT) {
+    what = "share such as 0.005 or 0.5%";
+    good = cli_fraction_from_text(text, value);
+  } else {
+    const char *rest = parse_decimal(text, value);
+    wanted = unit_of(option);
+    if (rest) rest += strspn(rest, " ");
+    good = rest && (!*rest || scree_unit_convert(rest, wanted, value) == SCREE_UNIT_FITS);
+  }
+  if (!good)
+    return cli_misuse(verb, "--%s %s: not a %s%s%s%s", option->name, text, what,
                       *wanted ? " in " : "", wanted, cli_comma_hint(text));
-  return in_range(option, *value) ? 0 : out_of_range(verb, option, text);
-}
-
-static int parse_fraction(const cli_verb *verb, const cli_option *option, const char *text,
-                          double *value) {
-  if (!cli_fraction_from_text(text, value))
-    return cli_misuse(verb, "--%s %s: not a share such as 0.005 or 0.5%%%s", option->name, text,
-                      cli_comma_hint(text));
-  return in_range(option, *value) ? 0 : out_of_range(verb, option, text);
+  return in_range(option, *value) ? SCREE_OK : out_of_range(verb, option, text);
 }
 
 const char *cli_si_text(cli_kind kind, const char *text, char buffer[CLI_NUMBER_BYTES]) {
@@ -274,8 +269,8 @@ const char *cli_si_text(cli_kind kind, const char *text, char buffer[CLI_NUMBER_
   return buffer;
 }
 
-static int parse_choice(const cli_verb *verb, const cli_option *option, const char *text,
-                        void *value) {
+static scree_status parse_choice(const cli_verb *verb, const cli_option *option, const char *text,
+                                 void *value) {
   size_t length = strlen(text);
   int index = 0;
   for (const char *word = option->words; word; index++) {
@@ -283,69 +278,75 @@ static int parse_choice(const cli_verb *verb, const cli_option *option, const ch
     size_t word_length = bar ? (size_t)(bar - word) : strlen(word);
     if (word_length == length && !strncmp(word, text, length)) {
       *(int *)value = index;
-      return 0;
+      return SCREE_OK;
     }
     word = bar ? bar + 1 : NULL;
   }
   return cli_misuse(verb, "--%s %s: must be one of %s", option->name, text, option->words);
 }
 
-static int add_text(const cli_verb *verb, const cli_option *option, const char *text,
-                    cli_texts *texts) {
-  if (texts->count == CLI_MOST_TEXTS)
-    return cli_misuse(verb, "--%s is given more than %d times", option->name, CLI_MOST_TEXTS);
-  texts->items[texts->count++] = text;
-  return 0;
+static scree_status too_often(const cli_verb *verb, const cli_option *option) {
+  return cli_misuse(verb, "--%s is given more than %d times", option->name, CLI_MOST_TEXTS);
 }
 
-static int store(const cli_verb *verb, const cli_option *option, const char *text, void *base) {
+static scree_status add_text(const cli_verb *verb, const cli_option *option, const char *text,
+                             cli_texts *texts) {
+  if (texts->count == CLI_MOST_TEXTS) return too_often(verb, option);
+  texts->items[texts->count++] = text;
+  return SCREE_OK;
+}
+
+/* As it was given. */
+static scree_status keep_text(const cli_verb *verb, const cli_option *option, const char *text,
+                              void *value) {
+  cli_fields *fields = value;
+  if (!*text)
+    return cli_misuse(verb, "--%s: the value %s is empty", option->name, option->value_name);
+  if (!option->field) {
+    *(const char **)value = text;
+    return SCREE_OK;
+  }
+  if (fields->count == CLI_MOST_TEXTS) return too_often(verb, option);
+  fields->options[fields->count] = option;
+  fields->values[fields->count++] = text;
+  return SCREE_OK;
+}
+
+static scree_status store(const cli_verb *verb, const cli_option *option, const char *text,
+                          void *base) {
   void *value = (char *)base + option->offset;
   double real = 0;
-  int result;
   switch (option->kind) {
   case CLI_FLAG:
     *(bool *)value = true;
-    return 0;
+    return SCREE_OK;
   case CLI_TEXT:
   case CLI_FILE:
-    if (!*text)
-      return cli_misuse(verb, "--%s: the value %s is empty", option->name, option->value_name);
-    *(const char **)value = text;
-    return 0;
+    return keep_text(verb, option, text, value);
   case CLI_TEXTS:
     return add_text(verb, option, text, value);
   case CLI_COUNT:
     return parse_count(verb, option, text, value);
   case CLI_REAL:
-    result = parse_real(verb, option, text, &real);
-    if (result == 0) *(double *)value = real;
-    return result;
   case CLI_LENGTH:
-    result = parse_length(verb, option, text, &real);
-    if (result == 0) *(double *)value = real;
-    return result;
   case CLI_SHARE:
-    result = parse_fraction(verb, option, text, &real);
-    if (result == 0) *(double *)value = real;
-    return result;
+    SCREE_TRY(parse_number(verb, option, text, &real));
+    break;
   case CLI_LENGTH_TEXT:
   case CLI_SHARE_TEXT:
-    result = option->kind == CLI_LENGTH_TEXT ? parse_length(verb, option, text, &real)
-                                             : parse_fraction(verb, option, text, &real);
-    if (result == 0) *(const char **)value = text;
-    return result;
+    SCREE_TRY(parse_number(verb, option, text, &real));
+    return keep_text(verb, option, text, value);
   case CLI_UNIT:
-    if (!cli_unit_from_text(text, &real))
-      return cli_misuse(verb, "--%s %s: no unit of length (m, cm, mm, um, km, inch, ft)",
-                        option->name, text);
-    *(double *)value = real;
-    return 0;
+    if (cli_unit_from_text(text, &real)) break;
+    return cli_misuse(verb, "--%s %s: no unit of length (m, cm, mm, um, km, inch, ft)",
+                      option->name, text);
   case CLI_BYTES:
     return parse_bytes(verb, option, text, value);
   case CLI_CHOICE:
     return parse_choice(verb, option, text, value);
   }
-  return 2;
+  *(double *)value = real;
+  return SCREE_OK;
 }
 
 /* ---- words ---- */
@@ -362,8 +363,7 @@ typedef struct parser {
   int word_count;
   char **words;
   int next;
-  bool given[CLI_MOST_OPTIONS];        /* of the verb's */
-  const char *texts[CLI_MOST_OPTIONS]; /* what stood behind them */
+  const char *texts[CLI_MOST_OPTIONS]; /* what stood behind the verb's: "" of a flag */
   const char **inputs;
   size_t input_count;
 } parser;
@@ -380,24 +380,13 @@ static found_option find_option(const parser *p, const char *name, size_t length
   return (found_option){NULL, NULL};
 }
 
-static size_t index_of(const parser *p, const char *name, size_t length) {
-  found_option found = find_option(p, name, length, 0);
-  return found.base == p->options ? (size_t)(found.option - p->verb->options) : CLI_MOST_OPTIONS;
-}
-
 static bool is_given(const parser *p, const char *name, size_t length) {
-  size_t index = index_of(p, name, length);
-  return index < CLI_MOST_OPTIONS && p->given[index];
+  found_option found = find_option(p, name, length, 0);
+  return found.option && found.base == p->options && p->texts[found.option - p->verb->options];
 }
 
-static void mark_given(parser *p, found_option found) {
-  size_t index = (size_t)(found.option - p->verb->options);
-  if (found.base == p->options && index < CLI_MOST_OPTIONS) p->given[index] = true;
-}
-
-static int take_value(parser *p, found_option found, const char *text) {
-  size_t index = (size_t)(found.option - p->verb->options);
-  if (found.base == p->options && index < CLI_MOST_OPTIONS) p->texts[index] = text;
+static scree_status take_value(parser *p, found_option found, const char *text) {
+  if (found.base == p->options) p->texts[found.option - p->verb->options] = text ? text : "";
   return store(p->verb, found.option, text, found.base);
 }
 
@@ -408,8 +397,8 @@ static bool has_input(const parser *p, const char *beginning, size_t length) {
   return false;
 }
 
-/* 0, or 2 after telling which option does nothing by itself. */
-static int check_partners(const parser *p) {
+/* Tells which option does nothing by itself. */
+static scree_status check_partners(const parser *p) {
   for (const char *at = p->verb->partners; at && *at;) {
     size_t name = strcspn(at, ":"), all = strcspn(at, " ");
     bool missing = is_given(p, at, name);
@@ -431,7 +420,21 @@ static int check_partners(const parser *p) {
                         first);
     at += all + (at[all] != 0);
   }
-  return 0;
+  return SCREE_OK;
+}
+
+/* Tells which two do not go together. */
+static scree_status check_exclusive(const parser *p) {
+  for (const char *at = p->verb->exclusive; at && *at;) {
+    size_t one = strcspn(at, "|"), all = strcspn(at, " ");
+    const char *other = at + one + 1;
+    int length = (int)(all - one - 1);
+    if (is_given(p, at, one) && is_given(p, other, (size_t)length))
+      return cli_misuse(p->verb, "--%.*s and --%.*s exclude each other", (int)one, at, length,
+                        other);
+    at += all + (at[all] != 0);
+  }
+  return SCREE_OK;
 }
 
 /* "-dash.stl" may be meant as the file of that name. */
@@ -441,7 +444,7 @@ static const char *file_hint(const char *word, char *buffer, size_t size) {
   return buffer;
 }
 
-static int unknown_option(const cli_verb *verb, const char *word, const char *name) {
+static scree_status unknown_option(const cli_verb *verb, const char *word, const char *name) {
   char hint[256];
   const char *dashes = name[1] ? "--" : "-";
   cli_option_hint(verb, name, hint, sizeof hint);
@@ -450,46 +453,43 @@ static int unknown_option(const cli_verb *verb, const char *word, const char *na
                     file_hint(word, hint, sizeof hint));
 }
 
-static int parse_long(parser *p, const char *word) {
+/* With what stands behind the name in its own word, or else in the next. Its letter, where it was
+ * called by that. */
+static scree_status take_option(parser *p, found_option found, char letter, const char *behind) {
+  const cli_option *option = found.option;
+  if (option->kind == CLI_FLAG)
+    return behind ? cli_misuse(p->verb, "--%s takes no value", option->name)
+                  : take_value(p, found, NULL);
+  if (behind) return take_value(p, found, behind);
+  if (p->next < p->word_count) return take_value(p, found, p->words[p->next++]);
+  return letter ? cli_misuse(p->verb, "-%c needs a value %s", letter, option->value_name)
+                : cli_misuse(p->verb, "--%s needs a value %s", option->name, option->value_name);
+}
+
+static scree_status parse_long(parser *p, const char *word) {
   const char *equals = strchr(word, '=');
   size_t length = equals ? (size_t)(equals - word - 2) : strlen(word + 2);
   found_option found = find_option(p, word + 2, length, 0);
-  if (!found.option) {
-    char name[64];
-    snprintf(name, sizeof name, "%.*s", (int)length, word + 2);
-    return unknown_option(p->verb, word, name);
-  }
-  mark_given(p, found);
-  if (found.option->kind == CLI_FLAG) {
-    if (equals) return cli_misuse(p->verb, "--%s takes no value", found.option->name);
-    return store(p->verb, found.option, NULL, found.base);
-  }
-  if (equals) return take_value(p, found, equals + 1);
-  if (p->next >= p->word_count)
-    return cli_misuse(p->verb, "--%s needs a value %s", found.option->name,
-                      found.option->value_name);
-  return take_value(p, found, p->words[p->next++]);
+  if (found.option) return take_option(p, found, 0, equals ? equals + 1 : NULL);
+  char name[64];
+  snprintf(name, sizeof name, "%.*s", (int)length, word + 2);
+  return unknown_option(p->verb, word, name);
 }
 
 /* -qv, -n100, -n 100 */
-static int parse_letters(parser *p, const char *word) {
+static scree_status parse_letters(parser *p, const char *word) {
   for (const char *letter = word + 1; *letter; letter++) {
     found_option found = find_option(p, NULL, 0, *letter);
     if (!found.option) return unknown_option(p->verb, word, (char[]){*letter, 0});
-    mark_given(p, found);
-    if (found.option->kind == CLI_FLAG) {
-      store(p->verb, found.option, NULL, found.base);
-      continue;
-    }
-    if (letter[1]) return take_value(p, found, letter + 1);
-    if (p->next >= p->word_count)
-      return cli_misuse(p->verb, "-%c needs a value %s", *letter, found.option->value_name);
-    return take_value(p, found, p->words[p->next++]);
+    bool flag = found.option->kind == CLI_FLAG;
+    SCREE_TRY(take_option(p, found, *letter, flag || !letter[1] ? NULL : letter + 1));
+    if (!flag) break;
   }
-  return 0;
+  return SCREE_OK;
 }
 
-static int check_input_count(const cli_verb *verb, const char *const *inputs, size_t count) {
+static scree_status check_input_count(const cli_verb *verb, const char *const *inputs,
+                                      size_t count) {
   size_t streams = 0;
   for (size_t i = 0; i < count; i++) {
     if (!*inputs[i]) return cli_misuse(verb, "input %zu of %zu has an empty name", i + 1, count);
@@ -503,20 +503,19 @@ static int check_input_count(const cli_verb *verb, const char *const *inputs, si
   if (count > verb->input_maximum)
     return cli_misuse(verb, "takes at most %zu input%s; '%s' is one too many", verb->input_maximum,
                       cli_plural(verb->input_maximum), inputs[verb->input_maximum]);
-  return 0;
+  return SCREE_OK;
 }
 
 /* Names what is given and cannot be meant, on stderr. */
 static void remark_values(const parser *p) {
-  for (size_t i = 0; i < p->verb->option_count && i < CLI_MOST_OPTIONS; i++) {
+  for (size_t i = 0; i < p->verb->option_count; i++) {
     const cli_option *option = &p->verb->options[i];
     const cli_meaning *meaning = cli_find_meaning(option->name);
-    const void *value = (const char *)p->options + option->offset;
     double number;
-    if (!p->given[i] || !meaning || !(meaning->most > 0)) continue;
+    if (!p->texts[i] || !meaning || !(meaning->most > 0)) continue;
     if (option->kind == CLI_REAL)
-      number = *(const double *)value;
-    else if (option->kind != CLI_TEXT || !cli_real_from_text(*(char *const *)value, &number))
+      memcpy(&number, (const char *)p->options + option->offset, sizeof number);
+    else if (option->kind != CLI_TEXT || !cli_real_from_text(p->texts[i], &number))
       continue;
     if (number < meaning->least || number > meaning->most)
       fprintf(stderr, "scree: --%s %g: %s\n", option->name, number, meaning->expected);
@@ -527,12 +526,12 @@ static void remark_values(const parser *p) {
  */
 static void remark_lengths(const parser *p) {
   static const double far_apart = 100;
-  size_t unit_index = index_of(p, "unit", strlen("unit"));
-  if (unit_index == CLI_MOST_OPTIONS || p->verb->options[unit_index].kind != CLI_UNIT) return;
-  double number,
-      unit = *(const double *)((const char *)p->options + p->verb->options[unit_index].offset);
+  double number, unit;
+  found_option found = find_option(p, "unit", strlen("unit"), 0);
+  if (!found.option || found.option->kind != CLI_UNIT) return;
+  memcpy(&unit, (const char *)found.base + found.option->offset, sizeof unit);
   if (unit < far_apart && unit * far_apart > 1) return;
-  for (size_t i = 0; i < p->verb->option_count && i < CLI_MOST_OPTIONS; i++) {
+  for (size_t i = 0; i < p->verb->option_count; i++) {
     const cli_option *option = &p->verb->options[i];
     if ((option->kind != CLI_LENGTH && option->kind != CLI_LENGTH_TEXT) || !p->texts[i]) continue;
     if (!cli_real_from_text(p->texts[i], &number) || number == 0) continue;
@@ -544,8 +543,8 @@ static void remark_lengths(const parser *p) {
   }
 }
 
-int cli_parse(const cli_verb *verb, int word_count, char **words, void *options, cli_common *common,
-              const char **inputs, size_t *input_count) {
+scree_status cli_parse(const cli_verb *verb, int word_count, char **words, void *options,
+                       cli_common *common, const char **inputs, size_t *input_count) {
   parser p = {.verb = verb,
               .options = options,
               .common = common,
@@ -553,26 +552,24 @@ int cli_parse(const cli_verb *verb, int word_count, char **words, void *options,
               .words = words,
               .inputs = inputs};
   bool only_inputs = false;
-  *input_count = 0;
+  SCREE_ASSERT(verb->option_count <= CLI_MOST_OPTIONS);
   while (p.next < word_count) {
     const char *word = words[p.next++];
-    int result = 0;
     if (only_inputs || word[0] != '-' || !word[1])
-      inputs[(*input_count)++] = word;
+      inputs[p.input_count++] = word;
     else if (!strcmp(word, "--"))
       only_inputs = true;
     else
-      result = word[1] == '-' ? parse_long(&p, word) : parse_letters(&p, word);
-    if (result) return result;
-    if (common->help) return 0;
+      SCREE_TRY(word[1] == '-' ? parse_long(&p, word) : parse_letters(&p, word));
+    if (common->help) return SCREE_OK;
   }
-  p.input_count = *input_count;
-  int result = check_input_count(verb, inputs, *input_count);
+  *input_count = p.input_count;
   common->unit_given = is_given(&p, "unit", strlen("unit"));
-  if (result == 0) result = check_partners(&p);
-  if (result == 0 && !common->quiet) {
-    remark_values(&p);
-    remark_lengths(&p);
-  }
-  return result;
+  SCREE_TRY(check_input_count(verb, inputs, p.input_count));
+  SCREE_TRY(check_partners(&p));
+  SCREE_TRY(check_exclusive(&p));
+  if (common->quiet) return SCREE_OK;
+  remark_values(&p);
+  remark_lengths(&p);
+  return SCREE_OK;
 }

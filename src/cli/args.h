@@ -34,10 +34,30 @@ typedef struct cli_option {
   const char *help;        /* one or more sentences; says unit and default */
   double minimum, maximum; /* of a number; both 0: any value not below 0 */
   const char *words;       /* CLI_CHOICE, CLI_COUNT; else NULL */
+  const char *field;       /* of a scene: the value is one of cli_fields; else NULL */
 } cli_option;
-/* A row of a table that a macro holds. */
-#define CLI_ROW(...)                                                                               \
-  { __VA_ARGS__ }
+/* Rows of a table whose verb has named its struct ARGUMENTS. */
+#define CLI_ROW(kind, name, member, value, help)                                                   \
+  CLI_RANGE_ROW(kind, name, member, value, 0, 0, help)
+#define CLI_RANGE_ROW(kind, name, member, value, least, most, help)                                \
+  { name, kind, offsetof(ARGUMENTS, member), value, help, least, most, NULL, NULL }
+#define CLI_CHOICE_ROW(name, member, value, words, help)                                           \
+  { name, CLI_CHOICE, offsetof(ARGUMENTS, member), value, help, 0, 0, words, NULL }
+#define CLI_FLAG_ROW(name, member, help) CLI_ROW(CLI_FLAG, name, member, NULL, help)
+/* What sets a field or parameter of a scene, kept in the member `fields`. */
+#define CLI_FIELD_ROW(kind, name, field, value, help)                                              \
+  { name, kind, offsetof(ARGUMENTS, fields), value, help, 0, 0, NULL, field }
+
+/* Fields of a scene that options set, as they were given. */
+typedef struct cli_fields {
+  const cli_option *options[CLI_MOST_TEXTS];
+  const char *values[CLI_MOST_TEXTS];
+  size_t count;
+} cli_fields;
+
+/* What a verb answers besides a status of the library, when it has told stderr why. */
+#define CLI_TOLD    ((scree_status)1001) /* exit code 1 */
+#define CLI_MISUSED ((scree_status)1002) /* exit code 2 */
 
 struct cli_call;
 
@@ -52,10 +72,11 @@ typedef struct cli_verb {
   const void *defaults; /* the verb's struct with its default values */
   size_t options_size;  /* its size, at most CLI_OPTIONS_BYTES */
   size_t input_minimum, input_maximum;
-  const char *partners; /* "samples:distance to:from|until": options that do nothing without (one
-                           of) the others, so that they are refused; "noise:sample:": without an
-                           input that begins so, "rp::": without any; or NULL */
-  int (*run)(const struct cli_call *call); /* the exit code */
+  const char *partners;  /* "samples:distance to:from|until": options that do nothing without (one
+                            of) the others, so that they are refused; "noise:sample:": without an
+                            input that begins so, "rp::": without any; or NULL */
+  const char *exclusive; /* "json|csv rp|count": options that exclude each other; or NULL */
+  scree_status (*run)(const struct cli_call *call, scree_error *error);
 } cli_verb;
 
 /* A table of options, and the verb's struct with their defaults. */
@@ -92,9 +113,9 @@ extern const cli_option cli_common_options[];
 extern const size_t cli_common_option_count;
 
 /* Parses words (without the verb) into the verb's struct, the common options and the inputs (an
- * array as long as words). Returns 0, or 2 after telling stderr what is wrong with which word. */
-int cli_parse(const cli_verb *verb, int word_count, char **words, void *options, cli_common *common,
-              const char **inputs, size_t *input_count);
+ * array as long as words). CLI_MISUSED after telling stderr what is wrong with which word. */
+scree_status cli_parse(const cli_verb *verb, int word_count, char **words, void *options,
+                       cli_common *common, const char **inputs, size_t *input_count);
 
 void cli_print_overview(FILE *stream);
 void cli_print_help(FILE *stream, const cli_verb *verb);
@@ -114,16 +135,16 @@ enum { CLI_PRINTABLE_BYTES = 4200 };
  * JSON and CSV keep names as they are. */
 const char *cli_printable(const char *text, char buffer[CLI_PRINTABLE_BYTES]);
 
-/* Prints "scree: message" on stderr; returns the exit code 1. */
-int cli_fail(const scree_error *error);
+/* Prints "scree: message" on stderr; returns CLI_TOLD. */
+scree_status cli_fail(const scree_error *error);
 /* "path: reason" as an error of that status, which it returns. */
 scree_status cli_refuse(scree_error *error, scree_status status, const char *path,
                         const char *reason);
 /* Puts the word, "standard input" for "-", in front of an error that does not name it; returns the
  * error's status. */
 scree_status cli_name_in_error(const char *word, scree_error *error);
-/* Says what is wrong with the call on stderr and how to get help; returns the exit code 2. */
-int cli_misuse(const cli_verb *verb, const char *format, ...) SCREE_PRINTF(2, 3);
+/* Says what is wrong with the call on stderr and how to get help; returns CLI_MISUSED. */
+scree_status cli_misuse(const cli_verb *verb, const char *format, ...) SCREE_PRINTF(2, 3);
 /* What to add where a text is no number: a word on a comma between digits, else "". */
 const char *cli_comma_hint(const char *text);
 
@@ -131,9 +152,8 @@ const char *cli_comma_hint(const char *text);
 bool cli_unit_from_text(const char *text, double *metres);
 /* 1e-3 to "mm"; "?" where it is none of ours. */
 const char *cli_unit_name(double metres);
-/* --size: "1200x900" to the pixels across and down of a picture. 0, or 2 after telling what is
- * wrong. */
-int cli_parse_size(const cli_verb *verb, const char *text, size_t *width, size_t *height);
+/* --size: "1200x900" to the pixels across and down of a picture, or CLI_MISUSED. */
+scree_status cli_parse_size(const cli_verb *verb, const char *text, size_t *width, size_t *height);
 /* What a word of so many ends in: "" of one, else "s". */
 const char *cli_plural(size_t count);
 /* A number, all of the text; false otherwise. Not locale-dependent: the program never sets one. */

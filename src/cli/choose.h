@@ -45,9 +45,10 @@ typedef struct choose_run {
   char note[CHOOSE_NOTE_BYTES]; /* what is to be said of all */
 } choose_run;
 
-/* The choice that meshes are written by. */
-const scree_pick *choose_default_pick(const choose_run *run, const scree_choice *choice);
-const scree_set_pick *choose_default_set_pick(const choose_run *run, const scree_set_choice *set);
+/* The run whose member it is. */
+static inline const choose_run *choose_run_of(const void *report) {
+  return (const choose_run *)((const char *)report - offsetof(choose_run, report));
+}
 
 /* The table and what to do, for people. */
 void choose_print(FILE *out, const choose_run *run);
@@ -65,5 +66,4 @@ scree_status choose_write_meshes(const choose_run *run, size_t index, const scre
                                  scree_error *error);
 /* Everything else: curves, figure, tables, the page. Then all of it is put where it was asked for,
  * or nothing where the call was cancelled before. */
-scree_status choose_write_reports(choose_run *run, const scree_choice_report *report,
-                                  scree_error *error);
+scree_status choose_write_reports(choose_run *run, scree_error *error);

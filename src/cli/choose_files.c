@@ -15,7 +15,9 @@
  * They are written into another folder and moved when all are there: who cancels finds none. What
  * an earlier choice left in the folder and this one has not goes with it, before the answer is
  * moved. */
+#include "base/ending.h"
 #include "base/file.h"
+#include "base/owned.h"
 #include "base/platform.h"
 #include "cli/choose.h"
 #include "cli/output.h"
@@ -27,12 +29,35 @@
 #include <errno.h>
 #include <string.h>
 
-static const char *const FIGURES[] = {"figure.png", "figure.svg", "figure.pdf", "figure.csv",
-                                      "figure.gnuplot"};
-enum { PICTURE_COUNT = 3, FIGURE_COUNT = 5 };
-static const char *const SINGLE_FILES[] = {"choice.csv", "choice.txt", "provenance.json",
-                                           "choice.json", "report.html"};
-enum { SINGLE_FILE_COUNT = 5 };
+/* choice.txt: what choose_print says. */
+static scree_status write_text(const void *report, const char *path, bool overwrite,
+                               scree_error *error) {
+  scree_output output;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
+  choose_print(output.stream, choose_run_of(report));
+  return scree_output_commit(&output, error);
+}
+
+static scree_status write_provenance(const void *report, const char *path, bool overwrite,
+                                     scree_error *error) {
+  const choose_run *run = choose_run_of(report);
+  return scree_provenance_write(&run->start, run->call->command_line, path, overwrite, error);
+}
+
+static scree_status write_page(const void *report, const char *path, bool overwrite,
+                               scree_error *error) {
+  const choose_run *run = choose_run_of(report);
+  return scree_page_write_named(run->stage.path, run->arguments->output, path, overwrite, error);
+}
+
+/* Figures, and then what a finished choice is known by: the page is made of the others. */
+static const scree_product PRODUCTS[] = {
+    {"figure.png", scree_choice_figure_write},     {"figure.svg", scree_choice_figure_write},
+    {"figure.pdf", scree_choice_figure_write},     {"figure.csv", scree_choice_figure_write},
+    {"figure.gnuplot", scree_choice_figure_write}, {"choice.csv", scree_choice_csv_write},
+    {"choice.json", scree_choice_json_write},      {"choice.txt", write_text},
+    {"provenance.json", write_provenance},         {"report.html", write_page}};
+enum { FIGURE_COUNT = 5, PRODUCT_COUNT = sizeof PRODUCTS / sizeof *PRODUCTS };
 static const char *const SUBFOLDERS[] = {"levels", "set"};
 /* What each object has, and how each such file begins. */
 static const struct {
@@ -77,35 +102,36 @@ static scree_status move_file(const choose_run *run, const char *before, const c
   return SCREE_OK;
 }
 
-/* A build without pictures leaves out those that come first. */
-static int first_figure(void) {
-  return scree_build_has(SCREE_BUILD_PICTURES) ? 0 : PICTURE_COUNT;
-}
-
 const char *choose_first_figure(void) {
-  return FIGURES[first_figure()];
+  size_t i = 0;
+  while (!scree_product_is_made(&PRODUCTS[i])) i++;
+  return PRODUCTS[i].name;
 }
 
 static bool in_set(const char *before) {
   return !strcmp(before, "set/");
 }
 
+static scree_status visit_products(const choose_run *run, size_t begin, size_t end,
+                                   visit_file *visit, scree_error *error) {
+  for (size_t i = begin; i < end; i++)
+    if (scree_product_is_made(&PRODUCTS[i])) SCREE_TRY(visit(run, "", PRODUCTS[i].name, "", error));
+  return SCREE_OK;
+}
+
 /* All files but those that a finished choice is known by. */
 static scree_status visit_parts(const choose_run *run, visit_file *visit, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (int i = first_figure(); i < FIGURE_COUNT && status == SCREE_OK; i++)
-    status = visit(run, "", FIGURES[i], "", error);
+  SCREE_TRY(visit_products(run, 0, FIGURE_COUNT, visit, error));
   for (size_t i = 0; i < run->count; i++)
-    for (int k = 0; k < OBJECT_FILE_COUNT && status == SCREE_OK; k++)
+    for (int k = 0; k < OBJECT_FILE_COUNT; k++)
       if (run->count > 1 || !in_set(OBJECT_FILES[k].before))
-        status =
-            visit(run, OBJECT_FILES[k].before, run->objects[i].name, OBJECT_FILES[k].after, error);
-  return status;
+        SCREE_TRY(
+            visit(run, OBJECT_FILES[k].before, run->objects[i].name, OBJECT_FILES[k].after, error));
+  return SCREE_OK;
 }
 
 static scree_status visit_answer(const choose_run *run, visit_file *visit, scree_error *error) {
-  for (int i = 0; i < SINGLE_FILE_COUNT; i++) SCREE_TRY(visit(run, "", SINGLE_FILES[i], "", error));
-  return SCREE_OK;
+  return visit_products(run, FIGURE_COUNT, PRODUCT_COUNT, visit, error);
 }
 
 /* ---- what an earlier choice left ---- */
@@ -143,18 +169,17 @@ static scree_status visit_stale(const choose_run *run, const char *name, visit_f
 static scree_status visit_earlier(const choose_run *run, visit_file *visit, scree_error *error) {
   static const char ending[] = ".levels";
   char path[CHOOSE_PATH_BYTES], name[CHOOSE_PATH_BYTES];
-  scree_status status = join_in(run->arguments->output, "levels", "", "", path, error);
-  scree_folder *entries = status == SCREE_OK ? scree_folder_open(path) : NULL;
-  for (const char *found; status == SCREE_OK && entries && (found = scree_folder_next(entries));) {
-    size_t length = strlen(found), end = sizeof ending - 1;
-    if (length <= end || strcmp(found + length - end, ending) != 0) continue;
-    status = join_in(path, found, "", "", name, error);
-    if (status != SCREE_OK || !begins_with(name, OBJECT_FILES[LEVELS_FILE].begin)) continue;
-    snprintf(name, sizeof name, "%.*s", (int)(length - end), found);
-    status = visit_stale(run, name, visit, error);
+  SCREE_TRY(join_in(run->arguments->output, "levels", "", "", path, error));
+  SCREE_CLEANUP(scree_folder_close_at) scree_folder *entries = scree_folder_open(path);
+  for (const char *found; entries && (found = scree_folder_next(entries));) {
+    size_t stem = strlen(found) - (sizeof ending - 1);
+    if (!scree_ends_with(found, ending) || stem == 0) continue;
+    SCREE_TRY(join_in(path, found, "", "", name, error));
+    if (!begins_with(name, OBJECT_FILES[LEVELS_FILE].begin)) continue;
+    snprintf(name, sizeof name, "%.*s", (int)stem, found);
+    SCREE_TRY(visit_stale(run, name, visit, error));
   }
-  if (entries) scree_folder_close(entries);
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status remove_file(const choose_run *run, const char *before, const char *name,
@@ -214,92 +239,56 @@ static scree_status put_in_place(choose_run *run, scree_error *error) {
 
 /* ---- the files ---- */
 
-/* One level of object `index` into `before`: path gets the mesh's, what it weighs lies beside it.
- */
+/* One level of object `index` into `before`, and what it weighs beside it. */
 static scree_status write_level(const choose_run *run, size_t index, const scree_curve *curve,
-                                size_t level_index, const char *before,
-                                char path[CHOOSE_PATH_BYTES], scree_error *error) {
-  const choose_object *object = &run->objects[index];
+                                size_t level_index, const char *before, scree_error *error) {
+  choose_object *object = &run->objects[index];
   scree_export_options options = scree_default_export_options();
-  char mass_path[CHOOSE_PATH_BYTES];
-  scree_mesh mesh = {0};
+  char path[CHOOSE_PATH_BYTES], mass_path[CHOOSE_PATH_BYTES];
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
   options.density = run->arguments->density;
   options.unit_m = run->arguments->source.unit;
   options.overwrite = run->arguments->overwrite;
   options.source = object->word;
   options.command_line = run->call->command_line;
   options.checksum = object->checksum;
-  scree_status status = join(run, before, object->name, ".stl", path, error);
-  if (status == SCREE_OK) status = join(run, before, object->name, ".mass.json", mass_path, error);
-  if (status == SCREE_OK) status = scree_curve_mesh(curve, level_index, &mesh, error);
-  if (status == SCREE_OK)
-    status = cli_check_rounded(&mesh, path, options.unit_m, NULL, NULL, error);
-  if (status == SCREE_OK)
-    status = scree_particle_export(&mesh, &options, path, mass_path, NULL, error);
+  SCREE_TRY(join(run, before, object->name, ".stl", path, error));
+  SCREE_TRY(join(run, before, object->name, ".mass.json", mass_path, error));
+  SCREE_TRY(scree_curve_mesh(curve, level_index, &mesh, error));
+  SCREE_TRY(cli_check_rounded(&mesh, path, options.unit_m, NULL, NULL, error));
+  SCREE_TRY(scree_particle_export(&mesh, &options, path, mass_path, NULL, error));
   double lost = cli_volume_lost(&mesh, path, options.unit_m);
-  if (status == SCREE_OK && lost >= CLI_NOTABLE_LOSS && !strstr(object->note, "single precision"))
-    cli_add_line(run->objects[index].note, sizeof object->note,
+  if (lost >= CLI_NOTABLE_LOSS && !strstr(object->note, "single precision"))
+    cli_add_line(object->note, sizeof object->note,
                  "An STL's single precision changes the volume by %.2g of it.", lost);
-  scree_mesh_free(&mesh);
-  return status;
+  return SCREE_OK;
 }
 
 scree_status choose_write_meshes(const choose_run *run, size_t index, const scree_curve *curve,
                                  const scree_choice *choice, const scree_set_choice *set,
                                  scree_error *error) {
   choose_object *object = &run->objects[index];
-  size_t level = choose_default_pick(run, choice)->level_index;
+  size_t level = scree_choice_pick(choice, run->report.rule)->level_index;
   char path[CHOOSE_PATH_BYTES];
-  scree_status status = write_level(run, index, curve, level, "", path, error);
-  if (status == SCREE_OK)
-    status = join_in(run->arguments->output, "", object->name, ".stl", object->mesh_path, error);
-  if (status == SCREE_OK) status = join(run, "levels/", object->name, ".levels", path, error);
-  if (status == SCREE_OK)
-    status = scree_levels_write(curve, choice, SCREE_LEVELS_BYTES / run->left, path,
-                                run->arguments->overwrite, error);
-  if (status != SCREE_OK || run->left < 2) return status;
-  double rp = choose_default_set_pick(run, set)->rp;
-  level = scree_curve_find(curve, scree_choice_target(rp, choice->triangle_count));
-  return write_level(run, index, curve, level, "set/", path, error);
+  SCREE_TRY(write_level(run, index, curve, level, "", error));
+  SCREE_TRY(join_in(run->arguments->output, "", object->name, ".stl", object->mesh_path, error));
+  SCREE_TRY(join(run, "levels/", object->name, ".levels", path, error));
+  SCREE_TRY(scree_levels_write(curve, choice, SCREE_LEVELS_BYTES / run->left, path,
+                               run->arguments->overwrite, error));
+  if (run->left < 2) return SCREE_OK;
+  const scree_set_pick *pick = run->report.rule == SCREE_RULE_ROBUST ? &set->robust : &set->paper;
+  level = scree_curve_find(curve, scree_choice_target(pick->rp, choice->triangle_count));
+  return write_level(run, index, curve, level, "set/", error);
 }
 
-/* choice.txt: what choose_print says. */
-static scree_status write_text(const choose_run *run, scree_error *error) {
-  char path[CHOOSE_PATH_BYTES];
-  scree_output output;
-  SCREE_TRY(join(run, "", "choice.txt", "", path, error));
-  SCREE_TRY(scree_output_open(path, run->arguments->overwrite, &output, error));
-  choose_print(output.stream, run);
-  return scree_output_commit(&output, error);
-}
-
-/* What is made of the other files, so the last. */
-static scree_status write_page(const choose_run *run, scree_error *error) {
-  char path[CHOOSE_PATH_BYTES];
-  bool overwrite = run->arguments->overwrite;
-  SCREE_TRY(write_text(run, error));
-  SCREE_TRY(join(run, "", "provenance.json", "", path, error));
-  SCREE_TRY(scree_provenance_write(&run->start, run->call->command_line, path, overwrite, error));
-  SCREE_TRY(join(run, "", "report.html", "", path, error));
-  return scree_page_write_named(run->stage.path, run->arguments->output, path, overwrite, error);
-}
-
-scree_status choose_write_reports(choose_run *run, const scree_choice_report *report,
-                                  scree_error *error) {
+scree_status choose_write_reports(choose_run *run, scree_error *error) {
   bool overwrite = run->arguments->overwrite;
   char path[CHOOSE_PATH_BYTES];
   for (size_t i = 0; i < run->count; i++) {
     SCREE_TRY(join(run, "", run->objects[i].name, ".curve.csv", path, error));
-    SCREE_TRY(scree_choice_curve_csv_write(&report->entries[i], path, overwrite, error));
+    SCREE_TRY(scree_choice_curve_csv_write(&run->report.entries[i], path, overwrite, error));
   }
-  for (int i = first_figure(); i < FIGURE_COUNT; i++) {
-    SCREE_TRY(join(run, "", FIGURES[i], "", path, error));
-    SCREE_TRY(scree_choice_figure_write(report, path, overwrite, error));
-  }
-  SCREE_TRY(join(run, "", "choice.csv", "", path, error));
-  SCREE_TRY(scree_choice_csv_write(report, path, overwrite, error));
-  SCREE_TRY(join(run, "", "choice.json", "", path, error));
-  SCREE_TRY(scree_choice_json_write(report, path, overwrite, error));
-  SCREE_TRY(write_page(run, error));
+  SCREE_TRY(scree_products_write(PRODUCTS, PRODUCT_COUNT, &run->report, run->stage.path, overwrite,
+                                 error));
   return put_in_place(run, error);
 }

@@ -15,6 +15,10 @@ typedef struct cli_clump_surface {
   size_t scan_triangle_count;
 } cli_clump_surface;
 
+static inline void cli_clump_surface_free(cli_clump_surface *surface) {
+  scree_mesh_free(&surface->mesh);
+}
+
 /* Loads, checks, repairs and decimates. Errors name the word. */
 scree_status cli_load_for_clump(const char *word, const cli_input_options *input,
                                 const scree_progress *progress, cli_clump_surface *surface,

@@ -1,27 +1,15 @@
 #include "cli/frames.h"
 
-#include <math.h>
-#include <stdlib.h>
+#include "base/array.h"
 
-static scree_status no_memory(scree_error *error) {
-  *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory"};
-  return error->status;
-}
+#include <math.h>
 
 void cli_frame_name(size_t index, const char *kind, char name[CLI_FRAME_NAME]) {
   snprintf(name, CLI_FRAME_NAME, "frame-%06zu%.32s.vtp", index, kind);
 }
 
 scree_status cli_frames_note(cli_frames *frames, double time, scree_error *error) {
-  if (frames->count == frames->capacity) {
-    size_t capacity = 2 * frames->capacity + 64;
-    double *times = realloc(frames->times, capacity * sizeof *times);
-    if (!times) return no_memory(error);
-    frames->times = times;
-    frames->capacity = capacity;
-  }
-  frames->times[frames->count++] = time;
-  return SCREE_OK;
+  return SCREE_PUSH(frames, time) ? SCREE_OK : scree_fail_memory(error, 0, "the times of frames");
 }
 
 /* Times are summed up as a world does, for the same bits. */
@@ -38,18 +26,14 @@ scree_status cli_frames_recall(cli_frames *frames, double interval, const scree_
 
 scree_status cli_frames_list(const cli_frames *frames, const char *kind, const char *path,
                              scree_error *error) {
+  typedef char frame_name[CLI_FRAME_NAME];
   size_t count = frames->count;
   if (count == 0) return SCREE_OK;
-  const char **files = malloc(count * sizeof *files);
-  char(*names)[CLI_FRAME_NAME] = malloc(count * sizeof *names);
-  bool room = files && names;
-  for (size_t i = 0; room && i < count; i++) {
+  SCREE_SCRATCH(const char *, files, count, error);
+  SCREE_SCRATCH(frame_name, names, count, error);
+  for (size_t i = 0; i < count; i++) {
     cli_frame_name(i, kind, names[i]);
     files[i] = names[i];
   }
-  scree_status status =
-      room ? scree_pvd_write(files, frames->times, count, path, true, error) : no_memory(error);
-  free(files);
-  free(names);
-  return status;
+  return scree_pvd_write(files, frames->items, count, path, true, error);
 }

@@ -4,7 +4,7 @@
 #include "base/error.h"
 
 typedef struct cli_frames {
-  double *times; /* s; free them */
+  double *items; /* the times, s; free them with scree_free */
   size_t count, capacity;
 } cli_frames;
 

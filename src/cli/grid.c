@@ -18,7 +18,7 @@ static bool split(const char *text, double numbers[3]) {
   return true;
 }
 
-int cli_parse_grid(const cli_verb *verb, const char *text, cli_grid *grid) {
+scree_status cli_parse_grid(const cli_verb *verb, const char *text, cli_grid *grid) {
   double n[3];
   if (!split(text, n) || !(n[0] >= 1e-12 && n[0] <= n[1] && n[1] <= 1) ||
       !(n[2] >= 1 && n[2] <= 1000) || n[2] != (double)(int)n[2])
@@ -27,5 +27,5 @@ int cli_parse_grid(const cli_verb *verb, const char *text, cli_grid *grid) {
         "--grid '%s': must be MIN:MAX:N with 1e-12 <= MIN <= MAX <= 1 and a whole N from 1 to 1000",
         text);
   *grid = (cli_grid){n[0], n[1], (int)n[2]};
-  return 0;
+  return SCREE_OK;
 }

@@ -9,13 +9,10 @@ typedef struct cli_grid {
 } cli_grid;
 
 #define CLI_GRID_DEFAULT "1e-5:1e-1:9"
-#define CLI_GRID_OPTION(type, field)                                                               \
-  {                                                                                                \
-    "grid", CLI_TEXT, offsetof(type, field), "MIN:MAX:N",                                          \
-        "Grid of Rp: from MIN upward with N points per factor of ten, as far as MAX, which "       \
-        "belongs to it only where a step meets it. Default: " CLI_GRID_DEFAULT ".",                \
-        0, 0, NULL                                                                                 \
-  }
+#define CLI_GRID_OPTION                                                                            \
+  CLI_ROW(CLI_TEXT, "grid", grid, "MIN:MAX:N",                                                     \
+          "Grid of Rp: from MIN upward with N points per factor of ten, as far as MAX, which "     \
+          "belongs to it only where a step meets it. Default: " CLI_GRID_DEFAULT ".")
 
-/* 0, or 2 after telling what is wrong with the text. */
-int cli_parse_grid(const cli_verb *verb, const char *text, cli_grid *grid);
+/* CLI_MISUSED after telling what is wrong with the text. */
+scree_status cli_parse_grid(const cli_verb *verb, const char *text, cli_grid *grid);

@@ -20,16 +20,16 @@ typedef struct cli_source {
 #define CLI_SOURCE_DEFAULTS                                                                        \
   { 1e-3, 0.27e-3, 0.02e-3, 1 }
 
-/* Their rows in the option table of a verb whose struct `type` has the member `source`. */
-#define CLI_SOURCE_OPTIONS(type)                                                                   \
-  CLI_ROW("unit", CLI_UNIT, offsetof(type, source.unit), "UNIT",                                   \
-          "The files' unit of length: m, cm, mm, um, inch, ft or km. Default: mm.", 0, 0, NULL),   \
-      CLI_ROW("resolution", CLI_LENGTH, offsetof(type, source.resolution), "LENGTH",               \
-              "Spacing of built-in samples. Default: 0.27mm.", 0.02e-3, 5e-3, NULL),               \
-      CLI_ROW("noise", CLI_LENGTH, offsetof(type, source.noise), "LENGTH",                         \
-              "Scanner noise of built-in samples. Default: 0.02mm.", 0, 2e-3, NULL),               \
-      CLI_ROW("sample-seed", CLI_COUNT, offsetof(type, source.seed), "N",                          \
-              "Seed of that noise. Default: 1.", 0, 1e15, NULL)
+/* Their rows in the option table of a verb whose struct has the member `source`. */
+#define CLI_SOURCE_OPTIONS                                                                         \
+  CLI_ROW(CLI_UNIT, "unit", source.unit, "UNIT",                                                   \
+          "The files' unit of length: m, cm, mm, um, inch, ft or km. Default: mm."),               \
+      CLI_RANGE_ROW(CLI_LENGTH, "resolution", source.resolution, "LENGTH", 0.02e-3, 5e-3,          \
+                    "Spacing of built-in samples. Default: 0.27mm."),                              \
+      CLI_RANGE_ROW(CLI_LENGTH, "noise", source.noise, "LENGTH", 0, 2e-3,                          \
+                    "Scanner noise of built-in samples. Default: 0.02mm."),                        \
+      CLI_RANGE_ROW(CLI_COUNT, "sample-seed", source.seed, "N", 0, 1e15,                           \
+                    "Seed of that noise. Default: 1.")
 
 /* What they do nothing without, among the verb's partners. */
 #define CLI_SAMPLE_PARTNERS "resolution:sample: noise:sample: sample-seed:sample:"

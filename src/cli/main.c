@@ -7,7 +7,6 @@
 #include "cli/terminal.h"
 #include "report/provenance.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 const cli_verb *cli_find_verb(const char *name) {
@@ -20,7 +19,7 @@ const cli_verb *cli_find_verb(const char *name) {
 static char *join_words(int count, char **words) {
   size_t size = 8;
   for (int i = 0; i < count; i++) size += 4 * strlen(words[i]) + 3;
-  char *line = malloc(size), *end = line;
+  char *line = scree_alloc(size, 1), *end = line;
   if (!line) return NULL;
   end += sprintf(end, "scree");
   for (int i = 1; i < count; i++) {
@@ -38,7 +37,7 @@ static char *join_words(int count, char **words) {
   return line;
 }
 
-static int unknown_verb(const char *word) {
+static scree_status unknown_verb(const char *word) {
   char hint[64];
   if (word[0] == '-') return cli_misuse(NULL, "unknown option '%s'; a verb comes first", word);
   cli_verb_hint(word, hint, sizeof hint);
@@ -46,10 +45,10 @@ static int unknown_verb(const char *word) {
 }
 
 /* scree help --man [VERB] and the like: what the build makes of the tables. */
-static int print_manual(const char *kind, const char *word) {
+static scree_status print_manual(const char *kind, const char *word) {
   const cli_verb *verb = word ? cli_find_verb(word) : NULL;
   if (!strcmp(kind, "--completion")) {
-    if (cli_print_completion(stdout, word ? word : "bash")) return 0;
+    if (cli_print_completion(stdout, word ? word : "bash")) return SCREE_OK;
     return cli_misuse(NULL, "--completion %s: must be bash, zsh or fish", word);
   }
   if (word && !verb) return unknown_verb(word);
@@ -61,13 +60,13 @@ static int print_manual(const char *kind, const char *word) {
     cli_print_options(stdout);
   else
     return cli_misuse(NULL, "unknown option '%s' of help", kind);
-  return 0;
+  return SCREE_OK;
 }
 
-static int help(int word_count, char **words) {
+static scree_status help(int word_count, char **words) {
   if (word_count == 0) {
     cli_print_overview(stdout);
-    return 0;
+    return SCREE_OK;
   }
   if (!strncmp(words[0], "--", 2)) return print_manual(words[0], word_count > 1 ? words[1] : NULL);
   if (!strcmp(words[0], "help") || !strcmp(words[0], "version")) {
@@ -77,12 +76,12 @@ static int help(int word_count, char **words) {
         is_help
             ? "Lists the verbs, or shows what a verb does and its options."
             : "Shows the version, which parts this build has, and on what worlds can be stepped.");
-    return 0;
+    return SCREE_OK;
   }
   const cli_verb *verb = cli_find_verb(words[0]);
   if (!verb) return unknown_verb(words[0]);
   cli_print_help(stdout, verb);
-  return 0;
+  return SCREE_OK;
 }
 
 /* What it cost, on stderr. */
@@ -94,34 +93,29 @@ static void tell_costs(const scree_work_start *start) {
           scree_threads(), (double)scree_memory_peak() / 1e6);
 }
 
-static int run(const cli_verb *verb, int argc, char **argv) {
+static scree_status choose_backend(const cli_verb *verb, const char *name, scree_error *error) {
+  scree_status status = name ? scree_set_backend(name, error) : SCREE_OK;
+  return status == SCREE_BAD_ARGUMENT ? cli_misuse(verb, "%s", error->message) : status;
+}
+
+static scree_status run(const cli_verb *verb, int argc, char **argv, scree_error *error) {
   const scree_work_start start = scree_work_started();
   _Alignas(max_align_t) unsigned char options[CLI_OPTIONS_BYTES];
   cli_common common = {0};
   memcpy(options, verb->defaults, verb->options_size);
-  const char **inputs = malloc((size_t)argc * sizeof *inputs);
-  char *command_line = join_words(argc, argv);
+  SCREE_SCRATCH(const char *, inputs, (size_t)argc, error);
+  SCREE_CLEANUP(scree_free_at) char *command_line = join_words(argc, argv);
+  if (!command_line) return scree_fail_memory(error, 0, "the words of the call");
   size_t input_count = 0;
-  int result = 1;
-  if (!inputs || !command_line) {
-    fputs("scree: out of memory\n", stderr);
-    goto done;
-  }
-  result = cli_parse(verb, argc - 2, argv + 2, options, &common, inputs, &input_count);
-  if (result) goto done;
+  SCREE_TRY(cli_parse(verb, argc - 2, argv + 2, options, &common, inputs, &input_count));
   if (common.help) {
     cli_print_help(stdout, verb);
-    goto done;
+    return SCREE_OK;
   }
   scree_set_threads((int)common.threads);
   scree_set_memory_limit(common.max_memory);
   cli_input_obeys(&common);
-  scree_error error;
-  if (common.backend && scree_set_backend(common.backend, &error)) {
-    result = error.status == SCREE_BAD_ARGUMENT ? cli_misuse(verb, "%s", error.message)
-                                                : cli_fail(&error);
-    goto done;
-  }
+  SCREE_TRY(choose_backend(verb, common.backend, error));
   cli_progress_kind shown = common.progress             ? CLI_PROGRESS_LINE
                             : common.quiet              ? CLI_PROGRESS_NONE
                             : scree_is_terminal(stderr) ? CLI_PROGRESS_LINE
@@ -129,15 +123,13 @@ static int run(const cli_verb *verb, int argc, char **argv) {
   cli_call call = {verb,         options,           inputs,         input_count,
                    common.quiet, common.max_memory, common.backend, cli_terminal_start(shown),
                    command_line};
-  result = verb->run(&call);
-  if (result) cli_remove_empty_folders();
+  scree_status status = verb->run(&call, error);
+  if (status != SCREE_OK && status < CLI_TOLD) status = cli_fail(error);
+  if (status != SCREE_OK) cli_remove_empty_folders();
   cli_terminal_end();
   if (common.verbose) tell_costs(&start);
   if (cli_interrupted()) cli_terminal_reraise();
-done:
-  free(command_line);
-  free(inputs);
-  return result;
+  return status;
 }
 
 static void print_backends(void) {
@@ -159,28 +151,29 @@ static void print_version(bool parts) {
   if (parts) print_backends();
 }
 
-static int act(int argc, char **argv) {
+static scree_status act(int argc, char **argv, scree_error *error) {
   if (argc < 2) {
     cli_print_overview(stderr);
-    return 2;
+    return CLI_MISUSED;
   }
   const char *word = argv[1];
   if (!strcmp(word, "help") || !strcmp(word, "--help") || !strcmp(word, "-h"))
     return help(argc - 2, argv + 2);
   if (!strcmp(word, "version") || !strcmp(word, "--version")) {
     print_version(*word != '-');
-    return 0;
+    return SCREE_OK;
   }
   const cli_verb *verb = cli_find_verb(word);
   if (!verb && !strcmp(word, "study") && !scree_build_has(SCREE_BUILD_STUDY))
     return cli_misuse(NULL, "this build of scree has no studies (SCREE_STUDY=OFF)");
-  if (!verb) return unknown_verb(word);
-  return run(verb, argc, argv);
+  return verb ? run(verb, argc, argv, error) : unknown_verb(word);
 }
 
 int main(int argc, char **argv) {
+  scree_error error;
   scree_program_begin(&argc, &argv);
-  int result = act(argc, argv);
-  if (result != 0) return result;
-  return cli_finish_printing() ? 0 : 1;
+  scree_status status = act(argc, argv, &error);
+  if (status == CLI_MISUSED) return 2;
+  if (status != SCREE_OK && status != CLI_TOLD) cli_fail(&error);
+  return status == SCREE_OK && cli_finish_printing() ? 0 : 1;
 }

@@ -65,14 +65,14 @@ static bool says(const char *path, cli_content content) {
   return cli_has_ending(path, content == CLI_PICTURE ? ".png" : ".vtp");
 }
 
-int cli_check_ending(const cli_verb *verb, const char *path, cli_content content) {
+scree_status cli_check_ending(const cli_verb *verb, const char *path, cli_content content) {
   static const struct {
     const char *what, *endings;
   } contents[] = {[CLI_MESH] = {"mesh", ".stl, .ply, .obj, .off or .3mf"},
                   [CLI_PICTURE] = {"picture", ".png"},
                   [CLI_VTP] = {"ParaView file", ".vtp"},
                   [CLI_PAGE] = {"page", ".html"}};
-  if (says(path, content)) return 0;
+  if (says(path, content)) return SCREE_OK;
   return cli_misuse(verb, "%s: the name of a %s must end in %s", path, contents[content].what,
                     contents[content].endings);
 }

@@ -28,32 +28,30 @@ typedef struct found {
   scree_outline outline;
 } found;
 
+static void free_found(found *f) {
+  scree_outline_free(&f->outline);
+}
+
 static scree_status measure_scan(const cli_call *call, const cli_measured_pile *what, found *f,
                                  scree_error *error) {
   const cli_source source = {.unit = what->unit, .resolution = 0.27e-3, .seed = 1};
   cli_input_options input = cli_source_options(&source);
-  scree_height_field field;
-  scree_scan scan;
+  SCREE_CLEANUP(scree_height_field_free) scree_height_field field = {0};
+  SCREE_CLEANUP(scree_scan_free) scree_scan scan = {0};
   input.remarked = true; /* a heap is larger than a particle */
   SCREE_TRY(cli_load(call->inputs[0], &input, call->progress, &scan, error));
-  scree_status status = scree_height_field_scan(&scan.mesh, what->cell, &f->ground, &field, error);
-  scree_scan_free(&scan);
-  if (status != SCREE_OK) return status;
-  status = scree_repose_measure(&field, &what->how, &f->repose, error);
-  if (status == SCREE_OK && what->csv)
-    status = scree_outline_of_field(&field, f->repose.axis[0], &f->outline, error);
-  scree_height_field_free(&field);
-  return status;
+  SCREE_TRY(scree_height_field_scan(&scan.mesh, what->cell, &f->ground, &field, error));
+  SCREE_TRY(scree_repose_measure(&field, &what->how, &f->repose, error));
+  return what->csv ? scree_outline_of_field(&field, f->repose.axis[0], &f->outline, error)
+                   : SCREE_OK;
 }
 
 static scree_status measure_picture(const cli_call *call, const cli_measured_pile *what, found *f,
                                     scree_error *error) {
-  scree_image image;
+  SCREE_CLEANUP(scree_image_free) scree_image image = {0};
   SCREE_TRY(scree_image_read_png(call->inputs[0], &image, error));
-  scree_status status = scree_outline_trace(image.pixels, image.width, image.height,
-                                            what->scale / (double)image.width, &f->outline, error);
-  scree_image_free(&image);
-  return status;
+  return scree_outline_trace(image.pixels, image.width, image.height,
+                             what->scale / (double)image.width, &f->outline, error);
 }
 
 static scree_status find(const cli_call *call, const cli_measured_pile *what, found *f,
@@ -85,21 +83,18 @@ static void print_found(const cli_measured_pile *what, const found *f) {
   cli_print_repose(stdout, &f->repose);
 }
 
-int cli_measure_pile(const cli_call *call, const cli_measured_pile *what) {
+scree_status cli_measure_pile(const cli_call *call, const cli_measured_pile *what,
+                              scree_error *error) {
   static const char *const kinds[] = {"scene", "scan", "outline", "picture"};
-  found f = {0};
-  scree_error error;
-  scree_status status = find(call, what, &f, &error);
-  if (status != SCREE_OK) cli_name_in_error(call->inputs[0], &error);
+  SCREE_CLEANUP(free_found) found f = {.ground.share = 0};
+  if (find(call, what, &f, error) != SCREE_OK) return cli_name_in_error(call->inputs[0], error);
   const scree_heap_entry entry = {
       call->inputs[0], kinds[what->kind], call->command_line,
       &f.repose,       &what->how,        what->kind == CLI_PILE_SCAN ? &f.ground : NULL};
-  if (status == SCREE_OK && what->json)
-    status = scree_heap_json_write(&entry, "-", true, &error);
-  else if (status == SCREE_OK && what->csv)
+  if (what->json) return scree_heap_json_write(&entry, "-", true, error);
+  if (what->csv)
     print_outline(&f.outline);
-  else if (status == SCREE_OK)
+  else
     print_found(what, &f);
-  scree_outline_free(&f.outline);
-  return status == SCREE_OK ? 0 : cli_fail(&error);
+  return SCREE_OK;
 }

@@ -22,5 +22,6 @@ typedef struct cli_measured_pile {
   bool json, csv;
 } cli_measured_pile;
 
-/* Measures and prints it; the exit code. */
-int cli_measure_pile(const cli_call *call, const cli_measured_pile *what);
+/* Measures and prints it. */
+scree_status cli_measure_pile(const cli_call *call, const cli_measured_pile *what,
+                              scree_error *error);

@@ -1,6 +1,8 @@
 /* One call: its words as shapes, the file of its template with what options set, its levels, and a
  * run at each. */
 #include "cli/pour.h"
+#include "base/owned.h"
+#include "base/path.h"
 #include "base/platform.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
@@ -15,12 +17,13 @@ typedef struct level_result {
   double triangles, coordination, seconds;
 } level_result;
 
-enum { MOST_LEVELS = 40, LEVEL_BYTES = 40, NAME_BYTES = 4096, PATH_BYTES = 4200 };
+enum { MOST_LEVELS = 40, LEVEL_BYTES = 40, NAME_BYTES = 4096 };
 
 typedef struct cli_pour {
   const cli_call *call;
-  const cli_pour_kind *kind;
   const cli_pour_arguments *arguments;
+  const char *template_name;
+  bool states; /* frames can be measured again */
   scree_work_start start;
   scree_scene_file *file;
   scree_shape_store *store;
@@ -30,8 +33,14 @@ typedef struct cli_pour {
   char names[MOST_LEVELS + 1][LEVEL_BYTES];  /* of folders and in tables */
   size_t level_count;
   level_result results[MOST_LEVELS + 1];
-  scree_error error;
+  scree_error *error;
 } cli_pour;
+
+static void free_pour(cli_pour *r) {
+  scree_shape_store_free(r->store);
+  cli_poured_free(&r->poured);
+  scree_scene_file_free(r->file);
+}
 
 /* ---- words ---- */
 
@@ -41,7 +50,7 @@ static bool is_known(const char *name) {
 }
 
 /* "phone.stl=30": the name, and the count behind the last '='. A file may have a name like that. */
-static int read_count(const cli_pour *r, const char *word, char *name, double *count) {
+static scree_status read_count(const cli_pour *r, const char *word, char *name, double *count) {
   const char *equals = strrchr(word, '='), *digits = equals ? equals + 1 : "";
   bool counted = *digits && digits[strspn(digits, "0123456789")] == 0;
   size_t length = equals ? (size_t)(equals - word) : strlen(word);
@@ -51,65 +60,56 @@ static int read_count(const cli_pour *r, const char *word, char *name, double *c
   snprintf(name, NAME_BYTES, "%.*s", (int)length, word);
   if (equals && !counted && (scree_path_exists(word) || !is_known(name))) {
     snprintf(name, NAME_BYTES, "%s", word);
-    return 0;
+    return SCREE_OK;
   }
-  if (!equals) return 0;
+  if (!equals) return SCREE_OK;
   *count = counted ? strtod(digits, NULL) : 0;
-  if (*count >= 1 && *count <= 1e7) return 0;
+  if (*count >= 1 && *count <= 1e7) return SCREE_OK;
   return cli_misuse(r->call->verb,
                     "%s: the count behind '=' must be a whole number from 1 to 10000000", word);
 }
 
-static int check_sphere(const cli_pour *r, const char *word, const char *name) {
+static scree_status check_sphere(const cli_pour *r, const char *word, const char *name) {
   double diameter;
   char *unit = NULL;
-  if (strncmp(name, "sphere:", 7) != 0) return 0;
+  if (strncmp(name, "sphere:", 7) != 0) return SCREE_OK;
   bool has_unit = strtod(name + 7, &unit) > 0 && *unit;
-  if (has_unit && cli_length_from_text(name + 7, &diameter) && diameter > 0) return 0;
+  if (has_unit && cli_length_from_text(name + 7, &diameter) && diameter > 0) return SCREE_OK;
   return cli_misuse(r->call->verb, "%s: not a sphere such as sphere:40mm", word);
 }
 
 /* Words without their counts into names; all have one, or none has. */
-static int read_words(cli_pour *r, const char **words, size_t word_count, char (*names)[NAME_BYTES],
-                      double *counts) {
+static scree_status read_words(cli_pour *r, const char **words, size_t word_count,
+                               char (*names)[NAME_BYTES], double *counts) {
   size_t counted = 0;
-  int code = 0;
-  for (size_t i = 0; code == 0 && i < word_count; i++) {
-    code = read_count(r, words[i], names[i], &counts[i]);
-    if (code == 0) code = check_sphere(r, words[i], names[i]);
+  for (size_t i = 0; i < word_count; i++) {
+    SCREE_TRY(read_count(r, words[i], names[i], &counts[i]));
+    SCREE_TRY(check_sphere(r, words[i], names[i]));
     words[i] = names[i];
     counted += counts[i] > 0;
     r->particles += counts[i];
   }
-  if (code == 0 && counted > 0 && counted < word_count)
+  if (counted > 0 && counted < word_count)
     return cli_misuse(r->call->verb, "%zu of %zu shapes have =COUNT: all need one, or none",
                       counted, word_count);
-  if (code || word_count == 0) return code;
-  scree_status status =
-      cli_make_poured(words, counted ? counts : NULL, word_count, &r->poured, &r->error);
-  return status == SCREE_OK ? 0 : cli_fail(&r->error);
+  return cli_make_poured(words, counted ? counts : NULL, word_count, &r->poured, r->error);
 }
 
 /* Those of --samples, then those of the call. */
-static int take_words(cli_pour *r) {
+static scree_status take_words(cli_pour *r) {
+  typedef char word_name[NAME_BYTES];
   size_t samples = r->arguments->samples ? SCREE_SAMPLE_DEVICES : 0,
          count = samples + r->call->input_count;
-  char sample_words[SCREE_SAMPLE_DEVICES][32], (*names)[NAME_BYTES];
-  const char **words = calloc(count + 1, sizeof *words);
-  double *counts = calloc(count + 1, sizeof *counts);
-  names = calloc(count + 1, sizeof *names);
-  bool room = words && counts && names;
-  for (size_t i = 0; room && i < count; i++) {
+  char sample_words[SCREE_SAMPLE_DEVICES][32];
+  SCREE_SCRATCH(const char *, words, count, r->error);
+  SCREE_SCRATCH(double, counts, count, r->error);
+  SCREE_SCRATCH(word_name, names, count, r->error);
+  for (size_t i = 0; i < count; i++) {
     if (i < samples)
       snprintf(sample_words[i], sizeof *sample_words, "sample:%s", scree_sample_name(i));
     words[i] = i < samples ? sample_words[i] : r->call->inputs[i - samples];
   }
-  if (!room) cli_refuse(&r->error, SCREE_OUT_OF_MEMORY, "shapes", "out of memory");
-  int code = room ? read_words(r, words, count, names, counts) : cli_fail(&r->error);
-  free(names);
-  free(counts);
-  free(words);
-  return code;
+  return count ? read_words(r, words, count, names, counts) : SCREE_OK;
 }
 
 /* ---- levels ---- */
@@ -164,7 +164,7 @@ static bool is_level_name(const char *name) {
          (!strncmp(name, "clump-", 6) && cli_real_from_text(name + 6, &rp));
 }
 
-static int take_levels(cli_pour *r) {
+static scree_status take_levels(cli_pour *r) {
   const cli_pour_arguments *a = r->arguments;
   if (a->rp && !parse_levels(r, a->rp))
     return cli_misuse(r->call->verb,
@@ -174,59 +174,49 @@ static int take_levels(cli_pour *r) {
   if (a->spheres) snprintf(r->levels[r->level_count++], LEVEL_BYTES, "spheres");
   if (r->level_count == 0) r->level_count = 1;
   for (size_t i = 0; i < r->level_count; i++) name_level(r, i);
-  return 0;
+  return SCREE_OK;
 }
 
 /* ---- the scene ---- */
 
 /* That of the checkpoint which a call without shapes goes on from. */
 static scree_status read_checkpoint(cli_pour *r, const char *path) {
-  scree_scene *scene;
+  SCREE_OWNED(scree_scene, scene);
   if (!scree_path_exists(path))
-    return cli_refuse(&r->error, SCREE_IO, path, "no checkpoint to go on from");
-  SCREE_TRY(scree_scene_load(path, &scene, &r->error));
+    return cli_refuse(r->error, SCREE_IO, path, "no checkpoint to go on from");
+  SCREE_TRY(scree_scene_load(path, &scene, r->error));
   const char *text = scree_scene_text(scene);
-  scree_status status = scree_scene_file_parse(text, strlen(text), path, &r->file, &r->error);
-  scree_scene_free(scene);
-  return status;
+  return scree_scene_file_parse(text, strlen(text), path, &r->file, r->error);
 }
 
-static int read_base(cli_pour *r) {
+static scree_status read_base(cli_pour *r) {
   const cli_pour_arguments *a = r->arguments;
   const char *preset = a->preset,
              *usual = ((const cli_pour_arguments *)r->call->verb->defaults)->preset;
-  bool alone = !r->poured.count && a->resume && !a->config && preset == usual;
-  scree_status status = SCREE_OK;
-  if (alone) {
-    char path[PATH_BYTES];
-    snprintf(path, sizeof path, "%.4100s/checkpoint.scree", a->output);
-    status = read_checkpoint(r, path);
-  } else if (a->config) {
-    status =
-        scree_scene_file_read_over(a->config, r->kind->template_name, preset, &r->file, &r->error);
-  } else {
-    status = scree_scene_file_template(r->kind->template_name, &r->file, &r->error);
-    if (status == SCREE_OK && preset &&
-        scree_scene_file_set(r->file, "preset", preset, &r->error) != SCREE_OK)
-      return cli_misuse(r->call->verb, "--preset: %s", r->error.message);
-  }
-  return status == SCREE_OK ? 0 : cli_fail(&r->error);
+  if (!r->poured.count && a->scene.resume && !a->config && preset == usual)
+    return read_checkpoint(r, SCREE_PATH_IN(a->scene.output, "checkpoint.scree"));
+  if (a->config)
+    return scree_scene_file_read_over(a->config, r->template_name, preset, &r->file, r->error);
+  SCREE_TRY(scree_scene_file_template(r->template_name, &r->file, r->error));
+  if (preset && scree_scene_file_set(r->file, "preset", preset, r->error) != SCREE_OK)
+    return cli_misuse(r->call->verb, "--preset: %s", r->error->message);
+  return SCREE_OK;
 }
 
 static scree_status set_number(cli_pour *r, const char *field, double value, bool scans) {
   char text[CLI_NUMBER_BYTES];
   snprintf(text, sizeof text, "%.17g", value);
   if (value == 0) return SCREE_OK;
-  return scans ? cli_set_scans(r->file, &r->poured, field, text, &r->error)
-               : scree_scene_file_set(r->file, field, text, &r->error);
+  return scans ? cli_set_scans(r->file, &r->poured, field, text, r->error)
+               : scree_scene_file_set(r->file, field, text, r->error);
 }
 
 static scree_status pour_words(cli_pour *r) {
   const cli_pour_arguments *a = r->arguments;
   if (!r->poured.count) return SCREE_OK;
-  SCREE_TRY(cli_pour_shapes(r->file, &r->poured, &a->source, a->no_repair, &r->error));
+  SCREE_TRY(cli_pour_shapes(r->file, &r->poured, &a->source, a->no_repair, r->error));
   if (a->method == SCREE_METHOD_QECD)
-    SCREE_TRY(cli_set_scans(r->file, &r->poured, "method", "qecd", &r->error));
+    SCREE_TRY(cli_set_scans(r->file, &r->poured, "method", "qecd", r->error));
   SCREE_TRY(set_number(r, "triangles", (double)a->triangles, true));
   SCREE_TRY(set_number(r, "clump", (double)a->clump, true));
   return set_number(r, "particles", r->particles, false);
@@ -236,13 +226,13 @@ static scree_status pour_words(cli_pour *r) {
 static scree_status set_level(cli_pour *r, size_t index) {
   const char *level = r->levels[index];
   if (!*level || !r->poured.count) return SCREE_OK;
-  SCREE_TRY(cli_set_scans(r->file, &r->poured, "rp", level, &r->error));
+  SCREE_TRY(cli_set_scans(r->file, &r->poured, "rp", level, r->error));
   for (size_t i = 0; i < r->poured.count; i++) {
     char field[200];
     if (strcmp(r->poured.shapes[i].kind, "clump") != 0) continue;
     snprintf(field, sizeof field, "shapes.%s.rp", r->poured.shapes[i].name);
     SCREE_TRY(
-        scree_scene_file_set(r->file, field, strcmp(level, "spheres") ? "scan" : level, &r->error));
+        scree_scene_file_set(r->file, field, strcmp(level, "spheres") ? "scan" : level, r->error));
   }
   return SCREE_OK;
 }
@@ -257,39 +247,33 @@ static unsigned views_of(int view) {
 }
 
 static cli_scene_run run_of(cli_pour *r, size_t level, char folder[NAME_BYTES]) {
-  const cli_pour_arguments *a = r->arguments;
+  const cli_scene_options *o = &r->arguments->scene;
   bool several = r->level_count > 1;
   const char *name = r->names[level];
-  snprintf(folder, NAME_BYTES, "%.4000s%s%s", a->output ? a->output : "", several ? "/" : "",
+  snprintf(folder, NAME_BYTES, "%.4000s%s%s", o->output ? o->output : "", several ? "/" : "",
            several ? name : "");
   return (cli_scene_run){.call = r->call,
+                         .options = o,
                          .start = r->start,
                          .file = r->file,
-                         .output = a->output ? folder : NULL,
+                         .output = o->output ? folder : NULL,
                          .store = r->store,
-                         .rays = a->rays,
-                         .views = views_of(a->view),
-                         .resume = a->resume,
-                         .overwrite = a->force,
-                         .json = a->json,
-                         .no_picture = a->no_picture,
-                         .states = r->kind->states,
+                         .views = views_of(r->arguments->view),
+                         .states = r->states,
                          .common_page = several,
                          .name = several ? name : NULL};
 }
 
 /* Refuses what a run that begins would refuse, before anything is written. */
 static scree_status check_level(cli_pour *r, size_t level) {
-  char folder[NAME_BYTES], checkpoint[PATH_BYTES];
+  char folder[NAME_BYTES];
   const cli_scene_run run = run_of(r, level, folder);
-  scree_scene *scene;
-  snprintf(checkpoint, sizeof checkpoint, "%s/checkpoint.scree", folder);
-  if (run.resume && run.output && scree_path_exists(checkpoint)) return SCREE_OK;
-  scree_status status = set_level(r, level);
-  if (status == SCREE_OK)
-    status = scree_scene_create_from(r->file, r->store, r->call->progress, &scene, &r->error);
-  if (status == SCREE_OK) scree_scene_free(scene);
-  return status;
+  SCREE_OWNED(scree_scene, scene);
+  if (run.options->resume && run.output &&
+      scree_path_exists(SCREE_PATH_IN(folder, "checkpoint.scree")))
+    return SCREE_OK;
+  SCREE_TRY(set_level(r, level));
+  return scree_scene_create_from(r->file, r->store, r->call->progress, &scene, r->error);
 }
 
 static double mean_triangles(const scree_scene *scene) {
@@ -305,26 +289,25 @@ static double mean_triangles(const scree_scene *scene) {
 
 static scree_status run_level(cli_pour *r, size_t level) {
   char folder[NAME_BYTES], shown[2][CLI_PRINTABLE_BYTES];
-  cli_scene_run run = run_of(r, level, folder);
+  SCREE_CLEANUP(cli_scene_run_free) cli_scene_run run = run_of(r, level, folder);
   level_result *result = &r->results[level];
   scree_observation o;
-  scree_status status = set_level(r, level);
-  if (status == SCREE_OK) status = cli_run_scene(&run, &r->error);
-  if (status == SCREE_OK && r->level_count > 1) {
+  SCREE_TRY(set_level(r, level));
+  SCREE_TRY(cli_run_scene(&run, r->error));
+  if (r->level_count > 1) {
     scree_world_observe(scree_scene_view(run.scene), &o);
     result->coordination = o.coordination;
     result->seconds = scree_scene_get_costs(run.scene).wall_seconds;
     result->triangles = mean_triangles(run.scene);
     result->is_pile = scree_scene_pile_name(run.scene, 0) != NULL;
     if (result->is_pile)
-      status = scree_scene_measure_pile(run.scene, 0, NULL, &result->pile, &r->error);
+      SCREE_TRY(scree_scene_measure_pile(run.scene, 0, NULL, &result->pile, r->error));
   }
-  if (status == SCREE_OK && !run.json && run.output)
+  if (!run.options->json && run.output)
     printf("  look at           %s/report.html; result.json and series.csv lie in %s\n",
-           cli_printable(r->arguments->output, shown[0]), cli_printable(folder, shown[1]));
+           cli_printable(run.options->output, shown[0]), cli_printable(folder, shown[1]));
   cli_flush();
-  cli_scene_run_free(&run);
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- all levels ---- */
@@ -349,86 +332,81 @@ static void print_table(const cli_pour *r) {
 
 /* What an earlier call left, of one level or of several: a page of the folder would show it. */
 static scree_status clear_folders(cli_pour *r) {
-  const char *output = r->arguments->output;
-  char path[PATH_BYTES];
-  scree_status status = cli_clear_scene_output(r->call, output, &r->error);
-  scree_folder *entries = status == SCREE_OK ? scree_folder_open(output) : NULL;
-  for (const char *name; status == SCREE_OK && entries && (name = scree_folder_next(entries));) {
+  const char *output = r->arguments->scene.output;
+  SCREE_TRY(cli_clear_scene_output(r->call, output, r->error));
+  SCREE_CLEANUP(scree_folder_close_at) scree_folder *entries = scree_folder_open(output);
+  for (const char *name; entries && (name = scree_folder_next(entries));) {
     scree_path_info info;
-    snprintf(path, sizeof path, "%.3900s/%.255s", output, name);
+    const char *path = SCREE_PATH_IN(output, name);
     if (is_level_name(name) && scree_path_look(path, &info) && info.kind == SCREE_PATH_FOLDER)
-      status = cli_clear_scene_output(r->call, path, &r->error);
+      SCREE_TRY(cli_clear_scene_output(r->call, path, r->error));
   }
-  if (entries) scree_folder_close(entries);
-  return status;
+  return SCREE_OK;
 }
 
 /* Whether the folders can be written to, before scans are read and decimated. */
 static scree_status check_folders(cli_pour *r) {
-  const cli_pour_arguments *a = r->arguments;
-  char path[PATH_BYTES], folder[NAME_BYTES];
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < r->level_count; i++) {
+  const cli_scene_options *o = &r->arguments->scene;
+  char folder[NAME_BYTES];
+  for (size_t i = 0; i < r->level_count; i++) {
     const cli_scene_run run = run_of(r, i, folder);
-    status = cli_check_scene_output(&run, &r->error);
+    SCREE_TRY(cli_check_scene_output(&run, r->error));
   }
-  if (status != SCREE_OK || r->level_count < 2 || a->resume) return status;
-  snprintf(path, sizeof path, "%.4100s/report.html", a->output);
-  return cli_check_output(r->call, path, a->force, &r->error);
+  if (r->level_count < 2 || o->resume) return SCREE_OK;
+  return cli_check_output(r->call, SCREE_PATH_IN(o->output, "report.html"), o->overwrite, r->error);
 }
 
 static scree_status run_all(cli_pour *r) {
-  const cli_pour_arguments *a = r->arguments;
-  scree_status status = scree_shape_store_create(&r->store, &r->error);
-  if (status == SCREE_OK && a->output) status = check_folders(r);
-  for (size_t i = 0; status == SCREE_OK && i < r->level_count; i++) status = check_level(r, i);
+  const cli_scene_options *o = &r->arguments->scene;
+  SCREE_TRY(scree_shape_store_create(&r->store, r->error));
+  if (o->output) SCREE_TRY(check_folders(r));
+  for (size_t i = 0; i < r->level_count; i++) SCREE_TRY(check_level(r, i));
   cli_terminal_end();
-  if (status == SCREE_OK && a->output && a->force && !a->resume) status = clear_folders(r);
-  for (size_t i = 0; status == SCREE_OK && i < r->level_count; i++) status = run_level(r, i);
-  if (status != SCREE_OK || r->level_count < 2) return status;
-  if (!a->json) print_table(r);
-  char path[PATH_BYTES];
-  snprintf(path, sizeof path, "%.4100s/report.html", a->output ? a->output : "");
-  return a->output ? scree_page_write(&a->output, 1, path, true, &r->error) : SCREE_OK;
+  if (o->output && o->overwrite && !o->resume) SCREE_TRY(clear_folders(r));
+  for (size_t i = 0; i < r->level_count; i++) SCREE_TRY(run_level(r, i));
+  if (r->level_count < 2) return SCREE_OK;
+  if (!o->json) print_table(r);
+  if (!o->output) return SCREE_OK;
+  return scree_page_write(&o->output, 1, SCREE_PATH_IN(o->output, "report.html"), true, r->error);
 }
 
 /* ---- the call ---- */
 
-static int check_call(const cli_pour *r) {
+static scree_status check_call(const cli_pour *r) {
   const cli_pour_arguments *a = r->arguments;
-  const cli_verb *verb = r->call->verb;
-  if (!r->call->input_count && !a->samples && !(a->resume && a->output) && !a->print)
-    return cli_misuse(verb, "needs a SHAPE, or --samples, or --resume with -o DIR");
-  if (a->resume && !a->output) return cli_misuse(verb, "--resume needs -o DIR");
-  return a->rp && a->triangles ? cli_misuse(verb, "-r and -n exclude each other") : 0;
+  const cli_scene_options *o = &a->scene;
+  if (!r->call->input_count && !a->samples && !(o->resume && o->output) && !o->print)
+    return cli_misuse(r->call->verb, "needs a SHAPE, or --samples, or --resume with -o DIR");
+  if (o->resume && !o->output) return cli_misuse(r->call->verb, "--resume needs -o DIR");
+  return SCREE_OK;
 }
 
-static int run_file(cli_pour *r) {
-  const cli_pour_arguments *a = r->arguments;
-  scree_status status = a->print ? set_level(r, 0) : run_all(r);
-  if (status == SCREE_OK && a->print) status = scree_scene_file_print(r->file, stdout, &r->error);
-  if (status == SCREE_OK) return 0;
-  int code = cli_fail(&r->error);
-  if (r->error.status == SCREE_CANCELLED && a->output)
-    fputs("scree: the same call with --resume goes on from there\n", stderr);
-  return code;
+static scree_status run_file(cli_pour *r) {
+  if (r->arguments->scene.print) {
+    SCREE_TRY(set_level(r, 0));
+    return scree_scene_file_print(r->file, stdout, r->error);
+  }
+  scree_status status = run_all(r);
+  if (status != SCREE_CANCELLED || !r->arguments->scene.output) return status;
+  status = cli_fail(r->error);
+  fputs("scree: the same call with --resume goes on from there\n", stderr);
+  return status;
 }
 
-int cli_pour_run(const cli_call *call, const cli_pour_kind *kind) {
-  static cli_pour r; /* large */
-  r = (cli_pour){
-      .call = call, .kind = kind, .arguments = call->options, .start = scree_work_started()};
-  int code = check_call(&r);
-  if (code == 0) code = take_levels(&r);
-  if (code == 0) code = take_words(&r);
-  if (code == 0) code = read_base(&r);
-  if (code == 0 && pour_words(&r) != SCREE_OK) code = cli_fail(&r.error);
-  if (code == 0)
-    code = cli_set_fields(call, r.file, kind->settings, r.arguments->settings, kind->setting_count,
-                          &r.arguments->set);
-  if (code == 0) code = run_file(&r);
-  scree_shape_store_free(r.store);
-  cli_poured_free(&r.poured);
-  scree_scene_file_free(r.file);
-  return code;
+scree_status cli_pour_run(const cli_call *call, const char *template_name, bool states,
+                          scree_error *error) {
+  SCREE_CLEANUP(free_pour)
+  cli_pour r = {.call = call,
+                .arguments = call->options,
+                .template_name = template_name,
+                .states = states,
+                .start = scree_work_started(),
+                .error = error};
+  SCREE_TRY(check_call(&r));
+  SCREE_TRY(take_levels(&r));
+  SCREE_TRY(take_words(&r));
+  SCREE_TRY(read_base(&r));
+  SCREE_TRY(pour_words(&r));
+  SCREE_TRY(cli_set_fields(call, r.file, &r.arguments->fields, &r.arguments->scene.set));
+  return run_file(&r);
 }

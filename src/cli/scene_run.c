@@ -5,7 +5,6 @@
 #include "base/number.h"
 #include "base/path.h"
 #include "base/platform.h"
-#include "cli/clump.h"
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
@@ -45,11 +44,6 @@ static const char *const file_names[] = {"checkpoint.scree",
                                          "shape-#.vtp",
                                          "walls.vtp"};
 static const cli_run_files run_files = {file_names, sizeof file_names / sizeof *file_names};
-
-static scree_status no_memory(scree_error *error) {
-  *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory"};
-  return error->status;
-}
 
 /* A file of the folder, until the end of the block. */
 #define IN_FOLDER(run, name) SCREE_PATH_IN((run)->output, name)
@@ -175,7 +169,7 @@ static scree_status on_begin(void *context, scree_scene *scene, bool resumed, sc
   if (r->output)
     SCREE_TRY(scree_text_write(scree_scene_text(scene), IN_FOLDER(r, "scene.yaml"), true, error));
   SCREE_TRY(write_shapes(r, scene, error));
-  if (r->call->quiet || r->json) return SCREE_OK;
+  if (r->call->quiet || r->options->json) return SCREE_OK;
   cli_terminal_end();
   if (!resumed && !r->states) remark_values(scree_scene_text(scene));
   if (!resumed) remark_sizes(scene);
@@ -344,24 +338,17 @@ static scree_status write_json(const cli_scene_run *r, const char *stopped, doub
   return scree_scene_json_write(&entry, path, true, error);
 }
 
-static scree_status render(const cli_scene_run *r, const scree_render_options *options,
-                           scree_image *image, scree_error *error) {
-  scree_render_options o = *options;
-  if (!scree_scene_pile_name(r->scene, 0))
-    return scree_scene_picture(r->scene, &o, r->call->progress, image, error);
-  o.elevation_deg = 18;
-  return scree_scene_pile_picture(r->scene, &o, r->call->progress, image, error);
-}
-
 static scree_status draw(const cli_scene_run *r, scree_error *error) {
-  scree_image image = {0};
+  SCREE_CLEANUP(scree_image_free) scree_image image = {0};
   scree_render_options o = scree_default_render_options();
-  if (r->no_picture) return SCREE_OK;
-  o.samples = r->rays;
-  scree_status status = render(r, &o, &image, error);
+  if (r->options->no_picture) return SCREE_OK;
+  o.samples = r->options->rays;
+  bool pile = scree_scene_pile_name(r->scene, 0);
+  if (pile) o.elevation_deg = 18;
+  scree_status status = (pile ? scree_scene_pile_picture : scree_scene_picture)(
+      r->scene, &o, r->call->progress, &image, error);
   if (status == SCREE_OK)
     status = scree_image_write_png(&image, IN_FOLDER(r, "scene.png"), true, error);
-  scree_image_free(&image);
   if (status != SCREE_UNSUPPORTED && status != SCREE_CANCELLED) return status;
   fprintf(stderr, "no picture: %s\n", error->message);
   return SCREE_OK;
@@ -386,33 +373,31 @@ static scree_status write_all(const cli_scene_run *r, const char *stopped, doubl
   return write_page(r, error);
 }
 
+static void free_text(char **text) {
+  free(*text);
+}
+
 static scree_status tell(cli_scene_run *r, const char *stopped, double seconds,
                          scree_error *error) {
-  char *text = NULL;
+  SCREE_CLEANUP(free_text) char *text = NULL;
   size_t size;
   FILE *stream = scree_memory_open(&text, &size);
   if (stream) print_summary(stream, r->scene, stopped);
-  if (!stream || !scree_memory_close(stream)) {
-    free(text);
-    return no_memory(error);
-  }
+  if (!stream || !scree_memory_close(stream)) return scree_fail_memory(error, 0, "the summary");
   cli_terminal_end();
-  scree_status status = SCREE_OK;
-  if (r->json)
-    status = write_json(r, stopped, seconds, "-", error);
+  if (r->options->json)
+    SCREE_TRY(write_json(r, stopped, seconds, "-", error));
   else
     fputs(text, stdout);
-  if (!r->json && !r->call->quiet) print_costs(r->scene);
+  if (!r->options->json && !r->call->quiet) print_costs(r->scene);
   cli_flush();
-  if (status == SCREE_OK && r->output) status = write_all(r, stopped, seconds, text, error);
-  free(text);
-  return status;
+  return r->output ? write_all(r, stopped, seconds, text, error) : SCREE_OK;
 }
 
 scree_status cli_check_scene_output(const cli_scene_run *r, scree_error *error) {
   SCREE_TRY(cli_make_folder(r->output, error));
-  if (!r->resume)
-    SCREE_TRY(cli_check_run_output(r->call, r->output, &run_files, r->overwrite, error));
+  if (!r->options->resume)
+    SCREE_TRY(cli_check_run_output(r->call, r->output, &run_files, r->options->overwrite, error));
   return SCREE_OK;
 }
 
@@ -428,10 +413,10 @@ static void keep_end(const cli_scene_run *r) {
 scree_status cli_run_scene(cli_scene_run *r, scree_error *error) {
   scree_scene_job job = {.file = r->file,
                          .folder = r->output,
-                         .resume = r->resume,
-                         .changes = r->changes,
-                         .change_count = r->change_count,
-                         .overwrite = r->overwrite,
+                         .resume = r->options->resume,
+                         .changes = r->options->change.items,
+                         .change_count = r->options->change.count,
+                         .overwrite = r->options->overwrite,
                          .states = r->states,
                          .store = r->store,
                          .progress = r->call->progress,
@@ -455,7 +440,7 @@ scree_status cli_run_scene(cli_scene_run *r, scree_error *error) {
 
 void cli_scene_run_free(cli_scene_run *r) {
   scree_scene_free(r->scene);
-  free(r->frames.times);
+  scree_free(r->frames.items);
   r->scene = NULL;
   r->frames = (cli_frames){0};
 }
@@ -470,27 +455,29 @@ static const char *split(const char *text, char field[200]) {
   return text + length + 1;
 }
 
-int cli_set_fields(const cli_call *call, scree_scene_file *file, const cli_setting *settings,
-                   const char *const *values, size_t count, const cli_texts *set) {
+scree_status cli_set_fields(const cli_call *call, scree_scene_file *file, const cli_fields *fields,
+                            const cli_texts *set) {
   char first[1200] = "";
+  size_t count = fields ? fields->count : 0;
   for (size_t i = 0; i < count + set->count; i++) {
+    const cli_option *option = i < count ? fields->options[i] : NULL;
     char number[CLI_NUMBER_BYTES], other[200];
-    const char *given = i < count ? values[i] : set->items[i - count],
-               *field = i < count ? settings[i].field : other, *value;
-    if (!given) continue;
-    if (i < count)
-      value = cli_si_text(settings[i].kind, given, number);
-    else if (!(value = split(given, other)))
-      return cli_misuse(call->verb, "--set %s: must be FIELD=VALUE, as in gravity.0=1", given);
+    const char *field = other, *value;
+    if (option) {
+      field = option->field;
+      value = cli_si_text(option->kind, fields->values[i], number);
+    } else if (!(value = split(set->items[i - count], other))) {
+      return cli_misuse(call->verb, "--set %s: must be FIELD=VALUE, as in gravity.0=1",
+                        set->items[i - count]);
+    }
     scree_error error;
     scree_status status = scree_scene_file_try(file, field, value, &error);
     bool hard = status != SCREE_OK && status != SCREE_BAD_FILE;
     if (status != SCREE_OK && (!*first || hard))
-      snprintf(first, sizeof first, "--%s: %.1000s", i < count ? settings[i].option : "set",
-               error.message);
+      snprintf(first, sizeof first, "--%s: %.1000s", option ? option->name : "set", error.message);
     if (hard) return cli_misuse(call->verb, "%s", first);
   }
-  if (!*first || scree_scene_file_check(file, NULL) == SCREE_OK) return 0;
+  if (!*first || scree_scene_file_check(file, NULL) == SCREE_OK) return SCREE_OK;
   return cli_misuse(call->verb, "%s", first);
 }
 
@@ -519,17 +506,14 @@ static const char *kind_of(const char *word, char *value, size_t size) {
       snprintf(value, size, "%.17g", diameter);
     return "sphere";
   }
-  return cli_is_clump(word) ? "clump" : "file";
+  return scree_is_clump_table(word) ? "clump" : "file";
 }
 
 scree_status cli_make_poured(const char *const *words, const double *shares, size_t count,
                              cli_poured *p, scree_error *error) {
-  *p = (cli_poured){calloc(count + 1, sizeof *p->shapes), calloc(count + 1, sizeof *p->texts),
-                    count};
-  if (!p->shapes || !p->texts) {
-    cli_poured_free(p);
-    return no_memory(error);
-  }
+  p->count = count;
+  SCREE_TRY_ALLOC_ZERO(p->shapes, count, error);
+  SCREE_TRY_ALLOC_ZERO(p->texts, count, error);
   for (size_t i = 0; i < count; i++) {
     char *value = p->texts[i] + 100;
     name_shape(words[i], p, i);
@@ -540,8 +524,8 @@ scree_status cli_make_poured(const char *const *words, const double *shares, siz
 }
 
 void cli_poured_free(cli_poured *p) {
-  free(p->shapes);
-  free(p->texts);
+  scree_free(p->shapes);
+  scree_free(p->texts);
   *p = (cli_poured){0};
 }
 

@@ -8,18 +8,23 @@
 /* What of each frame becomes a file for ParaView: bits. */
 enum { CLI_BODIES = 1, CLI_POINTS = 2, CLI_CONTACTS = 4, CLI_GEOMETRY = 8, CLI_FRAME_KINDS = 4 };
 
+/* What calls of these verbs ask for. */
+typedef struct cli_scene_options {
+  const char *output; /* folder; NULL: none */
+  cli_texts set, change;
+  size_t rays;
+  bool print, resume, overwrite, json, no_picture;
+} cli_scene_options;
+
 typedef struct cli_scene_run {
   const cli_call *call;
+  const cli_scene_options *options;
   scree_work_start start;
   scree_scene_file *file; /* NULL: that of the checkpoint */
   const char *file_name;  /* as given; NULL: scene.yaml of the folder */
-  const char *output;     /* folder; NULL: none */
+  const char *output;     /* the options', or one in it */
   scree_shape_store *store;
-  size_t rays;
   unsigned views;
-  bool resume, overwrite, json, no_picture;
-  const char *const *changes; /* of what is resumed */
-  size_t change_count;
   bool states;      /* also frames that can be measured again */
   bool common_page; /* one of several, which get one report together */
   const char *name; /* of this one among several; NULL: it is the only one */
@@ -37,15 +42,10 @@ scree_status cli_clear_scene_output(const cli_call *call, const char *folder, sc
 scree_status cli_run_scene(cli_scene_run *run, scree_error *error);
 void cli_scene_run_free(cli_scene_run *run);
 
-/* An option and the field or parameter that it sets. */
-typedef struct cli_setting {
-  const char *option, *field;
-  cli_kind kind;
-} cli_setting;
-/* Sets values (NULL: not given), then those of --set. Of what cannot be, alone or together, the
- * first is told. The exit code. */
-int cli_set_fields(const cli_call *call, scree_scene_file *file, const cli_setting *settings,
-                   const char *const *values, size_t count, const cli_texts *set);
+/* Sets fields by options (NULL: none), then those of --set. Of what cannot be, alone or together,
+ * the first is told. */
+scree_status cli_set_fields(const cli_call *call, scree_scene_file *file, const cli_fields *fields,
+                            const cli_texts *set);
 
 /* A heap's angles, three ways, a line each, and its size. */
 void cli_print_repose(FILE *stream, const scree_repose *repose);

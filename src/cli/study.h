@@ -15,6 +15,8 @@ enum { STUDY_OPTIONS = 11 };
 extern const cli_option study_options[STUDY_OPTIONS];
 extern const study_arguments study_defaults;
 
+#define STUDY_EXCLUSIVE "json|csv slurm|worker"
+
 /* FOLDER/report.html of what lies there. */
 scree_status study_write_page(const char *folder, scree_error *error);
 
@@ -34,9 +36,10 @@ typedef struct study_crew {
                        const scree_progress *progress, scree_error *error);
 } study_crew;
 
-/* What calls of study, calibrate and optimise have in common: options that exclude each other, one
- * file. Returns an exit code. */
-int study_check_call(const cli_call *call);
+/* Of study, calibrate and optimise: one file, or the word status and a folder. */
+scree_status study_check_call(const cli_call *call);
+/* Whether it is that word. */
+bool study_asks_status(const cli_call *call);
 /* The folder by -o, else the file's name without its ending, else `usual`. */
 const char *study_folder(const cli_call *call, const char *usual, char *buffer, size_t size);
 
@@ -46,19 +49,20 @@ scree_study_options study_work_options(const study_arguments *arguments);
 /* Workers by --jobs, else as many as there are processors, or as fit a device; at most so many. */
 size_t study_jobs_wanted(const cli_call *call, size_t most);
 
-/* In as many processes of one thread or more each. Dead ones are replaced. Returns an exit code
- * after telling stderr what went wrong. */
-int study_run_jobs(const study_crew *crew);
+/* In as many processes of one thread or more each. Dead ones are replaced. CLI_TOLD after telling
+ * stderr what went wrong. */
+scree_status study_run_jobs(const study_crew *crew);
 
 /* The same in as many threads of this process. */
-int study_run_lanes(const study_crew *crew);
+scree_status study_run_lanes(const study_crew *crew);
 
 /* Writes FOLDER/study.sbatch and, unless only that is asked for, submits it; at most so many tasks.
  */
-int study_run_slurm(const cli_call *call, const char *folder, size_t most_tasks);
+scree_status study_run_slurm(const cli_call *call, const char *folder, size_t most_tasks,
+                             scree_error *error);
 
 /* As the options and the launcher want it: by this process, in several, or in lanes of a device. */
-int study_run_crew(const study_crew *crew, bool worker);
+scree_status study_run_crew(const study_crew *crew, bool worker);
 
 /* Number of this process among those that mpirun or srun started together, 0 without these. */
 size_t study_rank(void);

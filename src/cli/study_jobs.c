@@ -27,7 +27,7 @@ typedef struct pool {
   long workers[MOST_JOBS];
   size_t alive, replaced;
   bool told; /* the workers, to end */
-  int result;
+  scree_status result;
 } pool;
 
 static bool start_worker(pool *p, size_t slot) {
@@ -51,7 +51,7 @@ static bool start_worker(pool *p, size_t slot) {
   if (code != 0) {
     fprintf(stderr, "scree: cannot start a worker: %s\n", strerror(code));
     p->workers[slot] = 0;
-    p->result = 1;
+    p->result = CLI_TOLD;
     return false;
   }
   p->alive++;
@@ -64,7 +64,7 @@ static void bury(pool *p, size_t slot, scree_process_state state, int code, size
   p->alive--;
   if (cli_interrupted()) return;
   if (state == SCREE_PROCESS_ENDED) {
-    if (code != 0) p->result = 1; /* it has told why */
+    if (code != 0) p->result = CLI_TOLD; /* it has told why */
     return;
   }
   fprintf(stderr, "scree: worker %ld was killed (signal %d); another one takes its place\n",
@@ -72,7 +72,7 @@ static void bury(pool *p, size_t slot, scree_process_state state, int code, size
   if (p->replaced++ < 10 * jobs)
     start_worker(p, slot);
   else
-    p->result = 1;
+    p->result = CLI_TOLD;
 }
 
 /* A signal sent to this process alone is passed on, once: the second one would end a worker that is
@@ -88,7 +88,7 @@ static void look_around(const pool *p) {
   progress->report(progress->context, "runs", p->crew->fraction(p->crew->context));
 }
 
-int study_run_jobs(const study_crew *crew) {
+scree_status study_run_jobs(const study_crew *crew) {
   const study_arguments *a = crew->call->options;
   pool p = {.crew = crew, .call = crew->call};
   size_t jobs = crew->jobs > MOST_JOBS ? MOST_JOBS : crew->jobs;
@@ -113,22 +113,22 @@ int study_run_jobs(const study_crew *crew) {
   return p.result;
 }
 
-int study_run_crew(const study_crew *crew, bool worker) {
+scree_status study_run_crew(const study_crew *crew, bool worker) {
   const study_arguments *a = crew->call->options;
   const char *backend = crew->call->backend;
   scree_study_options o = study_work_options(a);
   bool launched = getenv("OMPI_COMM_WORLD_RANK") || getenv("PMI_RANK");
-  int code;
+  scree_error error;
+  scree_status status;
   if (worker || crew->jobs == 1 || launched) {
-    scree_error error;
-    scree_status status = crew->work(crew->call, crew->folder, &o, crew->call->progress, &error);
-    code = status == SCREE_OK ? 0 : cli_fail(&error);
+    status = crew->work(crew->call, crew->folder, &o, crew->call->progress, &error);
+    if (status != SCREE_OK) status = cli_fail(&error);
   } else if (backend && strncmp(backend, "cuda", 4) == 0) {
-    code = study_run_lanes(crew);
+    status = study_run_lanes(crew);
   } else {
-    code = study_run_jobs(crew);
+    status = study_run_jobs(crew);
   }
   if (cli_interrupted() && !worker && !launched)
     fputs("scree: the same command goes on from there\n", stderr);
-  return code;
+  return status;
 }

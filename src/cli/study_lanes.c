@@ -1,10 +1,9 @@
 /* Workers as threads of this process: on a device their worlds share launches, which those of
  * several processes cannot. */
+#include "base/alloc.h"
 #include "base/parallel.h"
 #include "cli/study.h"
 #include "cli/terminal.h"
-
-#include <stdlib.h>
 
 typedef struct lane {
   const study_crew *crew;
@@ -43,21 +42,22 @@ static bool all_crowded(const lane *lanes, size_t count) {
   return crowded == count;
 }
 
-static int conclude(const lane *lanes, size_t count) {
+static scree_status conclude(const lane *lanes, size_t count) {
   const bool alone = all_crowded(lanes, count);
   for (size_t i = 0; i < count; i++)
     if (lanes[i].status && (alone || lanes[i].status != SCREE_OUT_OF_MEMORY))
       return cli_fail(&lanes[i].error);
-  return 0;
+  return SCREE_OK;
 }
 
 /* Lanes that leave no room to each other are too many. */
-int study_run_lanes(const study_crew *crew) {
+scree_status study_run_lanes(const study_crew *crew) {
   size_t count = crew->jobs;
-  lane *lanes = calloc(count, sizeof *lanes);
+  scree_error error;
+  SCREE_CLEANUP(scree_free_at) lane *lanes = scree_alloc_zero(count, sizeof *lanes);
   if (!lanes) {
-    fprintf(stderr, "scree: out of memory\n");
-    return 1;
+    scree_tell_memory(&error, count * sizeof *lanes, "workers", NULL);
+    return cli_fail(&error);
   }
   for (bool again = true; again; count = again ? count / 2 : count) {
     for (size_t i = 0; i < count; i++) lanes[i] = (lane){.crew = crew};
@@ -65,7 +65,5 @@ int study_run_lanes(const study_crew *crew) {
     scree_parallel_for(count, 1, work_in_lane, lanes);
     again = count > 1 && all_crowded(lanes, count);
   }
-  int code = conclude(lanes, count);
-  free(lanes);
-  return code;
+  return conclude(lanes, count);
 }

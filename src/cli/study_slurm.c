@@ -4,6 +4,7 @@
 #include "cli/study.h"
 
 #include "base/file.h"
+#include "base/path.h"
 #include "base/platform.h"
 
 #include <errno.h>
@@ -48,34 +49,30 @@ static void write_script(FILE *stream, const cli_call *call, const char *study, 
   putc('\n', stream);
 }
 
-static int submit(const char *script) {
+static scree_status submit(const char *script, scree_error *error) {
   const char *words[] = {"sbatch", script, NULL};
-  char shown[CLI_PRINTABLE_BYTES];
   long process;
-  int status, code = scree_process_run(words, NULL, &process);
-  if (code == 0 && scree_process_look(process, true, &status) == SCREE_PROCESS_ENDED && status == 0)
-    return 0;
-  fprintf(stderr, "scree: %s could not be submitted: %s\n", cli_printable(script, shown),
-          code ? strerror(code) : "sbatch failed");
-  return 1;
+  int result, code = scree_process_run(words, NULL, &process);
+  if (code == 0 && scree_process_look(process, true, &result) == SCREE_PROCESS_ENDED && result == 0)
+    return SCREE_OK;
+  return scree_fail(error, SCREE_IO, "%s could not be submitted: %s", script,
+                    code ? strerror(code) : "sbatch failed");
 }
 
-int study_run_slurm(const cli_call *call, const char *folder, size_t most_tasks) {
+scree_status study_run_slurm(const cli_call *call, const char *folder, size_t most_tasks,
+                             scree_error *error) {
   const study_arguments *a = call->options;
-  char file[MOST_PATH], full[MOST_PATH], script[MOST_PATH + 16], shown[CLI_PRINTABLE_BYTES];
+  char file[MOST_PATH], full[MOST_PATH], shown[CLI_PRINTABLE_BYTES];
   size_t tasks = a->tasks ? a->tasks : most_tasks;
   if (!scree_path_full(call->inputs[0], file, sizeof file) ||
-      !scree_path_full(folder, full, sizeof full)) {
-    fprintf(stderr, "scree: %s: %s\n", cli_printable(folder, shown), strerror(errno));
-    return 1;
-  }
-  snprintf(script, sizeof script, "%s/study.sbatch", full);
+      !scree_path_full(folder, full, sizeof full))
+    return cli_refuse(error, SCREE_IO, folder, strerror(errno));
+  const char *script = SCREE_PATH_IN(full, "study.sbatch");
   scree_output output;
-  scree_error error;
-  if (scree_output_open(script, true, &output, &error) != SCREE_OK) return cli_fail(&error);
+  SCREE_TRY(scree_output_open(script, true, &output, error));
   write_script(output.stream, call, file, full, tasks < most_tasks ? tasks : most_tasks);
-  if (scree_output_commit(&output, &error) != SCREE_OK) return cli_fail(&error);
-  if (!a->dry_run) return submit(script);
+  SCREE_TRY(scree_output_commit(&output, error));
+  if (!a->dry_run) return submit(script, error);
   printf("%s: not submitted; `sbatch %s` does\n", cli_printable(script, shown), shown);
-  return 0;
+  return SCREE_OK;
 }

@@ -22,14 +22,15 @@ typedef struct cli_soundness {
   bool no_repair, unchecked;
 } cli_soundness;
 
-/* Their rows in the option table of a verb whose struct `type` has the member `soundness`. */
-#define CLI_SOUNDNESS_OPTIONS(type)                                                                \
-  CLI_ROW("no-repair", CLI_FLAG, offsetof(type, soundness.no_repair), NULL,                        \
-          "Refuse a scan that is no closed surface instead of repairing it.", 0, 0, NULL),         \
-      CLI_ROW("unchecked", CLI_FLAG, offsetof(type, soundness.unchecked), NULL,                    \
-              "Take the scan as it is, neither checked nor repaired: an open surface stays open, " \
-              "and what meets itself may go on doing so.",                                         \
-              0, 0, NULL)
+/* Their rows in the option table of a verb whose struct has the member `soundness`; they exclude
+ * each other. */
+#define CLI_SOUNDNESS_OPTIONS                                                                      \
+  CLI_FLAG_ROW("no-repair", soundness.no_repair,                                                   \
+               "Refuse a scan that is no closed surface instead of repairing it."),                \
+      CLI_FLAG_ROW("unchecked", soundness.unchecked,                                               \
+                   "Take the scan as it is, neither checked nor repaired: an open surface stays "  \
+                   "open, and what meets itself may go on doing so.")
+#define CLI_SOUNDNESS_EXCLUSIVE "no-repair|unchecked"
 
 /* The call's first input as the options ask, as cli_load_closed gives it; repairs are said on
  * stderr, unless it is quiet. */

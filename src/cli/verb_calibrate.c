@@ -1,4 +1,5 @@
 /* scree calibrate: parameters from measurements. scree optimise differs in its words only. */
+#include "base/owned.h"
 #include "cli/calibrate.h"
 #include "cli/terminal.h"
 #include "report/program.h"
@@ -10,27 +11,20 @@ enum { MOST_JOBS = 1000, SLURM_TASKS = 8 };
 static scree_status report(const cli_call *call, scree_calibration *c, const char *folder,
                            bool files, scree_error *error) {
   const study_arguments *a = call->options;
-  scree_calibration_result result;
-  scree_status status = scree_calibration_analyse(c, &result, error);
-  if (status != SCREE_OK) return status;
-  if (files) status = scree_calibration_report_write(&result, folder, error);
-  if (status == SCREE_OK && files) status = study_write_page(folder, error);
-  if (status == SCREE_OK && a->json)
-    status = scree_calibration_json_write(&result, "-", true, error);
-  if (status == SCREE_OK && a->csv) status = scree_calibration_csv_write(&result, "-", true, error);
-  if (status == SCREE_OK && !a->json && !a->csv) scree_calibration_print(&result, stdout);
-  scree_calibration_result_free(&result);
-  return status;
+  SCREE_CLEANUP(scree_calibration_result_free) scree_calibration_result result = {0};
+  SCREE_TRY(scree_calibration_analyse(c, &result, error));
+  if (files) SCREE_TRY(scree_calibration_report_write(&result, folder, error));
+  if (files) SCREE_TRY(study_write_page(folder, error));
+  if (a->json) return scree_calibration_json_write(&result, "-", true, error);
+  if (a->csv) return scree_calibration_csv_write(&result, "-", true, error);
+  scree_calibration_print(&result, stdout);
+  return SCREE_OK;
 }
 
-static int show_status(const cli_call *call) {
-  scree_calibration *c = NULL;
-  scree_error error;
-  if (call->input_count != 2) return cli_misuse(call->verb, "status needs the folder");
-  scree_status status = scree_calibration_open_folder(call->inputs[1], &c, &error);
-  if (status == SCREE_OK) status = report(call, c, call->inputs[1], false, &error);
-  scree_calibration_free(c);
-  return status == SCREE_OK ? 0 : cli_fail(&error);
+static scree_status show_status(const cli_call *call, scree_error *error) {
+  SCREE_OWNED(scree_calibration, c);
+  SCREE_TRY(scree_calibration_open_folder(call->inputs[1], &c, error));
+  return report(call, c, call->inputs[1], false, error);
 }
 
 static double fraction_done(void *context) {
@@ -43,53 +37,46 @@ static scree_status work_as_one(const cli_call *call, const char *folder,
                                 const scree_study_options *options, const scree_progress *progress,
                                 scree_error *error) {
   const study_arguments *a = call->options;
-  scree_calibration *c = NULL;
-  scree_status status = scree_calibration_read(call->inputs[0], &c, error);
-  if (status == SCREE_OK) status = scree_calibration_open(c, folder, error);
-  if (status == SCREE_OK) status = scree_calibration_work(c, a->jobs, options, progress, error);
-  scree_calibration_free(c);
-  return status;
+  SCREE_OWNED(scree_calibration, c);
+  SCREE_TRY(scree_calibration_read(call->inputs[0], &c, error));
+  SCREE_TRY(scree_calibration_open(c, folder, error));
+  return scree_calibration_work(c, a->jobs, options, progress, error);
 }
 
-static int work(const cli_call *call, scree_calibration *c, const char *folder) {
+static scree_status work(const cli_call *call, scree_calibration *c, const char *folder,
+                         scree_error *error) {
   const study_arguments *a = call->options;
   bool worker = a->worker || study_rank() > 0;
-  scree_error error;
-  study_crew crew = {.call = call,
-                     .folder = folder,
-                     .jobs = study_jobs_wanted(call, MOST_JOBS),
-                     .fraction = fraction_done,
-                     .context = c,
-                     .work = work_as_one};
-  if (scree_calibration_open(c, folder, &error) != SCREE_OK) return cli_fail(&error);
-  if (a->slurm) return study_run_slurm(call, folder, a->tasks ? a->tasks : SLURM_TASKS);
-  int code = study_run_crew(&crew, worker);
-  if (worker) return code;
+  const study_crew crew = {.call = call,
+                           .folder = folder,
+                           .jobs = study_jobs_wanted(call, MOST_JOBS),
+                           .fraction = fraction_done,
+                           .context = c,
+                           .work = work_as_one};
+  SCREE_TRY(scree_calibration_open(c, folder, error));
+  if (a->slurm) return study_run_slurm(call, folder, a->tasks ? a->tasks : SLURM_TASKS, error);
+  SCREE_TRY(study_run_crew(&crew, worker));
+  if (worker) return SCREE_OK;
   cli_terminal_end();
-  if (code != 0) return code;
-  return report(call, c, folder, true, &error) == SCREE_OK ? 0 : cli_fail(&error);
+  return report(call, c, folder, true, error);
 }
 
-int calibrate_run(const cli_call *call) {
+scree_status calibrate_run(const cli_call *call, scree_error *error) {
   const study_arguments *a = call->options;
   const bool search = !strcmp(call->verb->name, "optimise");
-  scree_calibration *c = NULL;
-  scree_error error;
+  SCREE_OWNED(scree_calibration, c);
   char folder[256];
-  int code = study_check_call(call);
-  if (code) return code;
-  if (!strcmp(call->inputs[0], "status")) return show_status(call);
-  if (scree_calibration_read(call->inputs[0], &c, &error) != SCREE_OK) return cli_fail(&error);
+  SCREE_TRY(study_check_call(call));
+  if (study_asks_status(call)) return show_status(call, error);
+  SCREE_TRY(scree_calibration_read(call->inputs[0], &c, error));
   if (scree_calibration_is_search(c) != search)
-    code = cli_misuse(call->verb,
+    return cli_misuse(call->verb,
                       search ? "the file has no minimise or maximise: `scree calibrate` is for it"
                              : "the file has minimise or maximise: `scree optimise` is for it");
-  else if (a->dry_run && !a->slurm)
-    printf("%s can be run\n", call->inputs[0]);
-  else
-    code = work(call, c, study_folder(call, call->verb->name, folder, sizeof folder));
-  scree_calibration_free(c);
-  return code;
+  if (!a->dry_run || a->slurm)
+    return work(call, c, study_folder(call, call->verb->name, folder, sizeof folder), error);
+  printf("%s can be run\n", call->inputs[0]);
+  return SCREE_OK;
 }
 
 const cli_verb cli_verb_calibrate = {

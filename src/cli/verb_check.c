@@ -1,22 +1,20 @@
 /* scree check: what is wrong with a scan, and whether it can serve as a particle. */
+#include "base/alloc.h"
 #include "cli/input.h"
 #include "cli/surface.h"
 #include "cli/terminal.h"
 #include "report/program.h"
-
-#include <stdlib.h>
 
 typedef struct check_arguments {
   cli_source source;
   bool fast, json;
 } check_arguments;
 
+#define ARGUMENTS check_arguments
 static const cli_option options[] = {
-    {"fast", CLI_FLAG, offsetof(check_arguments, fast), NULL, "Do not look for self-intersections.",
-     0, 0, NULL},
-    CLI_SOURCE_OPTIONS(check_arguments),
-    {"json", CLI_FLAG, offsetof(check_arguments, json), NULL, "Print JSON instead of text.", 0, 0,
-     NULL},
+    CLI_FLAG_ROW("fast", fast, "Do not look for self-intersections."),
+    CLI_SOURCE_OPTIONS,
+    CLI_FLAG_ROW("json", json, "Print JSON instead of text."),
 };
 
 static const check_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};
@@ -37,7 +35,7 @@ static scree_status check_one(const cli_call *call, const char *path, checked *c
   SCREE_TRY(cli_load(path, &input, call->progress, &c->scan, &c->error));
   c->read = true;
   scree_status status = scree_mesh_check(&c->scan.mesh, &how, call->progress, &c->check, &c->error);
-  scree_mesh_free(&c->scan.mesh); /* the counts are enough */
+  scree_mesh_free(&c->scan.mesh); /* the counts are enough, and the rest of a scan holds nothing */
   return status == SCREE_OK ? status : cli_name_in_error(path, &c->error);
 }
 
@@ -52,14 +50,8 @@ static void print_one(const cli_call *call, const char *path, const checked *c) 
   cli_print_check(stdout, &c->check);
 }
 
-static scree_status print_json(const cli_call *call, const checked *all) {
-  scree_check_entry *entries = calloc(call->input_count, sizeof *entries);
-  scree_error error;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  if (!entries) {
-    fputs("scree: out of memory\n", stderr);
-    return status;
-  }
+static scree_status print_json(const cli_call *call, const checked *all, scree_error *error) {
+  SCREE_SCRATCH_ZERO(scree_check_entry, entries, call->input_count, error);
   for (size_t i = 0; i < call->input_count; i++) {
     const checked *c = &all[i];
     bool failed = c->error.status != SCREE_OK;
@@ -69,36 +61,26 @@ static scree_status print_json(const cli_call *call, const checked *all) {
                                      .check = failed ? NULL : &c->check,
                                      .failure = failed ? c->error.message : NULL};
   }
-  status =
-      scree_check_json_write(entries, call->input_count, call->command_line, "-", false, &error);
-  free(entries);
-  if (status != SCREE_OK) cli_fail(&error);
-  return status;
+  return scree_check_json_write(entries, call->input_count, call->command_line, "-", false, error);
 }
 
-static int run(const cli_call *call) {
+static scree_status run(const cli_call *call, scree_error *error) {
   const check_arguments *arguments = call->options;
-  checked *all = calloc(call->input_count, sizeof *all);
-  int code = 0;
-  if (!all) {
-    fputs("scree: out of memory\n", stderr);
-    return 1;
-  }
+  SCREE_SCRATCH_ZERO(checked, all, call->input_count, error);
+  scree_status status = SCREE_OK;
   for (size_t i = 0; i < call->input_count; i++) {
     checked *c = &all[i];
     if (check_one(call, call->inputs[i], c) != SCREE_OK) {
-      code = cli_fail(&c->error);
+      status = cli_fail(&c->error);
       if (c->error.status == SCREE_CANCELLED) break;
       continue;
     }
-    if (!c->check.usable) code = 1;
+    if (!c->check.usable) status = CLI_TOLD;
     cli_terminal_end();
     if (!arguments->json) print_one(call, call->inputs[i], c);
   }
-  if (arguments->json && print_json(call, all) != SCREE_OK) code = 1;
-  for (size_t i = 0; i < call->input_count; i++) scree_scan_free(&all[i].scan);
-  free(all);
-  return code;
+  if (arguments->json) SCREE_TRY(print_json(call, all, error));
+  return status;
 }
 
 const cli_verb cli_verb_check = {

@@ -1,3 +1,4 @@
+#include "base/alloc.h"
 #include "cli/choose.h"
 #include "cli/grid.h"
 #include "cli/surface.h"
@@ -6,7 +7,6 @@
 #include "report/provenance.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { METHOD_UNSET = -1, RULE_UNSET = -1 };
@@ -18,59 +18,45 @@ static const choose_arguments defaults = {.grid = CLI_GRID_DEFAULT,
                                           .method = METHOD_UNSET,
                                           .rule = RULE_UNSET};
 
-#define AT(field) offsetof(choose_arguments, field)
+#define ARGUMENTS choose_arguments
 static const cli_option options[] = {
-    {"output", CLI_TEXT, AT(output), "DIR",
-     "Write the chosen meshes with mass and inertia, the curves, the figure, the tables and "
-     "report.html into DIR.",
-     0, 0, NULL},
-    {"samples", CLI_FLAG, AT(samples), NULL, "Choose for the nine built-in devices.", 0, 0, NULL},
-    {"paper", CLI_FLAG, AT(paper), NULL,
-     "Do exactly what the paper did: method qecd, its grid, plain Ip; meshes by its choice.", 0, 0,
-     NULL},
-    {"rule", CLI_CHOICE, AT(rule), "RULE",
-     "Whose choice is told first and written: recommended (keeps tolerances), robust or paper "
-     "(least Ip). Default: recommended.",
-     0, 0, "recommended|robust|paper"},
-    {"tolerance", CLI_TEXT, AT(tolerance), "LIST",
-     "What the recommended level keeps, instead of the defaults, as shares or, of distances, "
-     "lengths: mean=0.3%,hausdorff=4%,inertia=2%,widths=3%,thickness=3% are the defaults; also "
-     "area, volume, thinnest, convexity, normals; none: does not count.",
-     0, 0, NULL},
-    {"method", CLI_CHOICE, AT(method), "NAME",
-     "How to decimate: volume (keeps the volume) or qecd (as the paper). Default: volume.", 0, 0,
-     "volume|qecd"},
-    {"weight", CLI_REAL, AT(weight), "W",
-     "Weight of the penalty: Ip = eps_s + W Nr/Nm. Default: 1, as the paper.", 1e-9, 1e9, NULL},
-    CLI_GRID_OPTION(choose_arguments, grid),
-    {"area", CLI_CHOICE, AT(reference), "AREA",
-     "Area that eps_s is measured against: scan (the paper's) or smooth (past the scanner's noise, "
-     "measured on the curve). Default: scan.",
-     0, 0, "scan|smooth"},
-    {"errors", CLI_FLAG, AT(errors), NULL,
-     "Also the count that each other error alone would choose on the grid, of which levels above "
-     "2,500 triangles are measured then too.",
-     0, 0, NULL},
-    {"density", CLI_REAL, AT(density), "KG/M3",
-     "Density in kg/m3, for the mass and inertia written. Default: 2000.", 1e-6, 1e6, NULL},
-    {"no-repair", CLI_FLAG, AT(no_repair), NULL,
-     "Refuse scans that are no closed surface instead of repairing them.", 0, 0, NULL},
-    CLI_SOURCE_OPTIONS(choose_arguments),
-    {"json", CLI_FLAG, AT(json), NULL, "Print JSON instead of text.", 0, 0, NULL},
-    {"csv", CLI_FLAG, AT(csv), NULL, "Print CSV instead of text: a row per grid level and choice.",
-     0, 0, NULL},
-    {"force", CLI_FLAG, AT(overwrite), NULL,
-     "Overwrite existing files; what else an earlier choice left in the folder is removed.", 0, 0,
-     NULL},
+    CLI_ROW(CLI_TEXT, "output", output, "DIR",
+            "Write the chosen meshes with mass and inertia, the curves, the figure, the tables and "
+            "report.html into DIR."),
+    CLI_FLAG_ROW("samples", samples, "Choose for the nine built-in devices."),
+    CLI_FLAG_ROW(
+        "paper", paper,
+        "Do exactly what the paper did: method qecd, its grid, plain Ip; meshes by its choice."),
+    CLI_CHOICE_ROW("rule", rule, "RULE", "recommended|robust|paper",
+                   "Whose choice is told first and written: recommended (keeps tolerances), robust "
+                   "or paper (least Ip). Default: recommended."),
+    CLI_ROW(CLI_TEXT, "tolerance", tolerance, "LIST",
+            "What the recommended level keeps, instead of the defaults, as shares or, of "
+            "distances, lengths: mean=0.3%,hausdorff=4%,inertia=2%,widths=3%,thickness=3% are the "
+            "defaults; also area, volume, thinnest, convexity, normals; none: does not count."),
+    CLI_CHOICE_ROW(
+        "method", method, "NAME", "volume|qecd",
+        "How to decimate: volume (keeps the volume) or qecd (as the paper). Default: volume."),
+    CLI_RANGE_ROW(CLI_REAL, "weight", weight, "W", 1e-9, 1e9,
+                  "Weight of the penalty: Ip = eps_s + W Nr/Nm. Default: 1, as the paper."),
+    CLI_GRID_OPTION,
+    CLI_CHOICE_ROW("area", reference, "AREA", "scan|smooth",
+                   "Area that eps_s is measured against: scan (the paper's) or smooth (past the "
+                   "scanner's noise, measured on the curve). Default: scan."),
+    CLI_FLAG_ROW("errors", errors,
+                 "Also the count that each other error alone would choose on the grid, of which "
+                 "levels above 2,500 triangles are measured then too."),
+    CLI_RANGE_ROW(CLI_REAL, "density", density, "KG/M3", 1e-6, 1e6,
+                  "Density in kg/m3, for the mass and inertia written. Default: 2000."),
+    CLI_FLAG_ROW("no-repair", no_repair,
+                 "Refuse scans that are no closed surface instead of repairing them."),
+    CLI_SOURCE_OPTIONS,
+    CLI_FLAG_ROW("json", json, "Print JSON instead of text."),
+    CLI_FLAG_ROW("csv", csv, "Print CSV instead of text: a row per grid level and choice."),
+    CLI_FLAG_ROW(
+        "force", overwrite,
+        "Overwrite existing files; what else an earlier choice left in the folder is removed."),
 };
-
-const scree_pick *choose_default_pick(const choose_run *run, const scree_choice *choice) {
-  return scree_choice_pick(choice, run->report.rule);
-}
-
-const scree_set_pick *choose_default_set_pick(const choose_run *run, const scree_set_choice *set) {
-  return run->report.rule == SCREE_RULE_ROBUST ? &set->robust : &set->paper;
-}
 
 /* "0.3%", "0.003", "0.5mm" or "none" */
 static bool parse_bound(const char *word, scree_shape_error error, scree_choice_options *o) {
@@ -115,27 +101,20 @@ static bool parse_tolerances(const char *text, scree_choice_options *o) {
   return true;
 }
 
-static void name_objects(choose_run *run) {
-  for (size_t i = 0; i < run->count; i++)
-    cli_distinct_name(run->objects[i].word, run->objects[0].name, sizeof *run->objects, i,
-                      CHOOSE_NAME_BYTES);
-}
-
-static bool list_objects(choose_run *run) {
+static scree_status list_objects(choose_run *run, scree_error *error) {
   static char sample_words[SCREE_SAMPLE_DEVICES][32];
   size_t samples = run->arguments->samples ? SCREE_SAMPLE_DEVICES : 0;
   run->count = run->left = samples + run->call->input_count;
-  run->objects = calloc(run->count, sizeof *run->objects);
-  run->choices = calloc(run->count, sizeof *run->choices);
-  if (!run->objects || !run->choices) return false;
-  for (size_t i = 0; i < samples; i++) {
-    snprintf(sample_words[i], sizeof sample_words[i], "sample:%s", scree_sample_name(i));
-    run->objects[i].word = sample_words[i];
+  SCREE_TRY_ALLOC_ZERO(run->objects, run->count, error);
+  SCREE_TRY_ALLOC_ZERO(run->choices, run->count, error);
+  for (size_t i = 0; i < run->count; i++) {
+    choose_object *o = &run->objects[i];
+    if (i < samples)
+      snprintf(sample_words[i], sizeof sample_words[i], "sample:%s", scree_sample_name(i));
+    o->word = i < samples ? sample_words[i] : run->call->inputs[i - samples];
+    cli_distinct_name(o->word, run->objects[0].name, sizeof *o, i, CHOOSE_NAME_BYTES);
   }
-  for (size_t i = 0; i < run->call->input_count; i++)
-    run->objects[samples + i].word = run->call->inputs[i];
-  name_objects(run);
-  return true;
+  return SCREE_OK;
 }
 
 static scree_status load(void *context, size_t index, const scree_progress *progress,
@@ -206,26 +185,27 @@ static void note_all(choose_run *run) {
   run->report.note = run->note;
 }
 
+static scree_choice_entry entry_of(const choose_run *run, size_t index) {
+  const choose_object *o = &run->objects[index];
+  const cli_source *source = &run->arguments->source;
+  return (scree_choice_entry){.name = o->name,
+                              .file = o->word,
+                              .format = o->format,
+                              .checksum = o->checksum,
+                              .unit_m = o->unit_m,
+                              .is_sample = cli_is_sample(o->word, NULL),
+                              .sample_resolution = source->resolution,
+                              .sample_noise = source->noise,
+                              .sample_seed = source->seed,
+                              .note = o->note[0] ? o->note : NULL,
+                              .mesh_file = o->mesh_path[0] ? o->mesh_path : NULL,
+                              .choice = &run->choices[index]};
+}
+
 static scree_status write_output(choose_run *run, scree_error *error) {
   const choose_arguments *a = run->arguments;
-  scree_choice_entry *entries = calloc(run->count + 1, sizeof *entries);
-  if (!entries) return scree_fail_memory(error, 0, "the report");
-  for (size_t i = 0; i < run->count; i++) {
-    const choose_object *o = &run->objects[i];
-    bool is_sample = cli_is_sample(o->word, NULL);
-    entries[i] = (scree_choice_entry){o->name,
-                                      o->word,
-                                      o->format,
-                                      o->checksum,
-                                      o->unit_m,
-                                      is_sample,
-                                      a->source.resolution,
-                                      a->source.noise,
-                                      a->source.seed,
-                                      o->note[0] ? o->note : NULL,
-                                      o->mesh_path[0] ? o->mesh_path : NULL,
-                                      &run->choices[i]};
-  }
+  SCREE_SCRATCH(scree_choice_entry, entries, run->count, error);
+  for (size_t i = 0; i < run->count; i++) entries[i] = entry_of(run, i);
   run->report.entries = entries;
   run->report.entry_count = run->count;
   run->report.set = &run->set;
@@ -233,80 +213,79 @@ static scree_status write_output(choose_run *run, scree_error *error) {
   run->report.method = run->simplify.method;
   run->report.command_line = run->call->command_line;
   note_all(run);
-  const scree_choice_report report = run->report;
-  scree_status status = SCREE_OK;
-  if (a->output) status = choose_write_reports(run, &report, error);
+  if (a->output) SCREE_TRY(choose_write_reports(run, error));
   cli_terminal_end();
-  if (status == SCREE_OK && a->csv && !run->call->quiet) choose_print_warnings(stderr, run);
-  if (status == SCREE_OK && a->json)
-    status = scree_choice_json_write(&report, "-", false, error);
-  else if (status == SCREE_OK && a->csv)
-    status = scree_choice_csv_write(&report, "-", false, error);
-  else if (status == SCREE_OK)
-    choose_print(stdout, run);
-  free(entries);
-  return status;
+  if (a->csv && !run->call->quiet) choose_print_warnings(stderr, run);
+  if (a->json) return scree_choice_json_write(&run->report, "-", false, error);
+  if (a->csv) return scree_choice_csv_write(&run->report, "-", false, error);
+  choose_print(stdout, run);
+  return SCREE_OK;
 }
 
-static int run_choose(const cli_call *call) {
-  const choose_arguments *a = call->options;
-  choose_run run = {.call = call,
-                    .arguments = a,
-                    .options = scree_default_choice_options(),
-                    .start = scree_work_started()};
-  scree_error error = {SCREE_OK, ""};
-  if (call->input_count == 0 && !a->samples)
-    return cli_misuse(call->verb, "no scan given: name files, or sample:fp-1 and the like for "
-                                  "built-in samples, or --samples for all nine");
-  if (a->json && a->csv) return cli_misuse(call->verb, "--json and --csv exclude each other");
+/* Checks the call, and takes from it what levels are made and chosen by. */
+static scree_status take_options(choose_run *run) {
+  const choose_arguments *a = run->arguments;
+  const cli_verb *verb = run->call->verb;
+  cli_grid grid;
+  if (run->call->input_count == 0 && !a->samples)
+    return cli_misuse(verb, "no scan given: name files, or sample:fp-1 and the like for built-in "
+                            "samples, or --samples for all nine");
   if (a->paper && (a->method == SCREE_METHOD_VOLUME || a->weight != 1 ||
                    strcmp(a->grid, defaults.grid) != 0 || a->reference != SCREE_REFERENCE_SCAN))
-    return cli_misuse(call->verb,
-                      "--paper is method qecd, weight 1, the scan's area and the grid %s",
+    return cli_misuse(verb, "--paper is method qecd, weight 1, the scan's area and the grid %s",
                       defaults.grid);
-  cli_grid grid;
-  int code = cli_parse_grid(call->verb, a->grid, &grid);
-  if (code) return code;
-  run.options.rp_min = grid.least;
-  run.options.rp_max = grid.most;
-  run.options.per_decade = grid.per_decade;
-  if (a->tolerance && !parse_tolerances(a->tolerance, &run.options))
+  SCREE_TRY(cli_parse_grid(verb, a->grid, &grid));
+  run->options = scree_default_choice_options();
+  run->options.rp_min = grid.least;
+  run->options.rp_max = grid.most;
+  run->options.per_decade = grid.per_decade;
+  run->options.weight = a->weight;
+  run->options.fine_errors = a->errors;
+  run->options.reference = (scree_reference)a->reference;
+  if (a->tolerance && !parse_tolerances(a->tolerance, &run->options))
     return cli_misuse(
-        call->verb,
+        verb,
         "--tolerance '%s': must be a list of NAME=BOUND as in mean=0.3%%,hausdorff=2mm, bounds "
         "above 0 and up to 100%%, lengths with a unit and of mean and hausdorff alone%s",
         a->tolerance, cli_comma_hint(a->tolerance));
   if (a->paper && a->rule != RULE_UNSET && a->rule != SCREE_RULE_PAPER)
-    return cli_misuse(call->verb, "--paper is --rule paper");
-  run.report.rule = a->paper                ? SCREE_RULE_PAPER
-                    : a->rule != RULE_UNSET ? (scree_choice_rule)a->rule
-                                            : SCREE_RULE_RECOMMENDED;
-  run.options.weight = a->weight;
-  run.options.fine_errors = a->errors;
-  run.options.reference = (scree_reference)a->reference;
-  run.simplify = scree_default_simplify_options();
-  if (a->method != METHOD_UNSET) run.simplify.method = (scree_method)a->method;
-  if (a->paper) run.simplify.method = SCREE_METHOD_QECD;
-  scree_status status = SCREE_OK;
-  if (!list_objects(&run)) {
-    error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the list of scans"};
-    status = error.status;
-  }
-  if (status == SCREE_OK && a->output) status = choose_prepare_folder(&run, &error);
-  scree_choice_job job = {run.count, run.simplify, run.options, load, a->output ? done : NULL,
-                          &run,      failed};
-  if (status == SCREE_OK)
-    status = scree_choose_each(&job, call->progress, run.choices, &run.set, &error);
-  if (status == SCREE_OK) part_failed(&run);
-  if (status == SCREE_OK) status = write_output(&run, &error);
-  cli_stage_hide(&run.stage, &error);
-  cli_stage_discard(&run.stage);
-  for (size_t i = 0; run.choices && i < run.count; i++) scree_choice_free(&run.choices[i]);
-  scree_set_choice_free(&run.set);
-  free(run.choices);
-  free(run.objects);
-  if (status != SCREE_OK) return run.left ? cli_fail(&error) : 1; /* else each was told */
-  return run.failed_count ? 1 : 0;
+    return cli_misuse(verb, "--paper is --rule paper");
+  run->report.rule = a->paper                ? SCREE_RULE_PAPER
+                     : a->rule != RULE_UNSET ? (scree_choice_rule)a->rule
+                                             : SCREE_RULE_RECOMMENDED;
+  run->simplify = scree_default_simplify_options();
+  if (a->method != METHOD_UNSET) run->simplify.method = (scree_method)a->method;
+  if (a->paper) run->simplify.method = SCREE_METHOD_QECD;
+  return SCREE_OK;
+}
+
+static void free_run(choose_run *run) {
+  cli_stage_discard(&run->stage);
+  for (size_t i = 0; run->choices && i < run->count; i++) scree_choice_free(&run->choices[i]);
+  scree_set_choice_free(&run->set);
+  scree_free(run->choices);
+  scree_free(run->objects);
+}
+
+static scree_status choose(choose_run *run, scree_error *error) {
+  const bool files = run->arguments->output;
+  const scree_choice_job job = {run->count,          run->simplify, run->options, load,
+                                files ? done : NULL, run,           failed};
+  if (files) SCREE_TRY(choose_prepare_folder(run, error));
+  SCREE_TRY(scree_choose_each(&job, run->call->progress, run->choices, &run->set, error));
+  part_failed(run);
+  return write_output(run, error);
+}
+
+static scree_status run_choose(const cli_call *call, scree_error *error) {
+  SCREE_CLEANUP(free_run)
+  choose_run run = {.call = call, .arguments = call->options, .start = scree_work_started()};
+  SCREE_TRY(take_options(&run));
+  SCREE_TRY(list_objects(&run, error));
+  scree_status status = choose(&run, error);
+  if (status != SCREE_OK) cli_stage_hide(&run.stage, error);
+  if (status != SCREE_OK) return run.left ? status : CLI_TOLD; /* else each was told */
+  return run.failed_count ? CLI_TOLD : SCREE_OK;
 }
 
 const cli_verb cli_verb_choose = {
@@ -335,5 +314,6 @@ const cli_verb cli_verb_choose = {
     .input_maximum = SIZE_MAX,
     .partners = "density:output resolution:sample:|samples noise:sample:|samples "
                 "sample-seed:sample:|samples",
+    .exclusive = "json|csv",
     .run = run_choose,
 };

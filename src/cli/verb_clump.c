@@ -1,49 +1,83 @@
 /* scree clump: spheres for a scan, and how many. */
+#include "base/file.h"
 #include "base/number.h"
-#include "cli/clump_files.h"
+#include "cli/clump_surface.h"
+#include "cli/output.h"
 #include "cli/terminal.h"
 #include "report/program.h"
 #include "report/provenance.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#define AT(field) offsetof(clump_arguments, field)
+typedef struct clump_arguments {
+  cli_source source;
+  const char *output;
+  size_t count, most, triangles;
+  double tolerance, outside, ratio, angle;
+  int method;
+  bool inside, no_repair, json, csv, overwrite;
+} clump_arguments;
+
+enum { NAME_BYTES = 256, PATH_BYTES = 4096 };
+
+typedef struct clump_object {
+  const char *word;
+  char name[NAME_BYTES], file[PATH_BYTES];
+  cli_clump_surface surface;
+  size_t mesh_count; /* triangles of the mesh to take instead; 0: spheres will do */
+  scree_clumps clumps;
+  const scree_clump *chosen;
+} clump_object;
+
+typedef struct clump_run {
+  const cli_call *call;
+  const clump_arguments *arguments;
+  scree_work_start start;
+  clump_object *objects;
+  size_t count;
+  scree_clump_report report; /* in the end */
+} clump_run;
+
+static void free_run(clump_run *r) {
+  for (size_t i = 0; r->objects && i < r->count; i++) {
+    scree_clumps_free(&r->objects[i].clumps);
+    cli_clump_surface_free(&r->objects[i].surface);
+  }
+  scree_free(r->objects);
+}
+
+#define ARGUMENTS clump_arguments
 static const cli_option options[] = {
-    {"count", CLI_COUNT, AT(count), "COUNT",
-     "Write the clump of so many spheres. Default: the recommended number.", 1, 300, NULL},
-    {"tolerance", CLI_SHARE, AT(tolerance), "SHARE",
-     "Write the smallest clump whose surface is on average within this share of the body's size.",
-     1e-6, 1, NULL},
-    {"max", CLI_COUNT, AT(most), "N",
-     "Largest number of spheres tried. Default: 100, or COUNT where that is given.", 1, 300, NULL},
-    {"output", CLI_TEXT, AT(output), "DIR",
-     "Write the clumps, the tables, the figure and report.html into DIR.", 0, 0, NULL},
-    {"method", CLI_CHOICE, AT(method), "METHOD",
-     "fitted: all spheres moved together until their union fits best. The others are greedy, by "
-     "the papers: favier (1999), bubble (Taghavi 2011), ferellec (Ferellec and McDowell 2010), "
-     "peeling. Default: fitted.",
-     0, 0, "fitted|favier|bubble|ferellec|peeling"},
-    {"inside", CLI_FLAG, AT(inside), NULL, "No sphere stands out of the surface.", 0, 0, NULL},
-    {"outside", CLI_LENGTH, AT(outside), "LENGTH",
-     "No sphere stands out by more than this. Default: as far as it fits best.", 0, 1e3, NULL},
-    {"ratio", CLI_REAL, AT(ratio), "R",
-     "bubble: radius of the least sphere in radii of the largest. Default: 0.05.", 1e-3, 1, NULL},
-    {"angle", CLI_REAL, AT(angle), "DEG",
-     "bubble: greatest angle at which spheres may meet, PFC's `distance`; more is smoother. "
-     "Default: 150.",
-     0, 180, NULL},
-    {"triangles", CLI_COUNT, AT(triangles), "N",
-     "Fit to the surface decimated to so many triangles: spheres show no finer detail. Default: "
-     "2000; all with --inside and --outside.",
-     100, 1000000, NULL},
-    {"no-repair", CLI_FLAG, AT(no_repair), NULL,
-     "Refuse scans that are no closed surface instead of repairing them.", 0, 0, NULL},
-    CLI_SOURCE_OPTIONS(clump_arguments),
-    {"json", CLI_FLAG, AT(json), NULL, "Print JSON instead of text, with every clump.", 0, 0, NULL},
-    {"csv", CLI_FLAG, AT(csv), NULL, "Print CSV instead of text: a row per number of spheres.", 0,
-     0, NULL},
-    {"force", CLI_FLAG, AT(overwrite), NULL, "Overwrite existing files.", 0, 0, NULL},
+    CLI_RANGE_ROW(CLI_COUNT, "count", count, "COUNT", 1, 300,
+                  "Write the clump of so many spheres. Default: the recommended number."),
+    CLI_RANGE_ROW(CLI_SHARE, "tolerance", tolerance, "SHARE", 1e-6, 1,
+                  "Write the smallest clump whose surface is on average within this share of the "
+                  "body's size."),
+    CLI_RANGE_ROW(CLI_COUNT, "max", most, "N", 1, 300,
+                  "Largest number of spheres tried. Default: 100, or COUNT where that is given."),
+    CLI_ROW(CLI_TEXT, "output", output, "DIR",
+            "Write the clumps, the tables, the figure and report.html into DIR."),
+    CLI_CHOICE_ROW("method", method, "METHOD", "fitted|favier|bubble|ferellec|peeling",
+                   "fitted: all spheres moved together until their union fits best. The others are "
+                   "greedy, by the papers: favier (1999), bubble (Taghavi 2011), ferellec "
+                   "(Ferellec and McDowell 2010), peeling. Default: fitted."),
+    CLI_FLAG_ROW("inside", inside, "No sphere stands out of the surface."),
+    CLI_RANGE_ROW(CLI_LENGTH, "outside", outside, "LENGTH", 0, 1e3,
+                  "No sphere stands out by more than this. Default: as far as it fits best."),
+    CLI_RANGE_ROW(CLI_REAL, "ratio", ratio, "R", 1e-3, 1,
+                  "bubble: radius of the least sphere in radii of the largest. Default: 0.05."),
+    CLI_RANGE_ROW(CLI_REAL, "angle", angle, "DEG", 0, 180,
+                  "bubble: greatest angle at which spheres may meet, PFC's `distance`; more is "
+                  "smoother. Default: 150."),
+    CLI_RANGE_ROW(CLI_COUNT, "triangles", triangles, "N", 100, 1000000,
+                  "Fit to the surface decimated to so many triangles: spheres show no finer "
+                  "detail. Default: 2000; all with --inside and --outside."),
+    CLI_FLAG_ROW("no-repair", no_repair,
+                 "Refuse scans that are no closed surface instead of repairing them."),
+    CLI_SOURCE_OPTIONS,
+    CLI_FLAG_ROW("json", json, "Print JSON instead of text, with every clump."),
+    CLI_FLAG_ROW("csv", csv, "Print CSV instead of text: a row per number of spheres."),
+    CLI_FLAG_ROW("force", overwrite, "Overwrite existing files."),
 };
 
 static const clump_arguments defaults = {.source = CLI_SOURCE_DEFAULTS,
@@ -90,15 +124,12 @@ static scree_status choose(const clump_arguments *a, clump_object *object, scree
     object->chosen = &c->clumps[c->recommended];
   }
   if (object->chosen) return SCREE_OK;
-  const scree_clump none = {0};
-  const scree_clump *last = c->clumps ? &c->clumps[c->clump_count - 1] : &none;
-  error->status = SCREE_LIMIT;
-  snprintf(error->message, sizeof error->message,
-           "%.300s: %zu spheres are on average within %.4f of the body's size, more than the %g "
-           "asked; raise --tolerance or --max",
-           object->word, last->sphere_count,
-           (last->to_mesh.mean + last->from_mesh.mean) / 2 / c->size, a->tolerance);
-  return SCREE_LIMIT;
+  const scree_clump *last = &c->clumps[c->clump_count - 1];
+  return scree_fail(error, SCREE_LIMIT,
+                    "%.300s: %zu spheres are on average within %.4f of the body's size, more than "
+                    "the %g asked; raise --tolerance or --max",
+                    object->word, last->sphere_count,
+                    (last->to_mesh.mean + last->from_mesh.mean) / 2 / c->size, a->tolerance);
 }
 
 /* Where the grid does not see the walls, or the spheres hardly cover the body: how many triangles
@@ -107,32 +138,27 @@ static scree_status look_at_shape(const clump_arguments *a, clump_object *object
                                   scree_error *error) {
   const scree_clumps *c = &object->clumps;
   bool best = a->method == SCREE_CLUMP_FITTED && !a->inside && !(a->outside < INFINITY);
-  scree_mesh level = {0};
-  scree_choice choice = {0};
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh level = {0};
+  SCREE_CLEANUP(scree_choice_free) scree_choice choice = {0};
   bool more = c->recommended + 1 < c->clump_count; /* were tried, and are not worth it */
   bool poor = best && more && c->clumps[c->recommended].iou < LEAST_IOU;
   if (c->wall_cells >= LEAST_CELLS && !poor) return SCREE_OK;
-  scree_status status = scree_choose_mesh(&object->surface.mesh, 1, NULL, &level, &choice, error);
+  SCREE_TRY(scree_choose_mesh(&object->surface.mesh, 1, NULL, &level, &choice, error));
   object->mesh_count = level.triangle_count;
-  scree_mesh_free(&level);
-  scree_choice_free(&choice);
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status make(const cli_call *call, clump_object *object, cli_share *share, double from,
                          double part, scree_error *error) {
   const clump_arguments *a = call->options;
   scree_clump_options o = clump_options(a);
-  scree_status status = load(call, cli_share_enter(share, from, 0.2 * part), object, error);
-  if (status == SCREE_OK) {
-    status = scree_clumps_make(&object->surface.mesh, &o,
-                               cli_share_enter(share, from + 0.2 * part, 0.8 * part),
-                               &object->clumps, error);
-    if (status != SCREE_OK) return cli_name_in_error(object->word, error);
-    object->made = true;
-  }
-  if (status == SCREE_OK) status = choose(a, object, error);
-  return status == SCREE_OK ? look_at_shape(a, object, error) : status;
+  SCREE_TRY(load(call, cli_share_enter(share, from, 0.2 * part), object, error));
+  if (scree_clumps_make(&object->surface.mesh, &o,
+                        cli_share_enter(share, from + 0.2 * part, 0.8 * part), &object->clumps,
+                        error) != SCREE_OK)
+    return cli_name_in_error(object->word, error);
+  SCREE_TRY(choose(a, object, error));
+  return look_at_shape(a, object, error);
 }
 
 /* ---- Telling ---- */
@@ -229,8 +255,8 @@ static void warn(const cli_call *call, const clump_object *object) {
             object->chosen->sphere_count + (a->method == SCREE_CLUMP_FITTED));
 }
 
-void clump_print(FILE *out, const clump_run *run) {
-  size_t most = clump_options(run->call->options).most;
+static void print_all(FILE *out, const clump_run *run) {
+  size_t most = clump_options(run->arguments).most;
   for (size_t i = 0; i < run->count; i++) {
     if (i) putc('\n', out);
     print_object(out, &run->objects[i], most);
@@ -238,65 +264,127 @@ void clump_print(FILE *out, const clump_run *run) {
   }
 }
 
-static scree_status tell(const clump_run *run, const scree_clump_report *report,
-                         scree_error *error) {
-  const clump_arguments *a = run->call->options;
-  for (size_t i = 0; i < run->count && !run->call->quiet; i++) warn(run->call, &run->objects[i]);
-  if (a->json) return scree_clump_json_write(report, "-", false, error);
-  if (a->csv) return scree_clump_csv_write(report, "-", false, error);
-  if (!run->call->quiet || !a->output) clump_print(stdout, run);
+/* ---- Files ---- */
+
+static const clump_run *run_of(const void *report) {
+  return (const clump_run *)((const char *)report - offsetof(clump_run, report));
+}
+
+static scree_status write_text(const void *report, const char *path, bool overwrite,
+                               scree_error *error) {
+  scree_output output;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
+  print_all(output.stream, run_of(report));
+  return scree_output_commit(&output, error);
+}
+
+static scree_status write_provenance(const void *report, const char *path, bool overwrite,
+                                     scree_error *error) {
+  const clump_run *r = run_of(report);
+  return scree_provenance_write(&r->start, r->call->command_line, path, overwrite, error);
+}
+
+static scree_status write_page(const void *report, const char *path, bool overwrite,
+                               scree_error *error) {
+  return scree_page_write(&run_of(report)->arguments->output, 1, path, overwrite, error);
+}
+
+/* Of the report; the text and the page are of all this. */
+static const scree_product products[] = {
+    {"clump.png", scree_clump_figure_write}, {"clump.svg", scree_clump_figure_write},
+    {"clump.pdf", scree_clump_figure_write}, {"clump.json", scree_clump_json_write},
+    {"clump.csv", scree_clump_csv_write},    {"clump.txt", write_text},
+    {"provenance.json", write_provenance},   {"report.html", write_page}};
+enum { PRODUCT_COUNT = sizeof products / sizeof *products };
+
+/* What will be written, before any work. */
+static scree_status check_files(clump_run *run, scree_error *error) {
+  const clump_arguments *a = run->arguments;
+  char path[PATH_BYTES];
+  SCREE_TRY(cli_make_folder(a->output, error));
+  for (size_t i = 0; i < run->count; i++) {
+    clump_object *o = &run->objects[i];
+    snprintf(o->file, sizeof o->file, "%s.csv", o->name);
+    SCREE_TRY(cli_join_path(a->output, "", o->file, "", path, sizeof path, error));
+    SCREE_TRY(cli_check_output(run->call, path, a->overwrite, error));
+  }
+  for (size_t i = 0; i < PRODUCT_COUNT; i++) {
+    if (!scree_product_is_made(&products[i])) continue;
+    SCREE_TRY(cli_join_path(a->output, "", products[i].name, "", path, sizeof path, error));
+    SCREE_TRY(cli_check_output(run->call, path, a->overwrite, error));
+  }
   return SCREE_OK;
 }
 
-static scree_status make_all(clump_run *run, scree_error *error) {
-  const clump_arguments *a = run->call->options;
-  scree_status status = a->output ? clump_check_files(run, error) : SCREE_OK;
-  cli_share share = cli_share_of(run->call->progress, "fitting spheres");
-  double part = 1 / (double)run->count;
-  for (size_t i = 0; i < run->count && status == SCREE_OK; i++)
-    status = make(run->call, &run->objects[i], &share, (double)i * part, part, error);
-  if (status != SCREE_OK) return status;
-  scree_clump_report report;
-  status = clump_report_make(run, &report, error);
-  if (status == SCREE_OK && a->output) status = clump_write_files(run, &report, error);
-  if (status == SCREE_OK) status = tell(run, &report, error);
-  clump_report_free(&report);
-  return status;
+static scree_status write_files(const clump_run *run, scree_error *error) {
+  const clump_arguments *a = run->arguments;
+  char path[PATH_BYTES];
+  for (size_t i = 0; i < run->count; i++) {
+    const clump_object *o = &run->objects[i];
+    SCREE_TRY(cli_join_path(a->output, "", o->file, "", path, sizeof path, error));
+    SCREE_TRY(
+        scree_spheres_write(&o->clumps, o->chosen, o->surface.unit_m, path, a->overwrite, error));
+  }
+  return scree_products_write(products, PRODUCT_COUNT, &run->report, a->output, a->overwrite,
+                              error);
 }
 
-/* 0, or 2 after telling what does not go together. */
-static int check_call(const cli_call *call) {
+static scree_status tell(const clump_run *run, scree_error *error) {
+  const clump_arguments *a = run->arguments;
+  for (size_t i = 0; i < run->count && !run->call->quiet; i++) warn(run->call, &run->objects[i]);
+  if (a->json) return scree_clump_json_write(&run->report, "-", false, error);
+  if (a->csv) return scree_clump_csv_write(&run->report, "-", false, error);
+  if (!run->call->quiet || !a->output) print_all(stdout, run);
+  return SCREE_OK;
+}
+
+static scree_clump_entry entry_of(const clump_object *o) {
+  return (scree_clump_entry){.name = o->name,
+                             .file = o->word,
+                             .format = o->surface.format,
+                             .checksum = o->surface.checksum,
+                             .unit_m = o->surface.unit_m,
+                             .note = o->surface.note[0] ? o->surface.note : NULL,
+                             .scan_triangle_count = o->surface.scan_triangle_count,
+                             .mesh = &o->surface.mesh,
+                             .clumps = &o->clumps,
+                             .chosen = o->chosen,
+                             .clump_file = o->file[0] ? o->file : NULL};
+}
+
+/* What does not go together. */
+static scree_status check_call(const cli_call *call) {
   const clump_arguments *a = call->options;
-  if (a->json && a->csv) return cli_misuse(call->verb, "--json and --csv exclude each other");
-  if (a->count && a->tolerance > 0)
-    return cli_misuse(call->verb, "-n and --tolerance exclude each other");
   if (a->most && a->count > a->most)
     return cli_misuse(call->verb, "-n %zu is above --max %zu", a->count, a->most);
-  if (a->inside && a->outside < INFINITY)
-    return cli_misuse(call->verb, "--inside and --outside exclude each other");
   if ((a->inside || a->outside < INFINITY) && a->method != SCREE_CLUMP_FITTED)
     return cli_misuse(call->verb, "--inside and --outside are for the method fitted");
-  return 0;
+  return SCREE_OK;
 }
 
-static int run(const cli_call *call) {
-  clump_run r = {.call = call, .start = scree_work_started(), .count = call->input_count};
-  scree_error error;
-  int code = check_call(call);
-  if (code) return code;
-  r.objects = calloc(r.count, sizeof *r.objects);
-  if (!r.objects) {
-    error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the list of bodies"};
-    return cli_fail(&error);
-  }
-  clump_name_objects(&r);
-  scree_status status = make_all(&r, &error);
+static scree_status run(const cli_call *call, scree_error *error) {
+  SCREE_CLEANUP(free_run)
+  clump_run r = {.call = call,
+                 .arguments = call->options,
+                 .start = scree_work_started(),
+                 .count = call->input_count};
+  cli_share share = cli_share_of(call->progress, "fitting spheres");
+  double part = 1 / (double)r.count;
+  SCREE_TRY(check_call(call));
+  SCREE_TRY_ALLOC_ZERO(r.objects, r.count, error);
+  SCREE_SCRATCH(scree_clump_entry, entries, r.count, error);
   for (size_t i = 0; i < r.count; i++) {
-    if (r.objects[i].made) scree_clumps_free(&r.objects[i].clumps);
-    scree_mesh_free(&r.objects[i].surface.mesh);
+    r.objects[i].word = call->inputs[i];
+    cli_distinct_name(r.objects[i].word, r.objects[0].name, sizeof *r.objects, i, NAME_BYTES);
   }
-  free(r.objects);
-  return status == SCREE_OK ? 0 : cli_fail(&error);
+  if (r.arguments->output) SCREE_TRY(check_files(&r, error));
+  for (size_t i = 0; i < r.count; i++) {
+    SCREE_TRY(make(call, &r.objects[i], &share, (double)i * part, part, error));
+    entries[i] = entry_of(&r.objects[i]);
+  }
+  r.report = (scree_clump_report){entries, r.count, call->command_line};
+  if (r.arguments->output) SCREE_TRY(write_files(&r, error));
+  return tell(&r, error);
 }
 
 const cli_verb cli_verb_clump = {
@@ -323,5 +411,6 @@ const cli_verb cli_verb_clump = {
     .input_minimum = 1,
     .input_maximum = 1000,
     .partners = CLI_SAMPLE_PARTNERS,
+    .exclusive = "json|csv count|tolerance inside|outside",
     .run = run,
 };

@@ -1,5 +1,6 @@
 /* scree curve: the table of levels. */
 #include "base/math.h"
+#include "base/owned.h"
 #include "cli/grid.h"
 #include "cli/input.h"
 #include "cli/surface.h"
@@ -7,7 +8,6 @@
 #include "report/program.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 typedef struct curve_arguments {
   cli_source source;
@@ -18,26 +18,22 @@ typedef struct curve_arguments {
   bool distance, csv, json;
 } curve_arguments;
 
+#define ARGUMENTS curve_arguments
 static const cli_option options[] = {
-    {"method", CLI_CHOICE, offsetof(curve_arguments, method), "METHOD",
-     "volume keeps the volume at every level; qecd is MeshLab's quadric edge collapse decimation. "
-     "Default: volume.",
-     0, 0, "volume|qecd"},
-    CLI_GRID_OPTION(curve_arguments, grid),
-    {"distance", CLI_FLAG, offsetof(curve_arguments, distance), NULL,
-     "Mean and maximum distance from the scan to the level and back, in the table in place of S, V "
-     "and Q; the Hausdorff distance is the greater maximum.",
-     0, 0, NULL},
-    {"points", CLI_COUNT, offsetof(curve_arguments, points), "N",
-     "Points per surface for --distance; every vertex is one besides. Default: the scan's vertex "
-     "count.",
-     0, 268435456, NULL},
-    {"csv", CLI_FLAG, offsetof(curve_arguments, csv), NULL,
-     "Comma-separated values in SI units, full digits.", 0, 0, NULL},
-    {"json", CLI_FLAG, offsetof(curve_arguments, json), NULL,
-     "JSON in SI units: one object with the levels in an array.", 0, 0, NULL},
-    CLI_SOUNDNESS_OPTIONS(curve_arguments),
-    CLI_SOURCE_OPTIONS(curve_arguments),
+    CLI_CHOICE_ROW("method", method, "METHOD", "volume|qecd",
+                   "volume keeps the volume at every level; qecd is MeshLab's quadric edge "
+                   "collapse decimation. Default: volume."),
+    CLI_GRID_OPTION,
+    CLI_FLAG_ROW("distance", distance,
+                 "Mean and maximum distance from the scan to the level and back, in the table in "
+                 "place of S, V and Q; the Hausdorff distance is the greater maximum."),
+    CLI_RANGE_ROW(CLI_COUNT, "points", points, "N", 0, 268435456,
+                  "Points per surface for --distance; every vertex is one besides. Default: the "
+                  "scan's vertex count."),
+    CLI_FLAG_ROW("csv", csv, "Comma-separated values in SI units, full digits."),
+    CLI_FLAG_ROW("json", json, "JSON in SI units: one object with the levels in an array."),
+    CLI_SOUNDNESS_OPTIONS,
+    CLI_SOURCE_OPTIONS,
 };
 
 static const curve_arguments defaults = {.source = CLI_SOURCE_DEFAULTS, .grid = CLI_GRID_DEFAULT};
@@ -60,8 +56,15 @@ typedef struct table {
   scree_level first;
   scree_curve_row *rows;
   size_t row_count;
-  scree_error error;
+  scree_error *error;
 } table;
+
+static void free_table(table *t) {
+  scree_free(t->rows);
+  scree_replay_free(t->replay);
+  scree_surface_free(t->scan);
+  scree_curve_free(t->curve);
+}
 
 static void print_header(const table *t) {
   bool distance = t->arguments->distance;
@@ -110,14 +113,11 @@ static scree_status measure_distance(table *t, size_t index, const scree_progres
                                      scree_distance *distance) {
   scree_distance_options settings = scree_default_distance_options();
   const scree_mesh *mesh;
-  scree_surface *surface = NULL;
+  SCREE_OWNED(scree_surface, surface);
   settings.sample_count = t->arguments->points;
-  scree_status status = scree_replay_step(t->replay, index, &mesh, &t->error);
-  if (status == SCREE_OK) status = scree_surface_create(mesh, &surface, &t->error);
-  if (status == SCREE_OK)
-    status = scree_surface_distance(t->scan, surface, &settings, progress, distance, &t->error);
-  scree_surface_free(surface);
-  return status;
+  SCREE_TRY(scree_replay_step(t->replay, index, &mesh, t->error));
+  SCREE_TRY(scree_surface_create(mesh, &surface, t->error));
+  return scree_surface_distance(t->scan, surface, &settings, progress, distance, t->error);
 }
 
 static scree_status make_row(table *t, size_t index, const scree_progress *progress,
@@ -136,8 +136,7 @@ static scree_status make_rows(table *t) {
   double bottom = scree_log10(t->grid.least), steps = t->grid.per_decade;
   size_t rows = (size_t)floor((scree_log10(t->grid.most) - bottom) * steps + GRID_SLACK) + 1;
   size_t last = SIZE_MAX;
-  t->rows = calloc(rows, sizeof *t->rows);
-  if (!t->rows) return scree_fail_memory(&t->error, 0, "the table");
+  SCREE_TRY_ALLOC_ZERO(t->rows, rows, t->error);
   for (size_t i = 0; i < rows; i++) {
     double rp = scree_power_of_ten(bottom + (double)(rows - 1 - i) / steps);
     size_t target = (size_t)(rp * (double)t->first.triangle_count * (1 + 1e-12));
@@ -165,7 +164,7 @@ static scree_status write_json(table *t, const scree_scan *scan) {
                              .rows = t->rows,
                              .row_count = t->row_count,
                              .distances = t->arguments->distance};
-  return scree_curve_json_write(&entry, t->call->command_line, "-", false, &t->error);
+  return scree_curve_json_write(&entry, t->call->command_line, "-", false, t->error);
 }
 
 static void print_legend(const table *t) {
@@ -196,49 +195,33 @@ static void print_facts(const table *t, const scree_scan *scan) {
            facts.locked_vertex_count);
 }
 
-static int run(const cli_call *call) {
-  table t = {.call = call, .arguments = call->options};
+static scree_status run(const cli_call *call, scree_error *error) {
+  SCREE_CLEANUP(free_table) table t = {.call = call, .arguments = call->options, .error = error};
   scree_simplify_options settings = scree_default_simplify_options();
-  scree_scan scan = {0};
-  double scale;
-  int code = cli_parse_grid(call->verb, t.arguments->grid, &t.grid);
-  if (code) return code;
-  if (t.arguments->csv && t.arguments->json)
-    return cli_misuse(call->verb, "--json and --csv exclude each other");
+  SCREE_CLEANUP(scree_scan_free) scree_scan scan = {0};
+  const bool distance = t.arguments->distance;
+  double scale, part = distance ? CURVE_PART : 1 - LOAD_PART;
+  SCREE_TRY(cli_parse_grid(call->verb, t.arguments->grid, &t.grid));
   settings.method = (scree_method)t.arguments->method;
-  if (t.arguments->soundness.no_repair && t.arguments->soundness.unchecked)
-    return cli_misuse(call->verb, "--no-repair and --unchecked exclude each other");
   cli_call loading = *call;
-  t.share = cli_share_of(call->progress,
-                         t.arguments->distance ? "decimating and measuring" : "decimating");
+  t.share = cli_share_of(call->progress, distance ? "decimating and measuring" : "decimating");
   loading.progress = cli_share_enter(&t.share, 0, LOAD_PART);
-  scree_status status = cli_load_for_levels(&loading, &t.arguments->source, &t.arguments->soundness,
-                                            &scan, &scale, &t.error);
-  double part = t.arguments->distance ? CURVE_PART : 1 - LOAD_PART;
-  if (status == SCREE_OK)
-    status =
-        scree_curve_build_scaled(&scan.mesh, scale, &settings,
-                                 cli_share_enter(&t.share, LOAD_PART, part), &t.curve, &t.error);
-  if (status == SCREE_OK && t.arguments->distance) {
-    status = scree_surface_create(&scan.mesh, &t.scan, &t.error);
-    if (status == SCREE_OK) status = scree_replay_start(t.curve, &t.replay, &t.error);
+  SCREE_TRY(cli_load_for_levels(&loading, &t.arguments->source, &t.arguments->soundness, &scan,
+                                &scale, error));
+  SCREE_TRY(scree_curve_build_scaled(&scan.mesh, scale, &settings,
+                                     cli_share_enter(&t.share, LOAD_PART, part), &t.curve, error));
+  if (distance) {
+    SCREE_TRY(scree_surface_create(&scan.mesh, &t.scan, error));
+    SCREE_TRY(scree_replay_start(t.curve, &t.replay, error));
   }
-  if (status == SCREE_OK) {
-    scree_curve_level(t.curve, 0, &t.first);
-    cli_terminal_end();
-    print_facts(&t, &scan);
-    print_legend(&t);
-    print_header(&t);
-    status = make_rows(&t);
-  }
+  scree_curve_level(t.curve, 0, &t.first);
   cli_terminal_end();
-  if (status == SCREE_OK && t.arguments->json) status = write_json(&t, &scan);
-  free(t.rows);
-  scree_replay_free(t.replay);
-  scree_surface_free(t.scan);
-  scree_curve_free(t.curve);
-  scree_scan_free(&scan);
-  return status == SCREE_OK ? 0 : cli_fail(&t.error);
+  print_facts(&t, &scan);
+  print_legend(&t);
+  print_header(&t);
+  SCREE_TRY(make_rows(&t));
+  cli_terminal_end();
+  return t.arguments->json ? write_json(&t, &scan) : SCREE_OK;
 }
 
 const cli_verb cli_verb_curve = {
@@ -257,5 +240,6 @@ const cli_verb cli_verb_curve = {
     .input_minimum = 1,
     .input_maximum = 1,
     .partners = "points:distance " CLI_SAMPLE_PARTNERS,
+    .exclusive = "json|csv " CLI_SOUNDNESS_EXCLUSIVE,
     .run = run,
 };

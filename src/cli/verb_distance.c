@@ -1,4 +1,5 @@
 /* scree distance: how far two surfaces are apart. */
+#include "base/alloc.h"
 #include "cli/input.h"
 #include "cli/terminal.h"
 #include "report/program.h"
@@ -14,30 +15,19 @@ typedef struct distance_arguments {
 
 static const distance_arguments defaults = {.source = CLI_SOURCE_DEFAULTS, .gap = 0.01};
 
+#define ARGUMENTS distance_arguments
 static const cli_option options[] = {
-    {"points", CLI_COUNT, offsetof(distance_arguments, points), "N",
-     "Parts that each surface is cut in, every facet at least one. Default: the greater vertex "
-     "count, at least 10,000, and more until the means are exact to 1 %.",
-     1, 268435456, NULL},
-    {"gap", CLI_SHARE, offsetof(distance_arguments, gap), "SHARE",
-     "Go on until the Hausdorff distance is known to this share of itself; 0: only sample, and say "
-     "the bound that follows. Default: 0.01.",
-     0, 1e6, NULL},
-    {"one-way", CLI_FLAG, offsetof(distance_arguments, one_way), NULL,
-     "Only from A to B, not back.", 0, 0, NULL},
-    CLI_SOURCE_OPTIONS(distance_arguments),
-    {"json", CLI_FLAG, offsetof(distance_arguments, json), NULL, "JSON: one object, in metres.", 0,
-     0, NULL},
+    CLI_RANGE_ROW(
+        CLI_COUNT, "points", points, "N", 1, 268435456,
+        "Parts that each surface is cut in, every facet at least one. Default: the greater vertex "
+        "count, at least 10,000, and more until the means are exact to 1 %."),
+    CLI_RANGE_ROW(CLI_SHARE, "gap", gap, "SHARE", 0, 1e6,
+                  "Go on until the Hausdorff distance is known to this share of itself; 0: only "
+                  "sample, and say the bound that follows. Default: 0.01."),
+    CLI_FLAG_ROW("one-way", one_way, "Only from A to B, not back."),
+    CLI_SOURCE_OPTIONS,
+    CLI_FLAG_ROW("json", json, "JSON: one object, in metres."),
 };
-
-static scree_status read_two(const cli_call *call, scree_scan scans[2], scree_error *error) {
-  const distance_arguments *arguments = call->options;
-  cli_input_options input = cli_source_options(&arguments->source);
-  SCREE_TRY(cli_load(call->inputs[0], &input, call->progress, &scans[0], error));
-  scree_status status = cli_load(call->inputs[1], &input, call->progress, &scans[1], error);
-  if (status != SCREE_OK) scree_scan_free(&scans[0]);
-  return status;
-}
 
 static void print_way(const char *from, const char *to, const scree_deviation *d, double unit) {
   char shown[2][CLI_PRINTABLE_BYTES];
@@ -57,28 +47,27 @@ static void print_text(const scree_distance_entry *entry, double unit) {
          d->hausdorff / unit, d->hausdorff_bound / unit, cli_unit_name(unit));
 }
 
-static int run(const cli_call *call) {
+static scree_status run(const cli_call *call, scree_error *error) {
   const distance_arguments *arguments = call->options;
-  scree_scan scans[2];
-  scree_error error;
-  if (read_two(call, scans, &error) != SCREE_OK) return cli_fail(&error);
+  cli_input_options input = cli_source_options(&arguments->source);
+  SCREE_CLEANUP(scree_scan_free) scree_scan a = {0};
+  SCREE_CLEANUP(scree_scan_free) scree_scan b = {0};
+  SCREE_TRY(cli_load(call->inputs[0], &input, call->progress, &a, error));
+  SCREE_TRY(cli_load(call->inputs[1], &input, call->progress, &b, error));
   scree_distance_entry entry = {.file = {call->inputs[0], call->inputs[1]},
-                                .checksum = {scans[0].checksum, scans[1].checksum},
-                                .unit_m = {scans[0].unit_m, scans[1].unit_m},
+                                .checksum = {a.checksum, b.checksum},
+                                .unit_m = {a.unit_m, b.unit_m},
                                 .options = scree_default_distance_options()};
   entry.options.sample_count = arguments->points;
   entry.options.hausdorff_gap = arguments->gap;
   entry.options.one_way = arguments->one_way;
-  scree_status status = scree_mesh_distance(&scans[0].mesh, &scans[1].mesh, &entry.options,
-                                            call->progress, &entry.distance, &error);
-  scree_scan_free(&scans[0]);
-  scree_scan_free(&scans[1]);
+  SCREE_TRY(scree_mesh_distance(&a.mesh, &b.mesh, &entry.options, call->progress, &entry.distance,
+                                error));
   cli_terminal_end();
-  if (status == SCREE_OK && arguments->json)
-    status = scree_distance_json_write(&entry, call->command_line, "-", false, &error);
-  else if (status == SCREE_OK)
-    print_text(&entry, arguments->source.unit);
-  return status == SCREE_OK ? 0 : cli_fail(&error);
+  if (arguments->json)
+    return scree_distance_json_write(&entry, call->command_line, "-", false, error);
+  print_text(&entry, arguments->source.unit);
+  return SCREE_OK;
 }
 
 const cli_verb cli_verb_distance = {

@@ -1,66 +1,64 @@
 /* scree drop: the scene of a template, shapes poured into a container until they lie still. */
 #include "cli/pour.h"
 
-/* Options and the template's parameters that they set. */
-#define SETTINGS(X)                                                                                \
-  X(WIDTH, "width", "width", CLI_LENGTH_TEXT, "LENGTH",                                            \
-    "Diameter of the cylinder or side of the box, inside, as in 300mm. Default: about the height " \
-    "the heap will have, and room for three abreast.")                                             \
-  X(DEPTH, "depth", "depth", CLI_LENGTH_TEXT, "LENGTH",                                            \
-    "The box's other side. Default: the width.")                                                   \
-  X(TIME, "time", "time", CLI_TEXT, "S",                                                           \
-    "Seconds simulated after the last layer entered, at most. Default: 2; less of particles "      \
-    "under 10 mm, as their falls are shorter.")                                                    \
-  X(STILL, "still", "still", CLI_TEXT, "J",                                                        \
-    "End early when the mean kinetic energy of a particle stays below this; 0: never. Default: "   \
-    "1e-8 J; less of particles under 10 mm.")                                                      \
-  X(FRAMES, "frames", "frames", CLI_TEXT, "S",                                                     \
-    "Simulated seconds between frames; 0 writes none. Default: 0.02; less of particles under 10 "  \
-    "mm.")                                                                                         \
-  X(CHECKPOINT, "checkpoint", "output.checkpoint", CLI_TEXT, "S",                                  \
-    "Seconds of the clock between checkpoints. Default: 60.")                                      \
-  X(DROP_HEIGHT, "drop-height", "drop_height", CLI_LENGTH_TEXT, "LENGTH",                          \
-    "From the floor to the first layer. Later ones enter above what is there. Default: 50mm, or "  \
-    "five times the largest particle where that is less.")                                         \
-  X(SPEED, "speed", "speed", CLI_TEXT, "M/S",                                                      \
-    "Speed of entering, downwards. Default: 1 m/s; less of particles under 10 mm.")                \
-  X(DENSITY, "density", "density", CLI_TEXT, "KG/M3", "Default: 2000 kg/m3.")                      \
-  X(YOUNG, "young", "young", CLI_TEXT, "PA",                                                       \
-    "Young's modulus of the particles: stiffness of a contact over particle size. Default: 1e8.")  \
-  X(YOUNG_WALL, "young-wall", "young_wall", CLI_TEXT, "PA", "The walls'. Default: 1e11.")          \
-  X(RESTITUTION, "restitution", "restitution", CLI_TEXT, "E", "From 0.01 to 1. Default: 0.3.")     \
-  X(FRICTION, "friction", "friction", CLI_TEXT, "MU", "Between particles. Default: 0.5.")          \
-  X(FRICTION_WALL, "friction-wall", "friction_wall", CLI_TEXT, "MU",                               \
-    "Against walls. Default: 0.5.")                                                                \
-  X(LAW, "law", "contact.law", CLI_TEXT, "LAW",                                                    \
-    "linear (spring, dashpot, slider) or hysteretic (Walton and Braun). Default: linear.")         \
-  X(STEPS, "steps", "contact.steps", CLI_TEXT, "N",                                                \
-    "Time steps in a quarter period of the fastest contact. Default: 20; 40 for energies to 2 %.") \
-  X(STIFFNESS, "stiffness", "contact.stiffness_factor", CLI_TEXT, "X",                             \
-    "Multiplies all stiffnesses: 0.01 is 10 times faster, with 100 times the overlaps at rest. "   \
-    "Default: 1.")                                                                                 \
-  X(SEED, "seed", "seed", CLI_TEXT, "N", "Another seed, another pour. Default: 1.")
+static const cli_pour_arguments defaults = {CLI_POUR_DEFAULTS, .scene.output = "drop", .each = 30};
 
-CLI_SETTINGS(SETTINGS)
-
-static const cli_pour_arguments defaults = {CLI_POUR_DEFAULTS, .output = "drop", .each = 30};
-
+#define ARGUMENTS cli_pour_arguments
 static const cli_option options[] = {
-    {"output", CLI_TEXT, CLI_POUR_AT(output), "DIR",
-     "The folder for bodies.pvd, frame-*.vtp, series.csv, scene.png and report.html, made if need "
-     "be; with several runs, a folder in it for each, and one report.html. Default: drop.",
-     0, 0, NULL},
-    {"container", CLI_CHOICE, CLI_POUR_AT(container), "KIND", "cylinder or box. Default: cylinder.",
-     0, 0, "cylinder|box"},
-    {"particles", CLI_COUNT, CLI_POUR_AT(each), "COUNT",
-     "Particles of a shape without =COUNT. Default: 30.", 1, 10000000, NULL},
-    CLI_POUR_OPTIONS(CLI_POUR_OPTION) SETTINGS(CLI_SETTING_OPTION)
-        CLI_SOURCE_OPTIONS(cli_pour_arguments)};
+    CLI_ROW(
+        CLI_TEXT, "output", scene.output, "DIR",
+        "The folder for bodies.pvd, frame-*.vtp, series.csv, scene.png and report.html, made if "
+        "need be; with several runs, a folder in it for each, and one report.html. Default: drop."),
+    CLI_CHOICE_ROW("container", container, "KIND", "cylinder|box",
+                   "cylinder or box. Default: cylinder."),
+    CLI_RANGE_ROW(CLI_COUNT, "particles", each, "COUNT", 1, 10000000,
+                  "Particles of a shape without =COUNT. Default: 30."),
+    CLI_POUR_OPTIONS,
+    CLI_FIELD_ROW(CLI_LENGTH_TEXT, "width", "width", "LENGTH",
+                  "Diameter of the cylinder or side of the box, inside, as in 300mm. Default: "
+                  "about the height the heap will have, and room for three abreast."),
+    CLI_FIELD_ROW(CLI_LENGTH_TEXT, "depth", "depth", "LENGTH",
+                  "The box's other side. Default: the width."),
+    CLI_FIELD_ROW(CLI_TEXT, "time", "time", "S",
+                  "Seconds simulated after the last layer entered, at most. Default: 2; less of "
+                  "particles under 10 mm, as their falls are shorter."),
+    CLI_FIELD_ROW(CLI_TEXT, "still", "still", "J",
+                  "End early when the mean kinetic energy of a particle stays below this; 0: "
+                  "never. Default: 1e-8 J; less of particles under 10 mm."),
+    CLI_FIELD_ROW(CLI_TEXT, "frames", "frames", "S",
+                  "Simulated seconds between frames; 0 writes none. Default: 0.02; less of "
+                  "particles under 10 mm."),
+    CLI_FIELD_ROW(CLI_TEXT, "checkpoint", "output.checkpoint", "S",
+                  "Seconds of the clock between checkpoints. Default: 60."),
+    CLI_FIELD_ROW(CLI_LENGTH_TEXT, "drop-height", "drop_height", "LENGTH",
+                  "From the floor to the first layer. Later ones enter above what is there. "
+                  "Default: 50mm, or five times the largest particle where that is less."),
+    CLI_FIELD_ROW(CLI_TEXT, "speed", "speed", "M/S",
+                  "Speed of entering, downwards. Default: 1 m/s; less of particles under 10 mm."),
+    CLI_FIELD_ROW(CLI_TEXT, "density", "density", "KG/M3", "Default: 2000 kg/m3."),
+    CLI_FIELD_ROW(CLI_TEXT, "young", "young", "PA",
+                  "Young's modulus of the particles: stiffness of a contact over particle size. "
+                  "Default: 1e8."),
+    CLI_FIELD_ROW(CLI_TEXT, "young-wall", "young_wall", "PA", "The walls'. Default: 1e11."),
+    CLI_FIELD_ROW(CLI_TEXT, "restitution", "restitution", "E", "From 0.01 to 1. Default: 0.3."),
+    CLI_FIELD_ROW(CLI_TEXT, "friction", "friction", "MU", "Between particles. Default: 0.5."),
+    CLI_FIELD_ROW(CLI_TEXT, "friction-wall", "friction_wall", "MU", "Against walls. Default: 0.5."),
+    CLI_FIELD_ROW(
+        CLI_TEXT, "law", "contact.law", "LAW",
+        "linear (spring, dashpot, slider) or hysteretic (Walton and Braun). Default: linear."),
+    CLI_FIELD_ROW(CLI_TEXT, "steps", "contact.steps", "N",
+                  "Time steps in a quarter period of the fastest contact. Default: 20; 40 for "
+                  "energies to 2 %."),
+    CLI_FIELD_ROW(CLI_TEXT, "stiffness", "contact.stiffness_factor", "X",
+                  "Multiplies all stiffnesses: 0.01 is 10 times faster, with 100 times the "
+                  "overlaps at rest. Default: 1."),
+    CLI_FIELD_ROW(CLI_TEXT, "seed", "seed", "N", "Another seed, another pour. Default: 1."),
+    CLI_SOURCE_OPTIONS,
+};
 
-static int run(const cli_call *call) {
+static scree_status run(const cli_call *call, scree_error *error) {
   const cli_pour_arguments *a = call->options;
-  const cli_pour_kind kind = {a->container ? "drop-box" : "drop", settings, SETTING_COUNT, false};
-  return cli_pour_run(call, &kind);
+  return cli_pour_run(call, a->container ? "drop-box" : "drop", false, error);
 }
 
 const cli_verb cli_verb_drop = {
@@ -89,5 +87,6 @@ const cli_verb cli_verb_drop = {
     .input_minimum = 0,
     .input_maximum = SCREE_MOST_SHAPES,
     .partners = CLI_POUR_PARTNERS " depth:container particles::|samples",
+    .exclusive = CLI_POUR_EXCLUSIVE,
     .run = run,
 };

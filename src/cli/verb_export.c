@@ -1,13 +1,12 @@
 /* scree export: meshes and piles as other programs want them. */
+#include "base/owned.h"
 #include "base/platform.h"
-#include "cli/clump.h"
 #include "cli/clump_surface.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
 #include "report/program.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -25,40 +24,38 @@ enum { NAME_BYTES = 4096 };
 static const export_arguments defaults = {
     .source = CLI_SOURCE_DEFAULTS, .density = 2000, .particles = 27};
 
-#define AT(field) offsetof(export_arguments, field)
+#define ARGUMENTS export_arguments
 static const cli_option options[] = {
-    {"output", CLI_TEXT, AT(output), "OUT",
-     "What to write (required). Of a surface: .stl, .ply, .obj, .off or .3mf, with a .json of the "
-     "same name beside it, or .vtp. Of a checkpoint: .vtp, .csv, or a folder. Of several: .pvd or "
-     ".vtp.series, with a .vtp each beside it.",
-     0, 0, NULL},
-    {"to", CLI_TEXT, AT(to), "UNIT|CODE",
-     "Unit of the meshes written; default: the input's; mm for samples and checkpoints. Or the DEM "
-     "code that reads what is written: lammps, liggghts, yade, pfc, chrono, edem or mfix. These "
-     "take clumps: of a surface one is made.",
-     0, 0, NULL},
-    {"count", CLI_COUNT, AT(count), "N",
-     "For a DEM code: spheres of the clump made of a surface. Default: the recommended number.", 1,
-     300, NULL},
-    {"particles", CLI_COUNT, AT(particles), "N",
-     "For a DEM code: clumps that the script lets fall. Default: 27.", 1, 100000, NULL},
-    {"young", CLI_REAL, AT(young), "PA",
-     "For a DEM code: Young's modulus of its script. Default: so soft that a body that falls from "
-     "the script's height presses itself a tenth of its radius into the floor.",
-     1e4, 1.3e12, NULL},
-    {"centre", CLI_FLAG, AT(centre), NULL, "Put the centre of mass at the origin.", 0, 0, NULL},
-    {"principal", CLI_FLAG, AT(principal), NULL,
-     "And turn the principal axes of inertia along x, y and z, the long one along x.", 0, 0, NULL},
-    {"density", CLI_REAL, AT(density), "KG/M3",
-     "Density in kg/m3, for mass and inertia. Default: 2000.", 1e-6, 1e6, NULL},
-    {"reference", CLI_FILE, AT(reference), "FILE",
-     "For .vtp of a surface: add the distance to the surface in FILE, or sample:NAME.", 0, 0, NULL},
-    {"view", CLI_CHOICE, AT(view), "VIEW",
-     "For .vtp of a checkpoint: surfaces (every triangle in its place), points (one per body, with "
-     "quaternion and velocities), contacts (lines with forces) or walls. Default: surfaces.",
-     0, 0, "surfaces|points|contacts|walls"},
-    CLI_SOURCE_OPTIONS(export_arguments),
-    {"force", CLI_FLAG, AT(overwrite), NULL, "Overwrite existing files.", 0, 0, NULL},
+    CLI_ROW(CLI_TEXT, "output", output, "OUT",
+            "What to write (required). Of a surface: .stl, .ply, .obj, .off or .3mf, with a .json "
+            "of the same name beside it, or .vtp. Of a checkpoint: .vtp, .csv, or a folder. Of "
+            "several: .pvd or .vtp.series, with a .vtp each beside it."),
+    CLI_ROW(CLI_TEXT, "to", to, "UNIT|CODE",
+            "Unit of the meshes written; default: the input's; mm for samples and checkpoints. Or "
+            "the DEM code that reads what is written: lammps, liggghts, yade, pfc, chrono, edem or "
+            "mfix. These take clumps: of a surface one is made."),
+    CLI_RANGE_ROW(
+        CLI_COUNT, "count", count, "N", 1, 300,
+        "For a DEM code: spheres of the clump made of a surface. Default: the recommended number."),
+    CLI_RANGE_ROW(CLI_COUNT, "particles", particles, "N", 1, 100000,
+                  "For a DEM code: clumps that the script lets fall. Default: 27."),
+    CLI_RANGE_ROW(
+        CLI_REAL, "young", young, "PA", 1e4, 1.3e12,
+        "For a DEM code: Young's modulus of its script. Default: so soft that a body that falls "
+        "from the script's height presses itself a tenth of its radius into the floor."),
+    CLI_FLAG_ROW("centre", centre, "Put the centre of mass at the origin."),
+    CLI_FLAG_ROW("principal", principal,
+                 "And turn the principal axes of inertia along x, y and z, the long one along x."),
+    CLI_RANGE_ROW(CLI_REAL, "density", density, "KG/M3", 1e-6, 1e6,
+                  "Density in kg/m3, for mass and inertia. Default: 2000."),
+    CLI_ROW(CLI_FILE, "reference", reference, "FILE",
+            "For .vtp of a surface: add the distance to the surface in FILE, or sample:NAME."),
+    CLI_CHOICE_ROW("view", view, "VIEW", "surfaces|points|contacts|walls",
+                   "For .vtp of a checkpoint: surfaces (every triangle in its place), points (one "
+                   "per body, with quaternion and velocities), contacts (lines with forces) or "
+                   "walls. Default: surfaces."),
+    CLI_SOURCE_OPTIONS,
+    CLI_FLAG_ROW("force", overwrite, "Overwrite existing files."),
 };
 
 typedef enum input_kind { WORLD, SCENE, SURFACE } input_kind;
@@ -97,14 +94,10 @@ static scree_export_options export_options(const cli_call *call) {
 static scree_status write_vtp(const cli_call *call, const scree_mesh *mesh, scree_error *error) {
   const export_arguments *a = call->options;
   cli_input_options input = cli_source_options(&a->source);
-  scree_scan reference = {0};
-  scree_status status = SCREE_OK;
-  if (a->reference) status = cli_load(a->reference, &input, call->progress, &reference, error);
-  if (status == SCREE_OK)
-    status = scree_mesh_vtp_write(mesh, a->reference ? &reference.mesh : NULL, a->output,
-                                  a->overwrite, error);
-  scree_scan_free(&reference);
-  return status;
+  SCREE_CLEANUP(scree_scan_free) scree_scan reference = {0};
+  if (a->reference) SCREE_TRY(cli_load(a->reference, &input, call->progress, &reference, error));
+  return scree_mesh_vtp_write(mesh, a->reference ? &reference.mesh : NULL, a->output, a->overwrite,
+                              error);
 }
 
 /* Without a minus sign before zeros. */
@@ -133,26 +126,25 @@ static scree_status write_mesh(const cli_call *call, const scree_scan *scan, con
   scree_export_options o = export_options(call);
   scree_exported exported;
   o.checksum = scan->checksum;
-  scree_status status =
-      scree_particle_export(&scan->mesh, &o, a->output, json_path, &exported, error);
-  if (status == SCREE_OK) say(call, &exported, json_path);
-  return status;
+  SCREE_TRY(scree_particle_export(&scan->mesh, &o, a->output, json_path, &exported, error));
+  say(call, &exported, json_path);
+  return SCREE_OK;
 }
 
 static scree_status export_surface(const cli_call *call, scree_error *error) {
   const export_arguments *a = call->options;
   cli_input_options input = cli_source_options(&a->source);
-  scree_scan scan;
+  SCREE_CLEANUP(scree_scan_free) scree_scan scan = {0};
   char json_path[NAME_BYTES];
   bool vtp = cli_has_ending(a->output, ".vtp");
-  scree_status status = cli_check_output(call, a->output, a->overwrite, error);
-  if (status == SCREE_OK && !vtp)
-    status = cli_beside(a->output, ".json", json_path, sizeof json_path, error);
-  if (status == SCREE_OK && !vtp) status = cli_check_output(call, json_path, a->overwrite, error);
-  if (status == SCREE_OK) status = cli_load(call->inputs[0], &input, call->progress, &scan, error);
-  if (status != SCREE_OK) return status;
-  status = vtp ? write_vtp(call, &scan.mesh, error) : write_mesh(call, &scan, json_path, error);
-  scree_scan_free(&scan);
+  SCREE_TRY(cli_check_output(call, a->output, a->overwrite, error));
+  if (!vtp) {
+    SCREE_TRY(cli_beside(a->output, ".json", json_path, sizeof json_path, error));
+    SCREE_TRY(cli_check_output(call, json_path, a->overwrite, error));
+  }
+  SCREE_TRY(cli_load(call->inputs[0], &input, call->progress, &scan, error));
+  scree_status status =
+      vtp ? write_vtp(call, &scan.mesh, error) : write_mesh(call, &scan, json_path, error);
   return status == SCREE_BAD_MESH ? cli_name_in_error(call->inputs[0], error) : status;
 }
 
@@ -167,40 +159,41 @@ static scree_dem_code code_of(const export_arguments *a) {
   return (scree_dem_code)code;
 }
 
+static scree_status read_clump(const char *word, const cli_input_options *input,
+                               scree_particle **particle, scree_error *error) {
+  SCREE_TRY(scree_particle_clump_read(word, &input->read, particle, error));
+  size_t pieces = scree_particle_piece_count(*particle);
+  if (pieces > 1)
+    cli_remark(word,
+               "the spheres lie in %zu pieces that do not touch: are the columns x, y, z, radius, "
+               "and all in one unit?",
+               pieces);
+  return SCREE_OK;
+}
+
 static scree_status make_clump(const cli_call *call, scree_particle **particle,
                                scree_error *error) {
   const export_arguments *a = call->options;
   const char *word = call->inputs[0];
   cli_input_options input = cli_source_options(&a->source);
-  if (cli_is_clump(word)) {
-    scree_status read = scree_particle_clump_read(word, &input.read, particle, error);
-    size_t pieces = read == SCREE_OK ? scree_particle_piece_count(*particle) : 1;
-    if (pieces > 1)
-      cli_remark(word,
-                 "the spheres lie in %zu pieces that do not touch: are the columns x, y, z, "
-                 "radius, and all in one unit?",
-                 pieces);
-    return read;
-  }
+  SCREE_CLEANUP(cli_clump_surface_free)
   cli_clump_surface surface = {.triangles = SCREE_CLUMP_TRIANGLES};
+  SCREE_CLEANUP(scree_clumps_free) scree_clumps clumps = {0};
   scree_clump_options o = scree_default_clump_options();
-  scree_clumps clumps;
+  if (scree_is_clump_table(word)) return read_clump(word, &input, particle, error);
   SCREE_TRY(cli_load_for_clump(word, &input, call->progress, &surface, error));
   if (a->count) o.most = a->count;
-  scree_status status = scree_clumps_make(&surface.mesh, &o, call->progress, &clumps, error);
-  scree_mesh_free(&surface.mesh);
-  if (status != SCREE_OK) return cli_name_in_error(word, error);
+  if (scree_clumps_make(&surface.mesh, &o, call->progress, &clumps, error) != SCREE_OK)
+    return cli_name_in_error(word, error);
   const scree_clump *clump =
       a->count ? scree_clumps_of_count(&clumps, a->count) : &clumps.clumps[clumps.recommended];
-  status = scree_clump_particle(&clumps, clump, particle, error);
-  scree_clumps_free(&clumps);
-  return status;
+  return scree_clump_particle(&clumps, clump, particle, error);
 }
 
 static scree_status export_clump(const cli_call *call, scree_error *error) {
   const export_arguments *a = call->options;
   scree_code_options o = scree_default_code_options();
-  scree_particle *particle = NULL;
+  SCREE_OWNED(scree_particle, particle);
   scree_particle_measures m;
   char name[128], shown[CLI_PRINTABLE_BYTES];
   cli_short_name(call->inputs[0], name, sizeof name);
@@ -209,20 +202,18 @@ static scree_status export_clump(const cli_call *call, scree_error *error) {
   o.count = a->particles;
   o.young = a->young;
   o.overwrite = a->overwrite;
-  scree_status status = cli_make_folder(a->output, error);
-  if (status == SCREE_OK) status = make_clump(call, &particle, error);
-  if (status != SCREE_OK) return status;
-  status = scree_clump_code_write(particle, code_of(a), &o, a->output, error);
+  SCREE_TRY(cli_make_folder(a->output, error));
+  SCREE_TRY(make_clump(call, &particle, error));
+  SCREE_TRY(scree_clump_code_write(particle, code_of(a), &o, a->output, error));
   scree_particle_measure(particle, &m);
   cli_terminal_end();
-  if (status == SCREE_OK && !call->quiet)
+  if (!call->quiet)
     printf("%s: a clump of %zu sphere%s for %s, %.6g kg at %g kg/m3, principal moments %.4g, %.4g, "
            "%.4g kg m2\n",
            cli_printable(a->output, shown), m.point_count, cli_plural(m.point_count), a->to,
            a->density * m.volume, a->density, a->density * m.inertia[0], a->density * m.inertia[1],
            a->density * m.inertia[2]);
-  scree_particle_free(particle);
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- Checkpoints ---- */
@@ -234,7 +225,6 @@ typedef struct checkpoint {
 } checkpoint;
 
 static scree_status load_checkpoint(const char *word, checkpoint *c, scree_error *error) {
-  *c = (checkpoint){0};
   if (kind_of(word) == WORLD) return scree_world_load(word, &c->world, error);
   SCREE_TRY(scree_scene_load(word, &c->scene, error));
   c->world = scree_scene_world(c->scene);
@@ -268,17 +258,12 @@ static scree_status write_table(const cli_call *call, const checkpoint *c, scree
 static scree_status export_world(const cli_call *call, scree_error *error) {
   const export_arguments *a = call->options;
   scree_export_options o = export_options(call);
-  checkpoint c;
-  scree_status status = load_checkpoint(call->inputs[0], &c, error);
-  if (status != SCREE_OK) return status;
-  if (is_table(a->output))
-    status = write_table(call, &c, error);
-  else if (cli_has_ending(a->output, ".vtp"))
-    status = write_view(call, &c, call->inputs[0], a->output, error);
-  else
-    status = scree_world_export(c.world, &o, a->output, error);
-  free_checkpoint(&c);
-  return status;
+  SCREE_CLEANUP(free_checkpoint) checkpoint c = {0};
+  SCREE_TRY(load_checkpoint(call->inputs[0], &c, error));
+  if (is_table(a->output)) return write_table(call, &c, error);
+  if (cli_has_ending(a->output, ".vtp"))
+    return write_view(call, &c, call->inputs[0], a->output, error);
+  return scree_world_export(c.world, &o, a->output, error);
 }
 
 /* File `index` of a series: pile-0000.vtp beside pile.pvd or pile.vtp.series. */
@@ -294,69 +279,57 @@ static scree_status name_file(const char *output, size_t index, char name[NAME_B
 
 static scree_status write_frame(const cli_call *call, size_t index, const char *name, double *time,
                                 scree_error *error) {
-  checkpoint c;
+  SCREE_CLEANUP(free_checkpoint) checkpoint c = {0};
   SCREE_TRY(load_checkpoint(call->inputs[index], &c, error));
   *time = scree_world_time(c.world);
-  scree_status status = write_view(call, &c, call->inputs[index], name, error);
-  free_checkpoint(&c);
-  return status;
+  return write_view(call, &c, call->inputs[index], name, error);
 }
 
 /* A .vtp per input, and the list of them with their times. */
 static scree_status export_series(const cli_call *call, scree_error *error) {
   const export_arguments *a = call->options;
   size_t count = call->input_count;
-  char(*paths)[NAME_BYTES] = calloc(count, sizeof *paths);
-  const char **names = calloc(count, sizeof *names);
-  double *times = calloc(count, sizeof *times);
-  scree_status status = paths && names && times ? SCREE_OK : SCREE_OUT_OF_MEMORY;
-  if (status != SCREE_OK) *error = (scree_error){status, "out of memory for the list of files"};
-  if (status == SCREE_OK) status = cli_check_output(call, a->output, a->overwrite, error);
-  for (size_t i = 0; status == SCREE_OK && i < count; i++) {
-    status = name_file(a->output, i, paths[i], error);
-    if (status == SCREE_OK) status = cli_check_output(call, paths[i], a->overwrite, error);
+  typedef char file_name[NAME_BYTES];
+  SCREE_SCRATCH(file_name, paths, count, error);
+  SCREE_SCRATCH(const char *, names, count, error);
+  SCREE_SCRATCH(double, times, count, error);
+  SCREE_TRY(cli_check_output(call, a->output, a->overwrite, error));
+  for (size_t i = 0; i < count; i++) {
+    SCREE_TRY(name_file(a->output, i, paths[i], error));
+    SCREE_TRY(cli_check_output(call, paths[i], a->overwrite, error));
   }
-  for (size_t i = 0; status == SCREE_OK && i < count; i++) {
-    status = write_frame(call, i, paths[i], &times[i], error);
+  for (size_t i = 0; i < count; i++) {
+    SCREE_TRY(write_frame(call, i, paths[i], &times[i], error));
     const char *slash = strrchr(paths[i], '/');
     names[i] = slash ? slash + 1 : paths[i];
   }
-  if (status == SCREE_OK)
-    status = scree_pvd_write(names, times, count, a->output, a->overwrite, error);
-  free(paths);
-  free(names);
-  free(times);
-  return status;
+  return scree_pvd_write(names, times, count, a->output, a->overwrite, error);
 }
 
 static bool is_series(const char *path) {
   return cli_has_ending(path, ".pvd") || cli_has_ending(path, ".series");
 }
 
-/* 0, or 2 after telling which inputs do not go with the output. */
-static int check_inputs(const cli_call *call, bool world) {
+/* Which inputs go with the output. */
+static scree_status check_inputs(const cli_call *call, bool world) {
   const export_arguments *a = call->options;
   bool series = is_series(a->output);
   if (call->input_count > 1 && !series)
     return cli_misuse(call->verb, "-o %s: several inputs go into a .pvd or .vtp.series only",
                       a->output);
-  if (series && !world)
-    return cli_misuse(call->verb, "-o %s: a series is of checkpoints; %s is none", a->output,
-                      call->inputs[0]);
-  for (size_t i = 1; i < call->input_count; i++)
-    if (kind_of(call->inputs[i]) == SURFACE)
+  for (size_t i = 0; series && i < call->input_count; i++)
+    if (i ? kind_of(call->inputs[i]) == SURFACE : !world)
       return cli_misuse(call->verb, "-o %s: a series is of checkpoints; %s is none", a->output,
                         call->inputs[i]);
-  return 0;
+  return SCREE_OK;
 }
 
-/* 0, or 2 after telling what does not go together. */
-static int check_call(const cli_call *call, bool world) {
+/* What does not go together. */
+static scree_status check_call(const cli_call *call, bool world) {
   const export_arguments *a = call->options;
   bool series = is_series(a->output), vtp = cli_has_ending(a->output, ".vtp") || series;
   bool known = vtp || scree_file_format_of(a->output) != SCREE_FORMAT_AUTO;
-  int code = check_inputs(call, world);
-  if (code) return code;
+  SCREE_TRY(check_inputs(call, world));
   if (!world && !known)
     return cli_misuse(call->verb,
                       "-o %s: of a surface, .stl, .ply, .obj, .off, .3mf or .vtp is written",
@@ -372,11 +345,11 @@ static int check_call(const cli_call *call, bool world) {
     return cli_misuse(call->verb, "--view is for a checkpoint written as .vtp");
   if ((a->centre || a->principal) && (world || vtp))
     return cli_misuse(call->verb, "--centre and --principal are for a surface written as a mesh");
-  return 0;
+  return SCREE_OK;
 }
 
-/* 0, or 2 after telling what does not go with a DEM code. */
-static int check_clump_call(const cli_call *call) {
+/* What does not go with a DEM code. */
+static scree_status check_clump_call(const cli_call *call) {
   const export_arguments *a = call->options;
   if (call->input_count > 1 || kind_of(call->inputs[0]) != SURFACE)
     return cli_misuse(call->verb, "--to %s is for one surface or clump", a->to);
@@ -385,37 +358,30 @@ static int check_clump_call(const cli_call *call) {
                       "--to %s takes neither --reference, --view, --centre nor --principal: a "
                       "clump stands about its centre of mass, along its principal axes",
                       a->to);
-  if (a->count && cli_is_clump(call->inputs[0]))
+  if (a->count && scree_is_clump_table(call->inputs[0]))
     return cli_misuse(call->verb, "--count is for a surface; %s is a clump", call->inputs[0]);
-  return 0;
+  return SCREE_OK;
 }
 
-static int run(const cli_call *call) {
+static scree_status run(const cli_call *call, scree_error *error) {
   const export_arguments *a = call->options;
-  scree_error error;
-  scree_status status;
   double unit;
   if (!a->output) return cli_misuse(call->verb, "say with -o what to write");
   if (code_of(a) < SCREE_DEM_CODE_COUNT) {
-    int misuse = check_clump_call(call);
-    if (misuse) return misuse;
-    return export_clump(call, &error) == SCREE_OK ? 0 : cli_fail(&error);
+    SCREE_TRY(check_clump_call(call));
+    return export_clump(call, error);
   }
   if (a->to && !cli_unit_from_text(a->to, &unit))
     return cli_misuse(call->verb,
                       "--to %s: must be a unit (m, cm, mm, um, inch, ft, km) or a DEM code "
                       "(lammps, liggghts, yade, pfc, chrono, edem, mfix)",
                       a->to);
-  if (a->count || cli_is_clump(call->inputs[0]))
+  if (a->count || scree_is_clump_table(call->inputs[0]))
     return cli_misuse(call->verb, "a clump is written for a DEM code: say which with --to");
   bool world = kind_of(call->inputs[0]) != SURFACE;
-  int code = check_call(call, world);
-  if (code) return code;
-  if (is_series(a->output))
-    status = export_series(call, &error);
-  else
-    status = world ? export_world(call, &error) : export_surface(call, &error);
-  return status == SCREE_OK ? 0 : cli_fail(&error);
+  SCREE_TRY(check_call(call, world));
+  if (is_series(a->output)) return export_series(call, error);
+  return world ? export_world(call, error) : export_surface(call, error);
 }
 
 const cli_verb cli_verb_export = {

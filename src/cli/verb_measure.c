@@ -1,4 +1,5 @@
 /* scree measure: sizes, mass properties and topology of scans. */
+#include "base/alloc.h"
 #include "base/radix.h"
 #include "cli/input.h"
 #include "cli/output.h"
@@ -6,7 +7,6 @@
 #include "report/program.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct measure_arguments {
@@ -18,20 +18,17 @@ typedef struct measure_arguments {
 
 static const measure_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};
 
+#define ARGUMENTS measure_arguments
 static const cli_option options[] = {
-    {"weld", CLI_SHARE, offsetof(measure_arguments, weld), "SHARE",
-     "Unite vertices closer than this share of the bounding box diagonal. Default: 0, only equal "
-     "ones.",
-     0, 0.1, NULL},
-    CLI_SOURCE_OPTIONS(measure_arguments),
-    {"json", CLI_FLAG, offsetof(measure_arguments, json), NULL,
-     "JSON: one array, an object per file, in SI units.", 0, 0, NULL},
-    {"csv", CLI_FLAG, offsetof(measure_arguments, csv), NULL, "CSV: one row per file, in SI units.",
-     0, 0, NULL},
-    {"zingg", CLI_TEXT, offsetof(measure_arguments, zingg), "FILE",
-     "Draw Zingg's plot of all files: .png, .svg or .pdf, or its data as .csv.", 0, 0, NULL},
-    {"force", CLI_FLAG, offsetof(measure_arguments, overwrite), NULL, "Overwrite an existing file.",
-     0, 0, NULL},
+    CLI_RANGE_ROW(CLI_SHARE, "weld", weld, "SHARE", 0, 0.1,
+                  "Unite vertices closer than this share of the bounding box diagonal. Default: 0, "
+                  "only equal ones."),
+    CLI_SOURCE_OPTIONS,
+    CLI_FLAG_ROW("json", json, "JSON: one array, an object per file, in SI units."),
+    CLI_FLAG_ROW("csv", csv, "CSV: one row per file, in SI units."),
+    CLI_ROW(CLI_TEXT, "zingg", zingg, "FILE",
+            "Draw Zingg's plot of all files: .png, .svg or .pdf, or its data as .csv."),
+    CLI_FLAG_ROW("force", overwrite, "Overwrite an existing file."),
 };
 
 /* ---- Text ---- */
@@ -140,28 +137,28 @@ static const struct {
 };
 
 /* Distributions over all bodies described, and how many are of which class. */
-static void print_set(const scree_measure_entry *entries, size_t count) {
-  double *values = calloc(count + 1, sizeof *values);
+static scree_status print_set(const scree_measure_entry *entries, size_t count,
+                              scree_error *error) {
+  SCREE_SCRATCH(double, values, count, error);
   size_t bodies = 0, classes[4] = {0};
-  if (!values) return;
   for (size_t i = 0; i < count; i++) {
     bodies += entries[i].described;
     if (entries[i].described) classes[entries[i].descriptors.zingg]++;
   }
-  if (bodies > 1)
-    printf("\n%zu bodies            %9s %9s %9s %9s %9s\n", bodies, "least", "25 %", "median",
-           "75 %", "largest");
-  for (size_t k = 0; bodies > 1 && k < sizeof spreads / sizeof *spreads; k++) {
+  if (bodies < 2) return SCREE_OK;
+  printf("\n%zu bodies            %9s %9s %9s %9s %9s\n", bodies, "least", "25 %", "median", "75 %",
+         "largest");
+  for (size_t k = 0; k < sizeof spreads / sizeof *spreads; k++) {
     size_t used = 0;
     for (size_t i = 0; i < count; i++)
       if (entries[i].described)
         values[used++] = *(const double *)((const char *)&entries[i] + spreads[k].offset);
     print_spread(spreads[k].label, values, used);
   }
-  for (int c = 0; bodies > 1 && c < 4; c++)
+  for (int c = 0; c < 4; c++)
     printf("%s%zu %s%s", c ? ", " : "  ", classes[c], scree_zingg_name((scree_zingg)c),
            c == 3 ? "\n" : "");
-  free(values);
+  return SCREE_OK;
 }
 
 static void print_count(size_t count, const char *what) {
@@ -281,36 +278,29 @@ static void print_entry(const scree_measure_entry *entry, double unit) {
 static scree_status write_tables(const cli_call *call, const scree_measure_entry *entries,
                                  size_t count, scree_error *error) {
   const measure_arguments *arguments = call->options;
-  if (arguments->zingg) {
+  if (arguments->zingg)
     SCREE_TRY(
         scree_zingg_figure_write(entries, count, arguments->zingg, arguments->overwrite, error));
-  }
-  if (!arguments->json && !arguments->csv) print_set(entries, count);
   if (arguments->json)
     return scree_measure_json_write(entries, count, call->command_line, "-", false, error);
   if (arguments->csv) return scree_measure_csv_write(entries, count, "-", false, error);
-  return SCREE_OK;
+  return print_set(entries, count, error);
 }
 
 /* A file that cannot be measured is told on stderr; the others are measured all the same. */
-static int run(const cli_call *call) {
+static scree_status run(const cli_call *call, scree_error *error) {
   const measure_arguments *arguments = call->options;
-  if (arguments->json && arguments->csv)
-    return cli_misuse(call->verb, "--json and --csv exclude each other");
-  if (arguments->zingg) {
-    scree_error refused;
-    if (cli_check_output(call, arguments->zingg, arguments->overwrite, &refused) != SCREE_OK)
-      return cli_fail(&refused);
-  }
-  scree_measure_entry *entries = calloc(call->input_count, sizeof *entries);
-  char(*formats)[32] = calloc(call->input_count, sizeof *formats);
-  scree_error error = {SCREE_OUT_OF_MEMORY, "out of memory for the table of measures"};
+  if (arguments->zingg)
+    SCREE_TRY(cli_check_output(call, arguments->zingg, arguments->overwrite, error));
+  SCREE_SCRATCH_ZERO(scree_measure_entry, entries, call->input_count, error);
+  typedef char format_name[32];
+  SCREE_SCRATCH_ZERO(format_name, formats, call->input_count, error);
+  scree_status status = SCREE_OK;
   size_t count = 0;
   cli_terminal_release(); /* qhull asks nobody whether to go on */
-  int code = entries && formats ? 0 : cli_fail(&error);
-  for (size_t i = 0; i < call->input_count && entries && formats; i++) {
-    if (measure_file(call, call->inputs[i], &entries[count], formats[count], &error) != SCREE_OK) {
-      code = cli_fail(&error);
+  for (size_t i = 0; i < call->input_count; i++) {
+    if (measure_file(call, call->inputs[i], &entries[count], formats[count], error) != SCREE_OK) {
+      status = cli_fail(error);
       continue;
     }
     cli_terminal_end();
@@ -322,11 +312,8 @@ static int run(const cli_call *call) {
     if (!call->quiet) warn(&entries[count]);
     count++;
   }
-  if (entries && formats && write_tables(call, entries, count, &error) != SCREE_OK)
-    code = cli_fail(&error);
-  free(entries);
-  free(formats);
-  return code;
+  SCREE_TRY(write_tables(call, entries, count, error));
+  return status;
 }
 
 const cli_verb cli_verb_measure = {
@@ -349,5 +336,6 @@ const cli_verb cli_verb_measure = {
     .input_minimum = 1,
     .input_maximum = SIZE_MAX,
     .partners = CLI_SAMPLE_PARTNERS,
+    .exclusive = "json|csv",
     .run = run,
 };

@@ -1,4 +1,5 @@
 /* scree pile: a heap of a scene measured again, or a real one from its scan, outline or picture. */
+#include "base/owned.h"
 #include "base/platform.h"
 #include "cli/output.h"
 #include "cli/pile_measured.h"
@@ -43,48 +44,43 @@ static const struct {
 };
 enum { SETTING_COUNT = sizeof settings / sizeof *settings };
 
-#define AT(field) offsetof(pile_arguments, field)
+#define ARGUMENTS pile_arguments
 static const cli_option options[] = {
-    {"unit", CLI_UNIT, AT(unit), "UNIT",
-     "Unit of length of a scan or an outline that says none. Default: mm.", 0, 0, NULL},
-    {"particle-size", CLI_LENGTH, AT(particle_size), "LENGTH",
-     "Diameter of the particles of a measured heap: widths of bins and sectors keep to it. "
-     "Default: not known.",
-     0, 1e3, NULL},
-    {"cell", CLI_LENGTH_TEXT, AT(cell), "LENGTH",
-     "Side of the height field's cells; 0: a tenth of the particle size. Default: the scene's.", 0,
-     0, NULL},
-    {"sectors", CLI_TEXT, AT(sectors), "N", "Azimuth sectors. Default: the scene's.", 0, 0, NULL},
-    {"band-low", CLI_SHARE_TEXT, AT(band_low), "SHARE",
-     "The flank begins at this share of the heap's height. Default: the scene's.", 0, 0, NULL},
-    {"band-high", CLI_SHARE_TEXT, AT(band_high), "SHARE",
-     "And ends at this one. Default: the scene's.", 0, 0, NULL},
-    {"json", CLI_FLAG, AT(json), NULL,
-     "Print JSON instead of text: of a scene as result.json of repose.", 0, 0, NULL},
-    {"csv", CLI_FLAG, AT(csv), NULL,
-     "Print CSV instead of text: a scene's series up to the frame, else the outline.", 0, 0, NULL},
-    {"output", CLI_TEXT, AT(picture), "FILE", "Write a picture of the heap, a PNG.", 0, 0, NULL},
-    {"size", CLI_TEXT, AT(size), "WxH", "Of the picture, in pixels. Default: 1200x900.", 0, 0,
-     NULL},
-    {"azimuth", CLI_REAL, AT(azimuth_deg), "DEG",
-     "The camera's angle about the vertical. Default: 35.", -360, 360, NULL},
-    {"elevation", CLI_REAL, AT(elevation_deg), "DEG",
-     "The camera's angle above the horizontal. Default: 18.", -90, 90, NULL},
-    {"picture-width", CLI_LENGTH, AT(picture_width), "LENGTH",
-     "What a picture that is measured shows across. Of one that is written: what it shows about "
-     "the middle of the heap; default: the heap.",
-     0, 1e4, NULL},
-    {"rays", CLI_COUNT, AT(rays), "N", "Rays a pixel. Default: 24.", 1, 65536, NULL},
-    {"vtp", CLI_TEXT, AT(vtp), "FILE", "Write the particles for ParaView, a .vtp.", 0, 0, NULL},
-    {"view", CLI_CHOICE, AT(vtp_view), "VIEW",
-     "What goes into it (a frame has no contacts, a checkpoint has). Default: surfaces.", 0, 0,
-     "surfaces|points|contacts|walls"},
-    {"force", CLI_FLAG, AT(force), NULL, "Overwrite existing files.", 0, 0, NULL},
+    CLI_ROW(CLI_UNIT, "unit", unit, "UNIT",
+            "Unit of length of a scan or an outline that says none. Default: mm."),
+    CLI_RANGE_ROW(CLI_LENGTH, "particle-size", particle_size, "LENGTH", 0, 1e3,
+                  "Diameter of the particles of a measured heap: widths of bins and sectors keep "
+                  "to it. Default: not known."),
+    CLI_ROW(
+        CLI_LENGTH_TEXT, "cell", cell, "LENGTH",
+        "Side of the height field's cells; 0: a tenth of the particle size. Default: the scene's."),
+    CLI_ROW(CLI_TEXT, "sectors", sectors, "N", "Azimuth sectors. Default: the scene's."),
+    CLI_ROW(CLI_SHARE_TEXT, "band-low", band_low, "SHARE",
+            "The flank begins at this share of the heap's height. Default: the scene's."),
+    CLI_ROW(CLI_SHARE_TEXT, "band-high", band_high, "SHARE",
+            "And ends at this one. Default: the scene's."),
+    CLI_FLAG_ROW("json", json, "Print JSON instead of text: of a scene as result.json of repose."),
+    CLI_FLAG_ROW("csv", csv,
+                 "Print CSV instead of text: a scene's series up to the frame, else the outline."),
+    CLI_ROW(CLI_TEXT, "output", picture, "FILE", "Write a picture of the heap, a PNG."),
+    CLI_ROW(CLI_TEXT, "size", size, "WxH", "Of the picture, in pixels. Default: 1200x900."),
+    CLI_RANGE_ROW(CLI_REAL, "azimuth", azimuth_deg, "DEG", -360, 360,
+                  "The camera's angle about the vertical. Default: 35."),
+    CLI_RANGE_ROW(CLI_REAL, "elevation", elevation_deg, "DEG", -90, 90,
+                  "The camera's angle above the horizontal. Default: 18."),
+    CLI_RANGE_ROW(CLI_LENGTH, "picture-width", picture_width, "LENGTH", 0, 1e4,
+                  "What a picture that is measured shows across. Of one that is written: what it "
+                  "shows about the middle of the heap; default: the heap."),
+    CLI_RANGE_ROW(CLI_COUNT, "rays", rays, "N", 1, 65536, "Rays a pixel. Default: 24."),
+    CLI_ROW(CLI_TEXT, "vtp", vtp, "FILE", "Write the particles for ParaView, a .vtp."),
+    CLI_CHOICE_ROW(
+        "view", vtp_view, "VIEW", "surfaces|points|contacts|walls",
+        "What goes into it (a frame has no contacts, a checkpoint has). Default: surfaces."),
+    CLI_FLAG_ROW("force", force, "Overwrite existing files."),
 };
-#undef AT
 
-/* Those that were given in place of what `measure` has; 0, or the exit code. */
-static int read_settings(const cli_call *call, scree_pile_settings *measure) {
+/* Those that were given in place of what `measure` has. */
+static scree_status read_settings(const cli_call *call, scree_pile_settings *measure) {
   for (int i = 0; i < SETTING_COUNT; i++) {
     const char *text;
     char number[CLI_NUMBER_BYTES];
@@ -103,13 +99,14 @@ static int read_settings(const cli_call *call, scree_pile_settings *measure) {
     else
       memcpy((char *)measure + settings[i].field, &value, sizeof value);
   }
-  return 0;
+  return SCREE_OK;
 }
 
-static int write_picture(const cli_call *call, const scree_scene *scene, const scree_pile *pile,
-                         scree_render_options render, scree_error *error) {
+static scree_status write_picture(const cli_call *call, const scree_scene *scene,
+                                  const scree_pile *pile, scree_render_options render,
+                                  scree_error *error) {
   const pile_arguments *a = call->options;
-  scree_image image;
+  SCREE_CLEANUP(scree_image_free) scree_image image = {0};
   render.azimuth_deg = a->azimuth_deg;
   render.elevation_deg = a->elevation_deg;
   render.samples = a->rays;
@@ -119,11 +116,8 @@ static int write_picture(const cli_call *call, const scree_scene *scene, const s
     render.focus[1] = pile->repose.axis[1];
     render.focus[2] = 0.35 * pile->repose.peak;
   }
-  scree_status status = scree_scene_pile_picture(scene, &render, call->progress, &image, error);
-  if (status != SCREE_OK) return cli_fail(error);
-  status = scree_image_write_png(&image, a->picture, a->force, error);
-  scree_image_free(&image);
-  return status == SCREE_OK ? 0 : cli_fail(error);
+  SCREE_TRY(scree_scene_pile_picture(scene, &render, call->progress, &image, error));
+  return scree_image_write_png(&image, a->picture, a->force, error);
 }
 
 /* Also by another name, as /dev/stdout, or a file that the shell has it write to. */
@@ -135,8 +129,8 @@ static bool is_stdout(const char *path) {
          named.number == out.number;
 }
 
-/* 0, or 2 after telling which two of the options write to stdout, or to one file. */
-static int check_apart(const cli_call *call) {
+/* Which two of the options write to stdout, or to one file. */
+static scree_status check_apart(const cli_call *call) {
   const pile_arguments *a = call->options;
   const char *there[] = {a->json ? "--json" : NULL, a->csv ? "--csv" : NULL,
                          is_stdout(a->vtp) ? "--vtp -" : NULL,
@@ -149,7 +143,7 @@ static int check_apart(const cli_call *call) {
   }
   if (a->vtp && a->picture && strcmp(a->vtp, a->picture) == 0)
     return cli_misuse(call->verb, "two outputs have the name %s", a->vtp);
-  return 0;
+  return SCREE_OK;
 }
 
 /* The text; on stderr where something else is on stdout. */
@@ -164,30 +158,24 @@ static void print_text(const cli_call *call, const scree_scene *scene, const scr
   cli_print_pile(stream, pile);
 }
 
-static int measure(const cli_call *call, scree_scene *scene, const scree_render_options *render,
-                   scree_error *error) {
+static scree_status measure(const cli_call *call, scree_scene *scene,
+                            const scree_render_options *render, scree_error *error) {
   const pile_arguments *a = call->options;
-  scree_pile_settings used;
+  scree_pile_settings used = scree_scene_pile_settings(scene, 0);
   scree_pile pile;
-  used = scree_scene_pile_settings(scene, 0);
-  int code = read_settings(call, &used);
-  if (code == 0 && scree_scene_measure_pile(scene, 0, &used, &pile, error) != SCREE_OK)
-    code = cli_fail(error);
+  SCREE_TRY(read_settings(call, &used));
+  SCREE_TRY(scree_scene_measure_pile(scene, 0, &used, &pile, error));
   const scree_scene_entry entry = {.scene = scene,
                                    .file = call->inputs[0],
                                    .command_line = call->command_line,
                                    .measure = &used};
-  if (code == 0 && a->json && scree_scene_json_write(&entry, "-", true, error) != SCREE_OK)
-    code = cli_fail(error);
-  if (code == 0) print_text(call, scene, &pile);
-  if (code == 0 && a->csv && scree_scene_csv_write(scene, "-", true, error) != SCREE_OK)
-    code = cli_fail(error);
-  if (code == 0 && a->vtp &&
-      scree_world_vtp_write(scree_scene_view(scene), (scree_world_view)a->vtp_view, a->vtp,
-                            a->force, error) != SCREE_OK)
-    code = cli_fail(error);
-  if (code == 0 && a->picture) code = write_picture(call, scene, &pile, *render, error);
-  return code;
+  if (a->json) SCREE_TRY(scree_scene_json_write(&entry, "-", true, error));
+  print_text(call, scene, &pile);
+  if (a->csv) SCREE_TRY(scree_scene_csv_write(scene, "-", true, error));
+  if (a->vtp)
+    SCREE_TRY(scree_world_vtp_write(scree_scene_view(scene), (scree_world_view)a->vtp_view, a->vtp,
+                                    a->force, error));
+  return a->picture ? write_picture(call, scene, &pile, *render, error) : SCREE_OK;
 }
 
 static scree_status check_outputs(const cli_call *call, scree_error *error) {
@@ -199,7 +187,7 @@ static scree_status check_outputs(const cli_call *call, scree_error *error) {
 }
 
 /* A heap that no scene has: what belongs to scenes is refused. */
-static int run_measured(const cli_call *call, cli_pile_kind kind) {
+static scree_status run_measured(const cli_call *call, cli_pile_kind kind, scree_error *error) {
   const pile_arguments *a = call->options;
   bool picture = kind == CLI_PILE_PICTURE, scan = kind == CLI_PILE_SCAN;
   cli_measured_pile what = {.kind = kind,
@@ -209,8 +197,7 @@ static int run_measured(const cli_call *call, cli_pile_kind kind) {
                             .json = a->json,
                             .csv = a->csv};
   scree_pile_settings used = {0, what.how.sector_count, what.how.band_low, what.how.band_high};
-  int code = read_settings(call, &used);
-  if (code) return code;
+  SCREE_TRY(read_settings(call, &used));
   if (a->picture || a->vtp)
     return cli_misuse(call->verb, "--%s draws the heap of a scene; %s is none",
                       a->picture ? "output" : "vtp", call->inputs[0]);
@@ -226,40 +213,32 @@ static int run_measured(const cli_call *call, cli_pile_kind kind) {
   what.how.band_low = used.band_low;
   what.how.band_high = used.band_high;
   what.how.particle_size = a->particle_size;
-  return cli_measure_pile(call, &what);
+  return cli_measure_pile(call, &what, error);
 }
 
-static int run(const cli_call *call) {
+static scree_status run(const cli_call *call, scree_error *error) {
   const pile_arguments *a = call->options;
   scree_render_options render = scree_default_render_options();
-  scree_scene *loaded;
-  scree_error error;
+  SCREE_OWNED(scree_scene, loaded);
   cli_pile_kind kind = cli_pile_kind_of(call->inputs[0]);
-  int code = check_apart(call);
-  if (code == 0) code = cli_parse_size(call->verb, a->size, &render.width, &render.height);
-  if (code == 0 && a->vtp) code = cli_check_ending(call->verb, a->vtp, CLI_VTP);
-  if (code == 0 && a->picture) code = cli_check_ending(call->verb, a->picture, CLI_PICTURE);
-  if (code) return code;
-  if (kind != CLI_PILE_SCENE) return run_measured(call, kind);
+  SCREE_TRY(check_apart(call));
+  SCREE_TRY(cli_parse_size(call->verb, a->size, &render.width, &render.height));
+  if (a->vtp) SCREE_TRY(cli_check_ending(call->verb, a->vtp, CLI_VTP));
+  if (a->picture) SCREE_TRY(cli_check_ending(call->verb, a->picture, CLI_PICTURE));
+  if (kind != CLI_PILE_SCENE) return run_measured(call, kind, error);
   if (a->particle_size > 0 || (a->picture_width > 0 && !a->picture))
     return cli_misuse(call->verb, "--%s does nothing here: %s",
                       a->particle_size > 0 ? "particle-size" : "picture-width",
                       a->particle_size > 0 ? "a scene knows its particles" : "give --output");
-  if (check_outputs(call, &error) != SCREE_OK) return cli_fail(&error);
-  if (scree_scene_load(call->inputs[0], &loaded, &error) != SCREE_OK) return cli_fail(&error);
-  if (a->vtp && a->vtp_view == SCREE_VIEW_CONTACTS && scree_scene_is_frame(loaded)) {
-    cli_refuse(&error, SCREE_UNSUPPORTED, call->inputs[0],
-               "a frame holds no contacts; a checkpoint does");
-    code = cli_fail(&error);
-  } else if (!scree_scene_pile_name(loaded, 0)) {
-    cli_refuse(&error, SCREE_UNSUPPORTED, call->inputs[0],
-               "its scene has no sensor of a pile: sensors: {heap: {pile: {}}}");
-    code = cli_fail(&error);
-  } else {
-    code = measure(call, loaded, &render, &error);
-  }
-  scree_scene_free(loaded);
-  return code;
+  SCREE_TRY(check_outputs(call, error));
+  SCREE_TRY(scree_scene_load(call->inputs[0], &loaded, error));
+  if (a->vtp && a->vtp_view == SCREE_VIEW_CONTACTS && scree_scene_is_frame(loaded))
+    return cli_refuse(error, SCREE_UNSUPPORTED, call->inputs[0],
+                      "a frame holds no contacts; a checkpoint does");
+  if (!scree_scene_pile_name(loaded, 0))
+    return cli_refuse(error, SCREE_UNSUPPORTED, call->inputs[0],
+                      "its scene has no sensor of a pile: sensors: {heap: {pile: {}}}");
+  return measure(call, loaded, &render, error);
 }
 
 const cli_verb cli_verb_pile = {

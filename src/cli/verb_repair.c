@@ -1,4 +1,5 @@
 /* scree repair: a surface that can serve as a particle of one that cannot, or a refusal. */
+#include "base/alloc.h"
 #include "cli/input.h"
 #include "cli/output.h"
 #include "cli/surface.h"
@@ -18,60 +19,52 @@ typedef struct repair_arguments {
 
 #define HOLES_UNSET SIZE_MAX
 
-#define AT(field) offsetof(repair_arguments, field)
+#define ARGUMENTS repair_arguments
 
 static const cli_option options[] = {
-    {"output", CLI_TEXT, AT(output), "FILE",
-     "Where the repaired surface goes: .stl, .ply, .obj, .off or .3mf.", 0, 0, NULL},
-    {"seam", CLI_SHARE, AT(seam_tolerance), "SHARE",
-     "Boundary vertices no farther apart than this share of the bounding box diagonal may be "
-     "united to close a seam. Default: 1e-4.",
-     0, 0.01, NULL},
-    {"holes", CLI_COUNT, AT(hole_edges), "EDGES",
-     "Fill holes of at most this many edges; 0 fills none. Not with --large-holes. Default: 128.",
-     0, 4096, NULL},
-    {"large-holes", CLI_FLAG, AT(large_holes), NULL,
-     "Fill holes of up to 4096 edges, those of more than 32 smoothly: with triangles as small as "
-     "round the hole, and its slope.",
-     0, 0, NULL},
-    {"flat", CLI_FLAG, AT(flat_holes), NULL,
-     "With --large-holes: no new vertices in any, as where flat faces with rough rims are missing.",
-     0, 0, NULL},
-    {"debris", CLI_SHARE, AT(debris_share), "SHARE",
-     "Drop shells with less than this share of the largest shell's area; cavities are kept. "
-     "Default: 0.01.",
-     0, 0.999, NULL},
-    {"largest", CLI_FLAG, AT(largest), NULL,
-     "Keep only the largest shell, after merging, and its cavities.", 0, 0, NULL},
-    {"cavities", CLI_SHARE, AT(cavity_share), "SHARE",
-     "Fill cavities, the smallest first, up to this share of the volume in all: nothing ever "
-     "touches them. Default: 1e-3.",
-     0, 1, NULL},
-    {"drop-cavities", CLI_FLAG, AT(drop_cavities), NULL, "Fill all cavities: drop their shells.", 0,
-     0, NULL},
-    {"cut-plane", CLI_TEXT, AT(cut_plane), "auto|z=LENGTH",
-     "Cut off what lies below a plane, keep the largest shell that stands on it and close it flat: "
-     "auto, the plane that carries most of the boundary, as a table's rim; or z=12mm (x=, y=), "
-     "without a unit in the file's.",
-     0, 0, NULL},
-    {"no-cut", CLI_FLAG, AT(no_cut), NULL,
-     "Refuse a surface that meets itself instead of cutting the place out and filling the hole.", 0,
-     0, NULL},
-    {"no-merge", CLI_FLAG, AT(no_merge), NULL,
-     "Refuse shells that cross, overlap or touch instead of merging them into one surface.", 0, 0,
-     NULL},
-    {"merge-folds", CLI_FLAG, AT(folds), NULL,
-     "Where a shell meets itself, keep the outside of what it winds round instead of cutting the "
-     "place out.",
-     0, 0, NULL},
-    {"volume-change", CLI_SHARE, AT(volume_change), "SHARE",
-     "Refuse where cutting and merging change the volume by more than this share. Default: 0.01.",
-     0, 1, NULL},
-    {"fast", CLI_FLAG, AT(fast), NULL,
-     "Do not look for self-intersections: the result may have some.", 0, 0, NULL},
-    CLI_SOURCE_OPTIONS(repair_arguments),
-    {"json", CLI_FLAG, AT(json), NULL, "Print JSON instead of text.", 0, 0, NULL},
-    {"force", CLI_FLAG, AT(force), NULL, "Overwrite an existing file.", 0, 0, NULL},
+    CLI_ROW(CLI_TEXT, "output", output, "FILE",
+            "Where the repaired surface goes: .stl, .ply, .obj, .off or .3mf."),
+    CLI_RANGE_ROW(CLI_SHARE, "seam", seam_tolerance, "SHARE", 0, 0.01,
+                  "Boundary vertices no farther apart than this share of the bounding box diagonal "
+                  "may be united to close a seam. Default: 1e-4."),
+    CLI_RANGE_ROW(CLI_COUNT, "holes", hole_edges, "EDGES", 0, 4096,
+                  "Fill holes of at most this many edges; 0 fills none. Not with --large-holes. "
+                  "Default: 128."),
+    CLI_FLAG_ROW("large-holes", large_holes,
+                 "Fill holes of up to 4096 edges, those of more than 32 smoothly: with triangles "
+                 "as small as round the hole, and its slope."),
+    CLI_FLAG_ROW("flat", flat_holes,
+                 "With --large-holes: no new vertices in any, as where flat faces with rough rims "
+                 "are missing."),
+    CLI_RANGE_ROW(CLI_SHARE, "debris", debris_share, "SHARE", 0, 0.999,
+                  "Drop shells with less than this share of the largest shell's area; cavities are "
+                  "kept. Default: 0.01."),
+    CLI_FLAG_ROW("largest", largest,
+                 "Keep only the largest shell, after merging, and its cavities."),
+    CLI_RANGE_ROW(CLI_SHARE, "cavities", cavity_share, "SHARE", 0, 1,
+                  "Fill cavities, the smallest first, up to this share of the volume in all: "
+                  "nothing ever touches them. Default: 1e-3."),
+    CLI_FLAG_ROW("drop-cavities", drop_cavities, "Fill all cavities: drop their shells."),
+    CLI_ROW(CLI_TEXT, "cut-plane", cut_plane, "auto|z=LENGTH",
+            "Cut off what lies below a plane, keep the largest shell that stands on it and close "
+            "it flat: auto, the plane that carries most of the boundary, as a table's rim; or "
+            "z=12mm (x=, y=), without a unit in the file's."),
+    CLI_FLAG_ROW("no-cut", no_cut,
+                 "Refuse a surface that meets itself instead of cutting the place out and filling "
+                 "the hole."),
+    CLI_FLAG_ROW(
+        "no-merge", no_merge,
+        "Refuse shells that cross, overlap or touch instead of merging them into one surface."),
+    CLI_FLAG_ROW("merge-folds", folds,
+                 "Where a shell meets itself, keep the outside of what it winds round instead of "
+                 "cutting the place out."),
+    CLI_RANGE_ROW(CLI_SHARE, "volume-change", volume_change, "SHARE", 0, 1,
+                  "Refuse where cutting and merging change the volume by more than this share. "
+                  "Default: 0.01."),
+    CLI_FLAG_ROW("fast", fast, "Do not look for self-intersections: the result may have some."),
+    CLI_SOURCE_OPTIONS,
+    CLI_FLAG_ROW("json", json, "Print JSON instead of text."),
+    CLI_FLAG_ROW("force", force, "Overwrite an existing file."),
 };
 
 static const repair_arguments defaults = {.source = CLI_SOURCE_DEFAULTS,
@@ -99,20 +92,19 @@ static scree_repair_options options_of(const repair_arguments *a) {
   return o;
 }
 
-/* 0, or 2 after telling what is wrong. */
-static int take_plane(const cli_call *call, double unit, scree_repair_options *o) {
+static scree_status take_plane(const cli_call *call, double unit, scree_repair_options *o) {
   const char *text = ((const repair_arguments *)call->options)->cut_plane;
   double plain;
-  if (!text) return 0;
+  if (!text) return SCREE_OK;
   o->cut = SCREE_CUT_AUTO;
-  if (!strcmp(text, "auto")) return 0;
+  if (!strcmp(text, "auto")) return SCREE_OK;
   o->cut = SCREE_CUT_GIVEN;
   if (*text < 'x' || *text > 'z' || text[1] != '=' ||
       !cli_length_from_text(text + 2, &o->plane.offset))
     return cli_misuse(call->verb, "--cut-plane %s: must be auto, or as z=12mm", text);
   if (cli_real_from_text(text + 2, &plain)) o->plane.offset = plain * unit;
   o->plane.normal[*text - 'x'] = 1;
-  return 0;
+  return SCREE_OK;
 }
 
 static scree_status write_result(const cli_call *call, const scree_mesh *mesh, scree_error *error) {
@@ -141,61 +133,49 @@ static void print_text(const cli_call *call, const scree_scan *scan,
          cli_unit_name(((const repair_arguments *)call->options)->source.unit));
 }
 
-static int tell(const cli_call *call, const scree_scan *scan, const scree_repair_report *report,
-                const scree_error *failure) {
+static scree_status print_json(const cli_call *call, const scree_scan *scan,
+                               const scree_repair_report *report, const scree_error *failure) {
   const repair_arguments *a = call->options;
+  bool failed = failure->status != SCREE_OK;
+  const scree_check_entry entry = {.file = call->inputs[0],
+                                   .scan = scan,
+                                   .unit_m = scan->unit_m,
+                                   .check = &report->before,
+                                   .repair = report,
+                                   .output = failed ? NULL : a->output,
+                                   .failure = failed ? failure->message : NULL};
   scree_error error;
-  int code = failure->status == SCREE_OK ? 0 : 1;
-  cli_terminal_end();
-  if (!a->json) {
-    print_text(call, scan, report, code == 0);
-  } else {
-    scree_check_entry entry = {.file = call->inputs[0],
-                               .scan = scan,
-                               .unit_m = scan->unit_m,
-                               .check = &report->before,
-                               .repair = report,
-                               .output = code ? NULL : a->output,
-                               .failure = code ? failure->message : NULL};
-    if (scree_check_json_write(&entry, 1, call->command_line, "-", false, &error) != SCREE_OK)
-      code = cli_fail(&error);
-  }
-  if (failure->status != SCREE_OK) cli_fail(failure);
-  return code;
+  scree_status status = scree_check_json_write(&entry, 1, call->command_line, "-", false, &error);
+  return status == SCREE_OK ? status : cli_fail(&error);
 }
 
-static int run(const cli_call *call) {
+static scree_status run(const cli_call *call, scree_error *error) {
   const repair_arguments *a = call->options;
   scree_repair_options how = options_of(a);
   cli_input_options input = cli_source_options(&a->source);
   scree_repair_report report = {.seam_distance = 0};
-  scree_scan scan;
-  scree_mesh repaired = {0};
-  scree_error error = {.status = SCREE_OK};
+  SCREE_CLEANUP(scree_scan_free) scree_scan scan = {0};
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh repaired = {0};
   if (!a->output) return cli_misuse(call->verb, "say with -o where the result is to go");
-  if (a->large_holes && a->hole_edges != HOLES_UNSET)
-    return cli_misuse(call->verb, "--holes and --large-holes exclude each other");
-  int code = cli_check_ending(call->verb, a->output, CLI_MESH);
-  if (code) return code;
-  code = take_plane(call, a->source.unit, &how);
-  if (code) return code;
-  if (cli_check_output(call, a->output, a->force, &error) != SCREE_OK ||
-      cli_load(call->inputs[0], &input, call->progress, &scan, &error) != SCREE_OK)
-    return cli_fail(&error);
+  SCREE_TRY(cli_check_ending(call->verb, a->output, CLI_MESH));
+  SCREE_TRY(take_plane(call, a->source.unit, &how));
+  SCREE_TRY(cli_check_output(call, a->output, a->force, error));
+  SCREE_TRY(cli_load(call->inputs[0], &input, call->progress, &scan, error));
   (void)take_plane(call, scan.unit_m, &how); /* which the file may state */
   scree_status status =
-      scree_mesh_repair(&scan.mesh, &how, call->progress, &repaired, &report, &error);
-  if (status == SCREE_BAD_MESH) cli_hint_at_option(call->inputs[0], &report, &how, &error);
-  if (status != SCREE_OK) cli_name_in_error(call->inputs[0], &error);
-  if (status != SCREE_OK && status != SCREE_BAD_MESH) {
-    code = cli_fail(&error);
-  } else {
-    if (status == SCREE_OK) write_result(call, &repaired, &error);
-    code = tell(call, &scan, &report, &error);
-  }
-  scree_mesh_free(&repaired);
-  scree_scan_free(&scan);
-  return code;
+      scree_mesh_repair(&scan.mesh, &how, call->progress, &repaired, &report, error);
+  if (status == SCREE_BAD_MESH) cli_hint_at_option(call->inputs[0], &report, &how, error);
+  if (status != SCREE_OK) cli_name_in_error(call->inputs[0], error);
+  if (status != SCREE_OK && status != SCREE_BAD_MESH) return status;
+  if (status == SCREE_OK) status = write_result(call, &repaired, error);
+  error->status = status; /* which has no meaning where all went well */
+  cli_terminal_end();
+  scree_status told = SCREE_OK;
+  if (a->json)
+    told = print_json(call, &scan, &report, error);
+  else
+    print_text(call, &scan, &report, status == SCREE_OK);
+  return status == SCREE_OK ? told : status;
 }
 
 const cli_verb cli_verb_repair = {
@@ -218,5 +198,6 @@ const cli_verb cli_verb_repair = {
     .input_minimum = 1,
     .input_maximum = 1,
     .partners = "flat:large-holes " CLI_SAMPLE_PARTNERS,
+    .exclusive = "holes|large-holes",
     .run = run,
 };

@@ -9,26 +9,22 @@ typedef struct report_arguments {
 
 static const report_arguments defaults = {.output = "report.html"};
 
-#define AT(field) offsetof(report_arguments, field)
+#define ARGUMENTS report_arguments
 static const cli_option options[] = {
-    {"output", CLI_TEXT, AT(output), "FILE",
-     "The page to write, .html; - is stdout. Default: report.html.", 0, 0, NULL},
-    {"force", CLI_FLAG, AT(overwrite), NULL, "Overwrite an existing file.", 0, 0, NULL},
+    CLI_ROW(CLI_TEXT, "output", output, "FILE",
+            "The page to write, .html; - is stdout. Default: report.html."),
+    CLI_FLAG_ROW("force", overwrite, "Overwrite an existing file."),
 };
 
-static int run(const cli_call *call) {
+static scree_status run(const cli_call *call, scree_error *error) {
   const report_arguments *a = call->options;
   char shown[CLI_PRINTABLE_BYTES];
-  scree_error error;
-  int code = cli_check_ending(call->verb, a->output, CLI_PAGE);
-  if (code) return code;
-  if (cli_check_output(call, a->output, a->overwrite, &error) != SCREE_OK ||
-      scree_page_write(call->inputs, call->input_count, a->output, a->overwrite, &error) !=
-          SCREE_OK)
-    return cli_fail(&error);
+  SCREE_TRY(cli_check_ending(call->verb, a->output, CLI_PAGE));
+  SCREE_TRY(cli_check_output(call, a->output, a->overwrite, error));
+  SCREE_TRY(scree_page_write(call->inputs, call->input_count, a->output, a->overwrite, error));
   if (!call->quiet && strcmp(a->output, "-") != 0)
     printf("%s: open it in any browser; it needs no network\n", cli_printable(a->output, shown));
-  return 0;
+  return SCREE_OK;
 }
 
 const cli_verb cli_verb_report = {

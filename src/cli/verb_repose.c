@@ -1,77 +1,80 @@
 /* scree repose: the scene of the template of that name, with shapes of the call. */
 #include "cli/pour.h"
 
-/* Options and the template's parameters that they set. What has no option is set by its field, with
- * --set. */
-#define SETTINGS(X)                                                                                \
-  X(PARTICLES, "particles", "particles", CLI_TEXT, "N",                                            \
-    "How many particles, in equal shares of the shapes.")                                          \
-  X(SEED, "seed", "seed", CLI_TEXT, "N", "Of positions, orientations and order.")                  \
-  X(DENSITY, "density", "density", CLI_TEXT, "KG/M3", "Of the particles.")                         \
-  X(MASS_FROM, "mass-from", "mass_from", CLI_TEXT, "WHAT",                                         \
-    "mesh: mass by each decimated mesh's own volume, as a simulator that reads the mesh has it; "  \
-    "scan: by the scan's at every level.")                                                         \
-  X(CYLINDER, "cylinder", "cylinder.diameter", CLI_LENGTH_TEXT, "LENGTH",                          \
-    "Inner diameter of the cylinder.")                                                             \
-  X(DISC, "disc", "disc.diameter", CLI_LENGTH_TEXT, "LENGTH", "Diameter of the bottom disc.")      \
-  X(PACK_TIME, "pack-time", "phases.pack_time", CLI_TEXT, "S",                                     \
-    "While the particles are filled in.")                                                          \
-  X(SETTLE_TIME, "settle-time", "phases.settle_time", CLI_TEXT, "S", "While they come to rest.")   \
-  X(LIFT_SPEED, "lift-speed", "phases.lift_speed", CLI_TEXT, "M/S", "Of the cylinder.")            \
-  X(LIFT_TIME, "lift-time", "phases.lift_time", CLI_TEXT, "S", "How long it rises.")               \
-  X(HOLD_TIME, "hold-time", "phases.hold_time", CLI_TEXT, "S",                                     \
-    "After the lift, at most, until still.")                                                       \
-  X(STOP_WHEN_STILL, "stop-when-still", "phases.stop_when_still", CLI_TEXT, "BOOL",                \
-    "true: phases end early when still.")                                                          \
-  X(STILL_ENERGY, "still", "phases.still_energy", CLI_TEXT, "J",                                   \
-    "Kinetic energy a particle: less is still.")                                                   \
-  X(INLET, "inlet", "phases.inlet", CLI_TEXT, "WHERE",                                             \
-    "top: particles fall from above where the packed heap will end; heap: from near the heap.")    \
-  X(DROP_HEIGHT, "drop-height", "phases.drop_height", CLI_LENGTH_TEXT, "LENGTH",                   \
-    "From the heap's top to the inlet, at least.")                                                 \
-  X(YOUNG, "young", "contact.young_particle", CLI_TEXT, "PA", "Young's modulus of the particles.") \
-  X(YOUNG_WALL, "young-wall", "contact.young_wall", CLI_TEXT, "PA",                                \
-    "Young's modulus of the walls.")                                                               \
-  X(RESTITUTION, "restitution", "contact.restitution", CLI_TEXT, "E", "Of every contact.")         \
-  X(FRICTION, "friction", "contact.friction_particle", CLI_TEXT, "MU", "Particle on particle.")    \
-  X(FRICTION_WALL, "friction-wall", "contact.friction_wall", CLI_TEXT, "MU", "Particle on wall.")  \
-  X(LAW, "law", "contact.law", CLI_TEXT, "NAME", "linear or hysteretic.")                          \
-  X(STEPS, "steps", "contact.steps", CLI_TEXT, "N",                                                \
-    "Time steps in a quarter of a contact's period, at least 15.")                                 \
-  X(STIFFNESS, "stiffness", "contact.stiffness_factor", CLI_TEXT, "F",                             \
-    "Multiplies every stiffness; 0.2 is 2.2 times faster, with overlaps 5 times deeper.")          \
-  X(GRAVITY, "gravity", "gravity", CLI_TEXT, "M/S2", "Downwards.")                                 \
-  X(FRAMES, "frames", "output.frame_interval", CLI_TEXT, "S",                                      \
-    "Simulated time between frames; 0: only the last.")                                            \
-  X(CHECKPOINT, "checkpoint", "output.checkpoint_interval", CLI_TEXT, "S",                         \
-    "Clock time between checkpoints.")                                                             \
-  X(SERIES, "series", "output.series_interval", CLI_TEXT, "S",                                     \
-    "Simulated time between points of the series.")                                                \
-  X(ANGLES, "angles", "output.angle_interval", CLI_TEXT, "S", "And between those with angles.")    \
-  X(CELL, "cell", "measure.cell", CLI_LENGTH_TEXT, "LENGTH",                                       \
-    "Of the height field; 0: a tenth of the particle size.")                                       \
-  X(SECTORS, "sectors", "measure.sectors", CLI_TEXT, "N", "Azimuth sectors.")                      \
-  X(BAND_LOW, "band-low", "measure.band_low", CLI_SHARE_TEXT, "SHARE",                             \
-    "The flank begins at this share of the height.")                                               \
-  X(BAND_HIGH, "band-high", "measure.band_high", CLI_SHARE_TEXT, "SHARE", "And ends at this one.")
-
-CLI_SETTINGS(SETTINGS)
-
 static const cli_pour_arguments defaults = {CLI_POUR_DEFAULTS, .preset = "demo"};
 
-static const cli_option options[] = {
-    {"preset", CLI_TEXT, CLI_POUR_AT(preset), "NAME",
-     "What the file and the options change: paper, small or demo (the default).", 0, 0, NULL},
-    {"output", CLI_TEXT, CLI_POUR_AT(output), "DIR",
-     "A folder, made if need be, for checkpoints, frames, result.json, series.csv, scene.yaml, "
-     "scene.png and report.html; with several runs, a folder in it for each, and one report.html.",
-     0, 0, NULL},
-    CLI_POUR_OPTIONS(CLI_POUR_OPTION) SETTINGS(CLI_SETTING_OPTION)
-        CLI_SOURCE_OPTIONS(cli_pour_arguments)};
+/* What has no option is set by its field, with --set. */
 
-static int run(const cli_call *call) {
-  const cli_pour_kind kind = {"repose", settings, SETTING_COUNT, true};
-  return cli_pour_run(call, &kind);
+#define ARGUMENTS cli_pour_arguments
+static const cli_option options[] = {
+    CLI_ROW(CLI_TEXT, "preset", preset, "NAME",
+            "What the file and the options change: paper, small or demo (the default)."),
+    CLI_ROW(CLI_TEXT, "output", scene.output, "DIR",
+            "A folder, made if need be, for checkpoints, frames, result.json, series.csv, "
+            "scene.yaml, scene.png and report.html; with several runs, a folder in it for each, "
+            "and one report.html."),
+    CLI_POUR_OPTIONS,
+    CLI_FIELD_ROW(CLI_TEXT, "particles", "particles", "N",
+                  "How many particles, in equal shares of the shapes."),
+    CLI_FIELD_ROW(CLI_TEXT, "seed", "seed", "N", "Of positions, orientations and order."),
+    CLI_FIELD_ROW(CLI_TEXT, "density", "density", "KG/M3", "Of the particles."),
+    CLI_FIELD_ROW(CLI_TEXT, "mass-from", "mass_from", "WHAT",
+                  "mesh: mass by each decimated mesh's own volume, as a simulator that reads the "
+                  "mesh has it; scan: by the scan's at every level."),
+    CLI_FIELD_ROW(CLI_LENGTH_TEXT, "cylinder", "cylinder.diameter", "LENGTH",
+                  "Inner diameter of the cylinder."),
+    CLI_FIELD_ROW(CLI_LENGTH_TEXT, "disc", "disc.diameter", "LENGTH",
+                  "Diameter of the bottom disc."),
+    CLI_FIELD_ROW(CLI_TEXT, "pack-time", "phases.pack_time", "S",
+                  "While the particles are filled in."),
+    CLI_FIELD_ROW(CLI_TEXT, "settle-time", "phases.settle_time", "S", "While they come to rest."),
+    CLI_FIELD_ROW(CLI_TEXT, "lift-speed", "phases.lift_speed", "M/S", "Of the cylinder."),
+    CLI_FIELD_ROW(CLI_TEXT, "lift-time", "phases.lift_time", "S", "How long it rises."),
+    CLI_FIELD_ROW(CLI_TEXT, "hold-time", "phases.hold_time", "S",
+                  "After the lift, at most, until still."),
+    CLI_FIELD_ROW(CLI_TEXT, "stop-when-still", "phases.stop_when_still", "BOOL",
+                  "true: phases end early when still."),
+    CLI_FIELD_ROW(CLI_TEXT, "still", "phases.still_energy", "J",
+                  "Kinetic energy a particle: less is still."),
+    CLI_FIELD_ROW(
+        CLI_TEXT, "inlet", "phases.inlet", "WHERE",
+        "top: particles fall from above where the packed heap will end; heap: from near the heap."),
+    CLI_FIELD_ROW(CLI_LENGTH_TEXT, "drop-height", "phases.drop_height", "LENGTH",
+                  "From the heap's top to the inlet, at least."),
+    CLI_FIELD_ROW(CLI_TEXT, "young", "contact.young_particle", "PA",
+                  "Young's modulus of the particles."),
+    CLI_FIELD_ROW(CLI_TEXT, "young-wall", "contact.young_wall", "PA",
+                  "Young's modulus of the walls."),
+    CLI_FIELD_ROW(CLI_TEXT, "restitution", "contact.restitution", "E", "Of every contact."),
+    CLI_FIELD_ROW(CLI_TEXT, "friction", "contact.friction_particle", "MU", "Particle on particle."),
+    CLI_FIELD_ROW(CLI_TEXT, "friction-wall", "contact.friction_wall", "MU", "Particle on wall."),
+    CLI_FIELD_ROW(CLI_TEXT, "law", "contact.law", "NAME", "linear or hysteretic."),
+    CLI_FIELD_ROW(CLI_TEXT, "steps", "contact.steps", "N",
+                  "Time steps in a quarter of a contact's period, at least 15."),
+    CLI_FIELD_ROW(
+        CLI_TEXT, "stiffness", "contact.stiffness_factor", "F",
+        "Multiplies every stiffness; 0.2 is 2.2 times faster, with overlaps 5 times deeper."),
+    CLI_FIELD_ROW(CLI_TEXT, "gravity", "gravity", "M/S2", "Downwards."),
+    CLI_FIELD_ROW(CLI_TEXT, "frames", "output.frame_interval", "S",
+                  "Simulated time between frames; 0: only the last."),
+    CLI_FIELD_ROW(CLI_TEXT, "checkpoint", "output.checkpoint_interval", "S",
+                  "Clock time between checkpoints."),
+    CLI_FIELD_ROW(CLI_TEXT, "series", "output.series_interval", "S",
+                  "Simulated time between points of the series."),
+    CLI_FIELD_ROW(CLI_TEXT, "angles", "output.angle_interval", "S",
+                  "And between those with angles."),
+    CLI_FIELD_ROW(CLI_LENGTH_TEXT, "cell", "measure.cell", "LENGTH",
+                  "Of the height field; 0: a tenth of the particle size."),
+    CLI_FIELD_ROW(CLI_TEXT, "sectors", "measure.sectors", "N", "Azimuth sectors."),
+    CLI_FIELD_ROW(CLI_SHARE_TEXT, "band-low", "measure.band_low", "SHARE",
+                  "The flank begins at this share of the height."),
+    CLI_FIELD_ROW(CLI_SHARE_TEXT, "band-high", "measure.band_high", "SHARE",
+                  "And ends at this one."),
+    CLI_SOURCE_OPTIONS,
+};
+
+static scree_status run(const cli_call *call, scree_error *error) {
+  return cli_pour_run(call, "repose", true, error);
 }
 
 const cli_verb cli_verb_repose = {
@@ -99,5 +102,6 @@ const cli_verb cli_verb_repose = {
     .input_minimum = 0,
     .input_maximum = SCREE_MOST_SHAPES,
     .partners = CLI_POUR_PARTNERS " view:output",
+    .exclusive = CLI_POUR_EXCLUSIVE,
     .run = run,
 };

@@ -1,59 +1,54 @@
 /* scree run: a scene of the user's own. */
+#include "base/owned.h"
 #include "cli/scene_run.h"
 
-#include <string.h>
-
 typedef struct run_arguments {
-  const char *output, *template_name;
-  cli_texts set, change;
-  size_t rays;
-  bool print, resume, overwrite, json, no_picture;
+  cli_scene_options scene;
+  const char *template_name;
 } run_arguments;
 
-static const run_arguments defaults = {.rays = 24};
+static const run_arguments defaults = {.scene.rays = 24};
 
-#define AT(field) offsetof(run_arguments, field)
+#define ARGUMENTS run_arguments
 static const cli_option options[] = {
-    {"output", CLI_TEXT, AT(output), "DIR",
-     "A folder, made if need be, for result.json, series.csv, scene.yaml, checkpoint.scree, "
-     "bodies.pvd and geometry.pvd with their frames, scene.png and report.html.",
-     0, 0, NULL},
-    {"set", CLI_TEXTS, AT(set), "FIELD=VALUE",
-     "Change any field of the file, as inlets.feed.rate=5; may be given several times.", 0, 0,
-     NULL},
-    {"print", CLI_FLAG, AT(print), NULL,
-     "Print the scene as it would be run, with units and comments, and stop.", 0, 0, NULL},
-    {"template", CLI_TEXT, AT(template_name), "NAME",
-     "A built-in scene in place of a file: hopper, drum, tilting-box, drawdown, hollow-cylinder, "
-     "conveyor, vibrating-screen, shear-box, drum-lifters, paddle-mixer, tumbler, hammer-mill, "
-     "transfer-chute, belt, auger or hole-screen. Without -o, --set, --print and --json it is "
-     "printed with its comments, to start from.",
-     0, 0, NULL},
-    {"resume", CLI_FLAG, AT(resume), NULL,
-     "Go on from the checkpoint in DIR where there is one; without a file, with what is in it.", 0,
-     0, NULL},
-    {"change", CLI_TEXTS, AT(change), "FIELD=VALUE|FILE",
-     "With --resume: go on with another value, as geometry.drum.motion.0.rotate.speed=3, or with "
-     "all of a file that has such fields; may be given several times. What may change: motions, "
-     "friction, gravity, inlets, outlets, sensors, times.",
-     0, 0, NULL},
-    {"force", CLI_FLAG, AT(overwrite), NULL,
-     "Begin anew in a folder with an earlier scene, whose files go.", 0, 0, NULL},
-    {"json", CLI_FLAG, AT(json), NULL, "Print result.json instead of text.", 0, 0, NULL},
-    {"no-picture", CLI_FLAG, AT(no_picture), NULL, "Do not render scene.png.", 0, 0, NULL},
-    {"rays", CLI_COUNT, AT(rays), "N", "Rays a pixel of scene.png. Default: 24.", 1, 65536, NULL},
+    CLI_ROW(CLI_TEXT, "output", scene.output, "DIR",
+            "A folder, made if need be, for result.json, series.csv, scene.yaml, checkpoint.scree, "
+            "bodies.pvd and geometry.pvd with their frames, scene.png and report.html."),
+    CLI_ROW(CLI_TEXTS, "set", scene.set, "FIELD=VALUE",
+            "Change any field of the file, as inlets.feed.rate=5; may be given several times."),
+    CLI_FLAG_ROW("print", scene.print,
+                 "Print the scene as it would be run, with units and comments, and stop."),
+    CLI_ROW(CLI_TEXT, "template", template_name, "NAME",
+            "A built-in scene in place of a file: hopper, drum, tilting-box, drawdown, "
+            "hollow-cylinder, conveyor, vibrating-screen, shear-box, drum-lifters, paddle-mixer, "
+            "tumbler, hammer-mill, transfer-chute, belt, auger or hole-screen. Without -o, --set, "
+            "--print and --json it is printed with its comments, to start from."),
+    CLI_FLAG_ROW(
+        "resume", scene.resume,
+        "Go on from the checkpoint in DIR where there is one; without a file, with what is in it."),
+    CLI_ROW(CLI_TEXTS, "change", scene.change, "FIELD=VALUE|FILE",
+            "With --resume: go on with another value, as geometry.drum.motion.0.rotate.speed=3, or "
+            "with all of a file that has such fields; may be given several times. What may change: "
+            "motions, friction, gravity, inlets, outlets, sensors, times."),
+    CLI_FLAG_ROW("force", scene.overwrite,
+                 "Begin anew in a folder with an earlier scene, whose files go."),
+    CLI_FLAG_ROW("json", scene.json, "Print result.json instead of text."),
+    CLI_FLAG_ROW("no-picture", scene.no_picture, "Do not render scene.png."),
+    CLI_RANGE_ROW(CLI_COUNT, "rays", scene.rays, "N", 1, 65536,
+                  "Rays a pixel of scene.png. Default: 24."),
 };
-#undef AT
 
 static scree_status simulate(cli_scene_run *r, scree_error *error) {
-  SCREE_TRY(r->output ? cli_check_scene_output(r, error) : SCREE_OK);
-  if (r->output && r->overwrite && !r->resume)
-    SCREE_TRY(cli_clear_scene_output(r->call, r->output, error));
-  SCREE_TRY(cli_run_scene(r, error));
+  const cli_scene_options *o = r->options;
   char shown[CLI_PRINTABLE_BYTES];
-  if (r->output && !r->json)
-    printf("  look at           %s/report.html\n", cli_printable(r->output, shown));
-  else if (!r->json)
+  if (o->output) SCREE_TRY(cli_check_scene_output(r, error));
+  if (o->output && o->overwrite && !o->resume)
+    SCREE_TRY(cli_clear_scene_output(r->call, o->output, error));
+  SCREE_TRY(cli_run_scene(r, error));
+  if (o->json) return SCREE_OK;
+  if (o->output)
+    printf("  look at           %s/report.html\n", cli_printable(o->output, shown));
+  else
     puts("  Nothing was kept: -o DIR writes states, tables and a report.");
   return SCREE_OK;
 }
@@ -62,69 +57,55 @@ static scree_status simulate(cli_scene_run *r, scree_error *error) {
 
 /* A template by itself is text to start from; with where to write or what to change it is run. */
 static bool prints_template(const run_arguments *a) {
-  return a->template_name && !a->output && !a->set.count && !a->print && !a->json;
+  const cli_scene_options *o = &a->scene;
+  return a->template_name && !o->output && !o->set.count && !o->print && !o->json;
 }
 
-static int check_call(const cli_call *call) {
+static scree_status check_call(const cli_call *call) {
   const run_arguments *a = call->options;
+  const cli_scene_options *o = &a->scene;
   bool scene = call->input_count || a->template_name;
   if (call->input_count && a->template_name)
     return cli_misuse(call->verb, "--template takes no file");
-  if (!scene && !(a->resume && a->output))
+  if (!scene && !(o->resume && o->output))
     return cli_misuse(call->verb, "needs a SCENE.yaml, or --resume with -o DIR; --template NAME "
                                   "prints one to start from");
-  if (!scene && (a->set.count || a->print))
+  if (!scene && (o->set.count || o->print))
     return cli_misuse(call->verb,
                       "--set and --print need a SCENE.yaml; --change changes the scene that the "
                       "folder has");
-  if (a->change.count && (!a->resume || scene))
+  if (o->change.count && (!o->resume || scene))
     return cli_misuse(call->verb, "--change needs --resume, and no SCENE.yaml: it changes the "
                                   "scene that the folder has");
-  if (a->resume && !a->output) return cli_misuse(call->verb, "--resume needs -o DIR");
-  return 0;
+  if (o->resume && !o->output) return cli_misuse(call->verb, "--resume needs -o DIR");
+  return SCREE_OK;
 }
 
-static int run(const cli_call *call) {
+static scree_status run(const cli_call *call, scree_error *error) {
   const run_arguments *a = call->options;
+  SCREE_OWNED(scree_scene_file, file);
+  SCREE_TRY(check_call(call));
+  if (a->template_name && scree_scene_file_template(a->template_name, &file, error) != SCREE_OK)
+    return cli_misuse(call->verb, "--template: %s", error->message);
+  if (prints_template(a)) {
+    fputs(scree_scene_template(a->template_name), stdout); /* its end tells where that failed */
+    return SCREE_OK;
+  }
+  if (call->input_count) SCREE_TRY(scree_scene_file_read(call->inputs[0], &file, error));
+  if (file) {
+    SCREE_TRY(cli_set_fields(call, file, NULL, &a->scene.set));
+    SCREE_TRY(scree_scene_file_check(file, error));
+  }
+  if (a->scene.print) return scree_scene_file_print(file, stdout, error);
+  SCREE_CLEANUP(cli_scene_run_free)
   cli_scene_run r = {.call = call,
+                     .options = &a->scene,
                      .start = scree_work_started(),
+                     .file = file,
                      .file_name = call->input_count ? call->inputs[0] : NULL,
-                     .output = a->output,
-                     .rays = a->rays,
-                     .views = CLI_BODIES | CLI_GEOMETRY,
-                     .resume = a->resume,
-                     .changes = a->change.items,
-                     .change_count = a->change.count,
-                     .overwrite = a->overwrite,
-                     .json = a->json,
-                     .no_picture = a->no_picture};
-  scree_error error;
-  int code = check_call(call);
-  if (code) return code;
-  scree_status status = SCREE_OK;
-  if (a->template_name)
-    status = scree_scene_file_template(a->template_name, &r.file, &error);
-  else if (call->input_count)
-    status = scree_scene_file_read(call->inputs[0], &r.file, &error);
-  if (status != SCREE_OK && a->template_name)
-    return cli_misuse(call->verb, "--template: %s", error.message);
-  if (status == SCREE_OK && prints_template(a)) {
-    scree_scene_file_free(r.file);
-    return fputs(scree_scene_template(a->template_name), stdout) < 0;
-  }
-  if (status == SCREE_OK && r.file) code = cli_set_fields(call, r.file, NULL, NULL, 0, &a->set);
-  if (status == SCREE_OK && r.file && code == 0) status = scree_scene_file_check(r.file, &error);
-  if (code) {
-    scree_scene_file_free(r.file);
-    return code;
-  }
-  if (status == SCREE_OK && a->print)
-    status = scree_scene_file_print(r.file, stdout, &error);
-  else if (status == SCREE_OK)
-    status = simulate(&r, &error);
-  cli_scene_run_free(&r);
-  scree_scene_file_free(r.file);
-  return status == SCREE_OK ? 0 : cli_fail(&error);
+                     .output = a->scene.output,
+                     .views = CLI_BODIES | CLI_GEOMETRY};
+  return simulate(&r, error);
 }
 
 const cli_verb cli_verb_run = {

@@ -12,26 +12,22 @@ typedef struct sample_arguments {
   bool list, force;
 } sample_arguments;
 
+#define ARGUMENTS sample_arguments
 static const cli_option options[] = {
-    {"output", CLI_TEXT, offsetof(sample_arguments, output), "PATH",
-     "A folder, made if need be, that gets NAME.stl for every sample; or, for one sample, a file "
-     "(.stl, .ply, .obj, .off, .3mf), or - for a binary STL on stdout. Default: the current "
-     "folder.",
-     0, 0, NULL},
-    {"resolution", CLI_LENGTH, offsetof(sample_arguments, resolution), "LENGTH",
-     "Spacing of the mesh's vertices, with its unit, from 0.02mm to 5mm. Default: 0.27mm, the "
-     "paper's.",
-     0.02e-3, 5e-3, NULL},
-    {"noise", CLI_LENGTH, offsetof(sample_arguments, noise), "LENGTH",
-     "Standard deviation of the scanner's noise; 0 gives a clean mesh. At most a quarter of the "
-     "resolution. The test solids have none. Default: 0.02mm.",
-     0, 1, NULL},
-    {"sample-seed", CLI_COUNT, offsetof(sample_arguments, seed), "N",
-     "Another seed, another scan of the same device. Default: 1.", 0, 9007199254740992.0, NULL},
-    {"list", CLI_FLAG, offsetof(sample_arguments, list), NULL,
-     "List the samples and write nothing, as without NAME and --output.", 0, 0, NULL},
-    {"force", CLI_FLAG, offsetof(sample_arguments, force), NULL, "Overwrite existing files.", 0, 0,
-     NULL},
+    CLI_ROW(CLI_TEXT, "output", output, "PATH",
+            "A folder, made if need be, that gets NAME.stl for every sample; or, for one sample, a "
+            "file (.stl, .ply, .obj, .off, .3mf), or - for a binary STL on stdout. Default: the "
+            "current folder."),
+    CLI_RANGE_ROW(CLI_LENGTH, "resolution", resolution, "LENGTH", 0.02e-3, 5e-3,
+                  "Spacing of the mesh's vertices, with its unit, from 0.02mm to 5mm. Default: "
+                  "0.27mm, the paper's."),
+    CLI_RANGE_ROW(CLI_LENGTH, "noise", noise, "LENGTH", 0, 1,
+                  "Standard deviation of the scanner's noise; 0 gives a clean mesh. At most a "
+                  "quarter of the resolution. The test solids have none. Default: 0.02mm."),
+    CLI_RANGE_ROW(CLI_COUNT, "sample-seed", seed, "N", 0, 9007199254740992.0,
+                  "Another seed, another scan of the same device. Default: 1."),
+    CLI_FLAG_ROW("list", list, "List the samples and write nothing, as without NAME and --output."),
+    CLI_FLAG_ROW("force", force, "Overwrite existing files."),
 };
 
 static const sample_arguments defaults = {NULL, 0.27e-3, 0.02e-3, 1, false, false};
@@ -63,28 +59,28 @@ static void print_row(FILE *stream, const char *name, const char *path, const sc
           (high[2] - low[2]) * 1e3, area * 1e4, volume * 1e6, cli_printable(path, shown));
 }
 
-static int make_one(const cli_call *call, const char *name, const char *path, bool first) {
+static scree_status make_one(const cli_call *call, const char *name, const char *path, bool first,
+                             scree_error *error) {
   const sample_arguments *arguments = call->options;
   scree_sample_options sample = scree_default_sample_options();
   scree_write_options write = scree_default_write_options();
-  scree_mesh mesh = {0};
-  scree_error error;
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
   bool to_stdout = !strcmp(path, "-");
+  FILE *stream = to_stdout ? stderr : stdout;
   sample.resolution = arguments->resolution;
   sample.noise = arguments->noise;
   sample.seed = arguments->seed;
   write.overwrite = arguments->force;
   write.comment = call->command_line;
   if (to_stdout) write.format = SCREE_FORMAT_STL;
-  scree_status status = scree_sample_make(name, &sample, call->progress, &mesh, &error);
-  if (status == SCREE_OK) status = scree_mesh_write(&mesh, path, &write, &error);
+  SCREE_TRY(scree_sample_make(name, &sample, call->progress, &mesh, error));
+  SCREE_TRY(scree_mesh_write(&mesh, path, &write, error));
   cli_terminal_end();
-  if (status == SCREE_OK && first)
-    fprintf(to_stdout ? stderr : stdout, "%-10s %9s  %-24s  %7s  %7s  %s\n", "sample", "triangles",
-            "size (mm)", "S (cm2)", "V (cm3)", "file");
-  if (status == SCREE_OK) print_row(to_stdout ? stderr : stdout, name, path, &mesh);
-  scree_mesh_free(&mesh);
-  return status == SCREE_OK ? 0 : cli_fail(&error);
+  if (first)
+    fprintf(stream, "%-10s %9s  %-24s  %7s  %7s  %s\n", "sample", "triangles", "size (mm)",
+            "S (cm2)", "V (cm3)", "file");
+  print_row(stream, name, path, &mesh);
+  return SCREE_OK;
 }
 
 /* The file of a sample: the output itself, or one in the folder that it is. */
@@ -95,37 +91,31 @@ static void name_output(const char *output, const char *name, char path[PATH_BYT
     snprintf(path, PATH_BYTES, "%s/%.64s.stl", output, name);
 }
 
-static int run(const cli_call *call) {
+static scree_status run(const cli_call *call, scree_error *error) {
   const sample_arguments *arguments = call->options;
   bool all = call->input_count == 0 || (call->input_count == 1 && !strcmp(call->inputs[0], "all"));
   if (arguments->list || (call->input_count == 0 && !arguments->output)) {
     list_samples();
-    return 0;
+    return SCREE_OK;
   }
   size_t count = all ? SCREE_SAMPLE_DEVICES : call->input_count;
   const char *output = arguments->output ? arguments->output : ".";
   bool to_file = names_file(output);
+  char path[PATH_BYTES];
   if (to_file && count != 1)
     return cli_misuse(call->verb, "%zu samples do not fit into one file: -o takes a folder", count);
   for (size_t i = 0; i < call->input_count; i++)
     for (size_t k = 0; k < i; k++)
       if (!strcmp(call->inputs[i], call->inputs[k]))
         return cli_misuse(call->verb, "'%s' is given twice", call->inputs[i]);
-  scree_error error;
-  if (!to_file && cli_make_folder(output, &error) != SCREE_OK) return cli_fail(&error);
-  for (size_t i = 0; i < count; i++) { /* first whether all can be written */
-    char path[PATH_BYTES];
-    name_output(output, all ? scree_sample_name(i) : call->inputs[i], path);
-    if (scree_output_check(path, arguments->force, &error) != SCREE_OK) return cli_fail(&error);
-  }
-  for (size_t i = 0; i < count; i++) {
-    const char *name = all ? scree_sample_name(i) : call->inputs[i];
-    char path[PATH_BYTES];
+  if (!to_file) SCREE_TRY(cli_make_folder(output, error));
+  for (size_t i = 0; i < 2 * count; i++) { /* first whether all can be written */
+    const char *name = all ? scree_sample_name(i % count) : call->inputs[i % count];
     name_output(output, name, path);
-    int code = make_one(call, name, path, i == 0);
-    if (code) return code;
+    SCREE_TRY(i < count ? scree_output_check(path, arguments->force, error)
+                        : make_one(call, name, path, i == count, error));
   }
-  return 0;
+  return SCREE_OK;
 }
 
 const cli_verb cli_verb_sample = {

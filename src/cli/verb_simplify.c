@@ -1,5 +1,6 @@
 /* scree simplify: one level of the decimation as a file. */
 #include "base/number.h"
+#include "base/owned.h"
 #include "cli/input.h"
 #include "cli/output.h"
 #include "cli/surface.h"
@@ -20,39 +21,35 @@ typedef struct simplify_arguments {
   bool force, fit;
 } simplify_arguments;
 
+#define ARGUMENTS simplify_arguments
 static const cli_option options[] = {
-    {"output", CLI_TEXT, offsetof(simplify_arguments, output), "FILE",
-     "The file to write: .stl, .ply, .obj, .off or .3mf by its extension; - writes a binary STL to "
-     "stdout.",
-     0, 0, NULL},
-    {"rp", CLI_SHARE, offsetof(simplify_arguments, rp), "RP",
-     "Keep this share of the triangles, as in 1e-3: the first level with at most RP times the "
-     "scan's count, rounded down. A closed surface has an even count.",
-     1e-12, 1, NULL},
+    CLI_ROW(CLI_TEXT, "output", output, "FILE",
+            "The file to write: .stl, .ply, .obj, .off or .3mf by its extension; - writes a binary "
+            "STL to stdout."),
+    CLI_RANGE_ROW(CLI_SHARE, "rp", rp, "RP", 1e-12, 1,
+                  "Keep this share of the triangles, as in 1e-3: the first level with at most RP "
+                  "times the scan's count, rounded down. A closed surface has an even count."),
     {"count", CLI_COUNT, offsetof(simplify_arguments, count), "COUNT",
      "Keep at most this many triangles; recommended: as many as choose recommends.", 1,
-     4294967295.0, "recommended"},
-    {"error", CLI_LENGTH, offsetof(simplify_arguments, error), "LENGTH",
-     "Go as far as no collapse moves the surface by more than this, as in 0.05mm: by the quadric "
-     "error, an estimate, not a bound. Costlier collapses are left out and others go on, so that "
-     "the mesh is none of the levels that curve shows. May be given with -r or -n.",
-     1e-12, 1e12, NULL},
-    {"method", CLI_CHOICE, offsetof(simplify_arguments, method), "METHOD",
-     "volume keeps the volume at every level; qecd is MeshLab's quadric edge collapse decimation. "
-     "Default: volume.",
-     0, 0, "volume|qecd"},
-    {"fit", CLI_FLAG, offsetof(simplify_arguments, fit), NULL,
-     "Move the level's vertices to where its surface is nearer to the scan: the mean distance "
-     "falls by some per cent, the volume stays, the area may be further off.",
-     0, 0, NULL},
-    {"density", CLI_REAL, offsetof(simplify_arguments, density), "KG/M3",
-     "Also write mass, centre of mass and inertia of the result at this density in kg/m3 into a "
-     ".json of the same name, as export does. The surface must be closed.",
-     1e-6, 1e6, NULL},
-    CLI_SOUNDNESS_OPTIONS(simplify_arguments),
-    CLI_SOURCE_OPTIONS(simplify_arguments),
-    {"force", CLI_FLAG, offsetof(simplify_arguments, force), NULL, "Overwrite an existing file.", 0,
-     0, NULL},
+     4294967295.0, "recommended", NULL},
+    CLI_RANGE_ROW(
+        CLI_LENGTH, "error", error, "LENGTH", 1e-12, 1e12,
+        "Go as far as no collapse moves the surface by more than this, as in 0.05mm: by the "
+        "quadric error, an estimate, not a bound. Costlier collapses are left out and others go "
+        "on, so that the mesh is none of the levels that curve shows. May be given with -r or -n."),
+    CLI_CHOICE_ROW("method", method, "METHOD", "volume|qecd",
+                   "volume keeps the volume at every level; qecd is MeshLab's quadric edge "
+                   "collapse decimation. Default: volume."),
+    CLI_FLAG_ROW("fit", fit,
+                 "Move the level's vertices to where its surface is nearer to the scan: the mean "
+                 "distance falls by some per cent, the volume stays, the area may be further off."),
+    CLI_RANGE_ROW(
+        CLI_REAL, "density", density, "KG/M3", 1e-6, 1e6,
+        "Also write mass, centre of mass and inertia of the result at this density in kg/m3 into a "
+        ".json of the same name, as export does. The surface must be closed."),
+    CLI_SOUNDNESS_OPTIONS,
+    CLI_SOURCE_OPTIONS,
+    CLI_FLAG_ROW("force", force, "Overwrite an existing file."),
 };
 
 static const simplify_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};
@@ -123,24 +120,22 @@ static scree_status write_level(const cli_call *call, const scree_scan *scan,
                                 scree_error *error) {
   const simplify_arguments *arguments = call->options;
   char shown[CLI_PRINTABLE_BYTES];
-  scree_mesh mesh = {0};
-  scree_status status = arguments->fit ? scree_curve_fit(curve, index, &mesh, error)
-                                       : scree_curve_mesh(curve, index, &mesh, error);
-  if (status == SCREE_OK) status = scree_mesh_area_volume(&mesh, &is->area, &is->volume, error);
-  if (status == SCREE_OK && !arguments->soundness.unchecked)
-    status = cli_check_rounded(&mesh, arguments->output, arguments->source.unit, NULL,
-                               call->progress, error);
-  if (status == SCREE_OK)
-    status = arguments->density > 0 ? write_with_mass(call, scan, &mesh, error)
-                                    : write_plain(call, &mesh, error);
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
+  SCREE_TRY(arguments->fit ? scree_curve_fit(curve, index, &mesh, error)
+                           : scree_curve_mesh(curve, index, &mesh, error));
+  SCREE_TRY(scree_mesh_area_volume(&mesh, &is->area, &is->volume, error));
+  if (!arguments->soundness.unchecked)
+    SCREE_TRY(cli_check_rounded(&mesh, arguments->output, arguments->source.unit, NULL,
+                                call->progress, error));
+  SCREE_TRY(arguments->density > 0 ? write_with_mass(call, scan, &mesh, error)
+                                   : write_plain(call, &mesh, error));
   double lost = cli_volume_lost(&mesh, arguments->output, arguments->source.unit);
-  if (status == SCREE_OK && lost >= CLI_NOTABLE_LOSS && !call->quiet)
+  if (lost >= CLI_NOTABLE_LOSS && !call->quiet)
     fprintf(stderr,
             "%s: an STL holds single precision, which changes the volume by %.2g of it here; .ply, "
             ".obj and .off hold it\n",
             cli_printable(arguments->output, shown), lost);
-  scree_mesh_free(&mesh);
-  return status;
+  return SCREE_OK;
 }
 
 /* What is to be written, before long work. */
@@ -154,72 +149,62 @@ static scree_status check_output(const cli_call *call, scree_error *error) {
   return cli_check_output(call, path, arguments->force, error);
 }
 
+/* A count that was asked for and not reached. */
+static void say_above(const cli_call *call, size_t count, size_t target) {
+  const simplify_arguments *arguments = call->options;
+  char shown[CLI_PRINTABLE_BYTES];
+  const char *word = cli_printable(call->inputs[0], shown);
+  if (arguments->error > 0)
+    fprintf(stderr,
+            "%s: %zu triangles, not the %zu asked for: no collapse is left within the error of %g "
+            "mm\n",
+            word, count, target, arguments->error * 1e3);
+  else
+    fprintf(stderr, "%s: %zu triangles is the lowest count that could be reached\n", word, count);
+}
+
 static scree_status simplify(const cli_call *call, scree_error *error) {
   const simplify_arguments *arguments = call->options;
   scree_simplify_options simplify_options = scree_default_simplify_options();
-  scree_scan scan = {0};
-  scree_curve *curve = NULL;
-  char shown[CLI_PRINTABLE_BYTES];
+  SCREE_CLEANUP(scree_scan_free) scree_scan scan = {0};
+  SCREE_OWNED(scree_curve, curve);
+  bool recommended = arguments->count == SIZE_MAX;
+  size_t target = recommended ? 0 : arguments->count, index;
   double scale;
-  scree_status status = check_output(call, error);
-  if (status == SCREE_OK)
-    status =
-        cli_load_for_levels(call, &arguments->source, &arguments->soundness, &scan, &scale, error);
-  if (status != SCREE_OK) return status;
-  size_t target = arguments->count;
+  scree_level level;
+  written is = {0};
+  SCREE_TRY(check_output(call, error));
+  SCREE_TRY(
+      cli_load_for_levels(call, &arguments->source, &arguments->soundness, &scan, &scale, error));
   if (arguments->rp > 0) target = scree_choice_target(arguments->rp, scan.mesh.triangle_count);
   simplify_options.method = (scree_method)arguments->method;
-  bool recommended = target == SIZE_MAX;
-  if (recommended) target = 0;
   simplify_options.stop_count = target;
   simplify_options.error_limit = arguments->error;
-  status =
-      scree_curve_build_scaled(&scan.mesh, scale, &simplify_options, call->progress, &curve, error);
-  size_t index = 0;
-  if (status == SCREE_OK && recommended)
-    status = cli_recommended_level(curve, &scan.mesh, call->progress, &index, error);
-  else if (status == SCREE_OK)
+  SCREE_TRY(scree_curve_build_scaled(&scan.mesh, scale, &simplify_options, call->progress, &curve,
+                                     error));
+  if (recommended)
+    SCREE_TRY(cli_recommended_level(curve, &scan.mesh, call->progress, &index, error));
+  else
     index = scree_curve_find(curve, target);
-  if (status == SCREE_OK) {
-    scree_level level;
-    scree_curve_level(curve, index, &level);
-    written is = {0};
-    status = write_level(call, &scan, curve, index, &is, error);
-    if (status == SCREE_OK) say(call, curve, index, is);
-    bool above = status == SCREE_OK && target > 0 && level.triangle_count > target;
-    if (above && arguments->error > 0)
-      fprintf(stderr,
-              "%s: %zu triangles, not the %zu asked for: no collapse is left within the error of "
-              "%g mm\n",
-              cli_printable(call->inputs[0], shown), level.triangle_count, target,
-              arguments->error * 1e3);
-    else if (above)
-      fprintf(stderr, "%s: %zu triangles is the lowest count that could be reached\n",
-              cli_printable(call->inputs[0], shown), level.triangle_count);
-  }
-  scree_curve_free(curve);
-  scree_scan_free(&scan);
-  return status;
+  scree_curve_level(curve, index, &level);
+  SCREE_TRY(write_level(call, &scan, curve, index, &is, error));
+  say(call, curve, index, is);
+  if (target > 0 && level.triangle_count > target) say_above(call, level.triangle_count, target);
+  return SCREE_OK;
 }
 
-static int run(const cli_call *call) {
+static scree_status run(const cli_call *call, scree_error *error) {
   const simplify_arguments *arguments = call->options;
-  scree_error error;
   if (!arguments->output) return cli_misuse(call->verb, "-o FILE is missing");
-  if (arguments->rp > 0 && arguments->count > 0)
-    return cli_misuse(call->verb, "-r and -n exclude each other");
   if (arguments->count == SIZE_MAX && arguments->error > 0)
     return cli_misuse(call->verb, "--count recommended and --error exclude each other");
   if (!(arguments->rp > 0) && arguments->count == 0 && !(arguments->error > 0))
     return cli_misuse(call->verb, "one of -r RP, -n COUNT or -e LENGTH is needed");
-  if (arguments->soundness.no_repair && arguments->soundness.unchecked)
-    return cli_misuse(call->verb, "--no-repair and --unchecked exclude each other");
   bool to_stdout = !strcmp(arguments->output, "-");
   if (arguments->density > 0 && to_stdout)
     return cli_misuse(call->verb, "--density writes beside a file: -o - has none");
-  int code = to_stdout ? 0 : cli_check_ending(call->verb, arguments->output, CLI_MESH);
-  if (code) return code;
-  return simplify(call, &error) == SCREE_OK ? 0 : cli_fail(&error);
+  if (!to_stdout) SCREE_TRY(cli_check_ending(call->verb, arguments->output, CLI_MESH));
+  return simplify(call, error);
 }
 
 const cli_verb cli_verb_simplify = {
@@ -241,5 +226,6 @@ const cli_verb cli_verb_simplify = {
     .input_minimum = 1,
     .input_maximum = 1,
     .partners = CLI_SAMPLE_PARTNERS,
+    .exclusive = "rp|count " CLI_SOUNDNESS_EXCLUSIVE,
     .run = run,
 };

@@ -1,58 +1,58 @@
 /* scree study: many runs. */
+#include "base/owned.h"
+#include "base/path.h"
 #include "cli/study.h"
 #include "cli/terminal.h"
 #include "report/program.h"
 
 #include <string.h>
 
-#define AT(field) offsetof(study_arguments, field)
+#define ARGUMENTS study_arguments
 /* The last is of a study alone. */
 const cli_option study_options[STUDY_OPTIONS] = {
-    {"output", CLI_TEXT, AT(output), "DIR",
-     "Folder of all that is made. Default: the file's name without its ending, in the present "
-     "folder.",
-     0, 0, NULL},
-    {"jobs", CLI_COUNT, AT(jobs), "N",
-     "Runs at the same time, each in a process of its own; with --backend cuda in threads that "
-     "share the device. Default: one per processor, or 80 on a device; of a study at most one per "
-     "run. A calibration plans as many runs at a time, at least its batch.",
-     0, 1024, NULL},
-    {"lease", CLI_REAL, AT(lease), "SECONDS",
-     "A run whose worker on another machine gave no sign of life for so long is taken over. "
-     "Default: 300.",
-     5, 1e6, NULL},
-    {"worker", CLI_FLAG, AT(worker), NULL,
-     "Only work on runs, in this process, and print nothing: for more workers, here or on other "
-     "machines that share the folder.",
-     0, 0, NULL},
-    {"no-wait", CLI_FLAG, AT(no_wait), NULL, "Do not wait for runs that others are at work on.", 0,
-     0, NULL},
-    {"slurm", CLI_FLAG, AT(slurm), NULL,
-     "Prepare a study's shapes, write DIR/study.sbatch, a job array of workers, and submit it.", 0,
-     0, NULL},
-    {"tasks", CLI_COUNT, AT(tasks), "N",
-     "Tasks of that array. Default: one per run of a study, 8 of a calibration.", 1, 100000, NULL},
-    {"dry-run", CLI_FLAG, AT(dry_run), NULL,
-     "With --slurm: write it, do not submit it. Else: read the file, and list the runs of a study.",
-     0, 0, NULL},
-    {"json", CLI_FLAG, AT(json), NULL, "Print the results as JSON.", 0, 0, NULL},
-    {"csv", CLI_FLAG, AT(csv), NULL,
-     "Print the results as CSV: a row per point, per sample, or per setting that was tried.", 0, 0,
-     NULL},
-    {"keep-failed", CLI_FLAG, AT(keep_failed), NULL,
-     "Leave runs that failed before as they are; else they are tried once more.", 0, 0, NULL},
+    CLI_ROW(CLI_TEXT, "output", output, "DIR",
+            "Folder of all that is made. Default: the file's name without its ending, in the "
+            "present folder."),
+    CLI_RANGE_ROW(
+        CLI_COUNT, "jobs", jobs, "N", 0, 1024,
+        "Runs at the same time, each in a process of its own; with --backend cuda in threads that "
+        "share the device. Default: one per processor, or 80 on a device; of a study at most one "
+        "per run. A calibration plans as many runs at a time, at least its batch."),
+    CLI_RANGE_ROW(CLI_REAL, "lease", lease, "SECONDS", 5, 1e6,
+                  "A run whose worker on another machine gave no sign of life for so long is taken "
+                  "over. Default: 300."),
+    CLI_FLAG_ROW("worker", worker,
+                 "Only work on runs, in this process, and print nothing: for more workers, here or "
+                 "on other machines that share the folder."),
+    CLI_FLAG_ROW("no-wait", no_wait, "Do not wait for runs that others are at work on."),
+    CLI_FLAG_ROW(
+        "slurm", slurm,
+        "Prepare a study's shapes, write DIR/study.sbatch, a job array of workers, and submit it."),
+    CLI_RANGE_ROW(CLI_COUNT, "tasks", tasks, "N", 1, 100000,
+                  "Tasks of that array. Default: one per run of a study, 8 of a calibration."),
+    CLI_FLAG_ROW("dry-run", dry_run,
+                 "With --slurm: write it, do not submit it. Else: read the file, and list the runs "
+                 "of a study."),
+    CLI_FLAG_ROW("json", json, "Print the results as JSON."),
+    CLI_FLAG_ROW(
+        "csv", csv,
+        "Print the results as CSV: a row per point, per sample, or per setting that was tried."),
+    CLI_FLAG_ROW("keep-failed", keep_failed,
+                 "Leave runs that failed before as they are; else they are tried once more."),
 };
 const study_arguments study_defaults = {.lease = 300};
 enum { RUNS_ON_DEVICE = 80 };
 
-int study_check_call(const cli_call *call) {
-  const study_arguments *a = call->options;
-  if (a->json && a->csv) return cli_misuse(call->verb, "--json and --csv exclude each other");
-  if (a->slurm && a->worker)
-    return cli_misuse(call->verb, "--slurm and --worker exclude each other");
-  if (strcmp(call->inputs[0], "status") != 0 && call->input_count > 1)
+bool study_asks_status(const cli_call *call) {
+  return !strcmp(call->inputs[0], "status");
+}
+
+scree_status study_check_call(const cli_call *call) {
+  if (study_asks_status(call) && call->input_count != 2)
+    return cli_misuse(call->verb, "status needs the folder");
+  if (!study_asks_status(call) && call->input_count > 1)
     return cli_misuse(call->verb, "one file at a time; '%s' is one too many", call->inputs[1]);
-  return 0;
+  return SCREE_OK;
 }
 
 const char *study_folder(const cli_call *call, const char *usual, char *buffer, size_t size) {
@@ -69,55 +69,40 @@ const char *study_folder(const cli_call *call, const char *usual, char *buffer, 
 }
 
 scree_status study_write_page(const char *folder, scree_error *error) {
-  char path[4200];
-  snprintf(path, sizeof path, "%.4100s/report.html", folder);
-  return scree_page_write(&folder, 1, path, true, error);
+  return scree_page_write(&folder, 1, SCREE_PATH_IN(folder, "report.html"), true, error);
 }
 
-/* Tables, figures and the page of them. */
-static scree_status write_files(const scree_study_result *result, const char *folder,
-                                scree_error *error) {
-  SCREE_TRY(scree_study_report_write(result, folder, error));
-  return study_write_page(folder, error);
-}
-
-/* Prints, and with `files` writes tables and figures to the folder. */
+/* Prints, and with `files` writes tables, figures and the page of them to the folder. */
 static scree_status report(const cli_call *call, const scree_study *study, const char *folder,
                            bool files, bool *failed, scree_error *error) {
   const study_arguments *a = call->options;
-  scree_study_result result;
-  scree_status status = scree_study_analyse(study, &result, error);
-  if (status != SCREE_OK) return status;
+  SCREE_CLEANUP(scree_study_result_free) scree_study_result result = {0};
+  SCREE_TRY(scree_study_analyse(study, &result, error));
   *failed = result.counts.failed > 0;
-  if (files) status = write_files(&result, folder, error);
-  if (status == SCREE_OK && a->json) status = scree_study_json_write(&result, "-", true, error);
-  if (status == SCREE_OK && a->csv) status = scree_study_csv_write(&result, "-", true, error);
-  if (status == SCREE_OK && !a->json && !a->csv) study_print(stdout, &result);
-  scree_study_result_free(&result);
-  return status;
+  if (files) SCREE_TRY(scree_study_report_write(&result, folder, error));
+  if (files) SCREE_TRY(study_write_page(folder, error));
+  if (a->json) return scree_study_json_write(&result, "-", true, error);
+  if (a->csv) return scree_study_csv_write(&result, "-", true, error);
+  study_print(stdout, &result);
+  return SCREE_OK;
 }
 
-static int show_status(const cli_call *call) {
-  scree_study *study = NULL;
-  scree_error error;
-  bool failed = false;
-  if (call->input_count != 2) return cli_misuse(call->verb, "status needs the study's folder");
-  scree_status status = scree_study_open_folder(call->inputs[1], &study, &error);
-  if (status == SCREE_OK) status = scree_study_collect(study, true, &error);
-  if (status == SCREE_OK) status = report(call, study, call->inputs[1], false, &failed, &error);
-  scree_study_free(study);
-  return status == SCREE_OK ? 0 : cli_fail(&error);
+static scree_status show_status(const cli_call *call, scree_error *error) {
+  SCREE_OWNED(scree_study, study);
+  bool failed;
+  SCREE_TRY(scree_study_open_folder(call->inputs[1], &study, error));
+  SCREE_TRY(scree_study_collect(study, true, error));
+  return report(call, study, call->inputs[1], false, &failed, error);
 }
 
-static int list_runs(const scree_study *study) {
-  scree_error error;
+static scree_status list_runs(const scree_study *study, scree_error *error) {
   for (size_t i = 0; i < scree_study_run_count(study); i++) {
     scree_study_run run;
-    if (scree_study_get_run(study, i, &run, &error) != SCREE_OK) return cli_fail(&error);
+    SCREE_TRY(scree_study_get_run(study, i, &run, error));
     printf("%6zu  point %zu  replicate %zu  seed %llu  %s%s%s\n", i, run.point, run.replicate,
            (unsigned long long)run.seed, run.shapes, run.label[0] ? ": " : "", run.label);
   }
-  return 0;
+  return SCREE_OK;
 }
 
 scree_study_options study_work_options(const study_arguments *a) {
@@ -128,28 +113,22 @@ scree_study_options study_work_options(const study_arguments *a) {
 }
 
 static double fraction_done(void *context) {
-  scree_study *study = context;
-  scree_study_result result;
-  double fraction = 0;
-  if (scree_study_collect(study, false, NULL) == SCREE_OK &&
-      scree_study_analyse(study, &result, NULL) == SCREE_OK) {
-    size_t count = scree_study_run_count(study);
-    fraction = (double)(result.counts.done + result.counts.failed) / (double)count;
-    scree_study_result_free(&result);
-  }
-  return fraction;
+  SCREE_CLEANUP(scree_study_result_free) scree_study_result result = {0};
+  if (scree_study_collect(context, false, NULL) != SCREE_OK ||
+      scree_study_analyse(context, &result, NULL) != SCREE_OK)
+    return 0;
+  return (double)(result.counts.done + result.counts.failed) /
+         (double)scree_study_run_count(context);
 }
 
 static scree_status work_as_one(const cli_call *call, const char *folder,
                                 const scree_study_options *o, const scree_progress *progress,
                                 scree_error *error) {
-  scree_study *study = NULL;
-  scree_status status = scree_study_read(call->inputs[0], &study, error);
-  if (status == SCREE_OK) status = scree_study_open(study, folder, error);
-  if (status == SCREE_OK) status = scree_study_prepare(study, o, progress, error);
-  if (status == SCREE_OK) status = scree_study_work(study, o, progress, NULL, error);
-  scree_study_free(study);
-  return status;
+  SCREE_OWNED(scree_study, study);
+  SCREE_TRY(scree_study_read(call->inputs[0], &study, error));
+  SCREE_TRY(scree_study_open(study, folder, error));
+  SCREE_TRY(scree_study_prepare(study, o, progress, error));
+  return scree_study_work(study, o, progress, NULL, error);
 }
 
 size_t study_jobs_wanted(const cli_call *call, size_t most) {
@@ -159,54 +138,39 @@ size_t study_jobs_wanted(const cli_call *call, size_t most) {
   return jobs > most ? most : jobs;
 }
 
-/* Works in this process, or in several. */
-static int work(const cli_call *call, scree_study *study, const char *folder, bool worker,
-                scree_error *error) {
+static scree_status run_study(const cli_call *call, scree_study *study, const char *folder,
+                              scree_error *error) {
   const study_arguments *a = call->options;
-  study_crew crew = {.call = call,
-                     .folder = folder,
-                     .jobs = study_jobs_wanted(call, scree_study_run_count(study)),
-                     .fraction = fraction_done,
-                     .context = study,
-                     .work = work_as_one};
-  if (!worker && !a->keep_failed && scree_study_reopen(study, error) != SCREE_OK)
-    return cli_fail(error);
-  return study_run_crew(&crew, worker);
-}
-
-static int run_study(const cli_call *call, scree_study *study, const char *folder,
-                     scree_error *error) {
-  const study_arguments *a = call->options;
+  const size_t runs = scree_study_run_count(study);
   bool worker = a->worker || study_rank() > 0, failed = false;
   scree_study_options o = study_work_options(a);
-  scree_status status = scree_study_open(study, folder, error);
-  if (status == SCREE_OK) status = scree_study_prepare(study, &o, call->progress, error);
-  if (status != SCREE_OK) return cli_fail(error);
-  if (a->slurm) return study_run_slurm(call, folder, scree_study_run_count(study));
-  int code = work(call, study, folder, worker, error);
-  if (worker) return code;
-  scree_error late; /* what happened first is what is told */
+  const study_crew crew = {.call = call,
+                           .folder = folder,
+                           .jobs = study_jobs_wanted(call, runs),
+                           .fraction = fraction_done,
+                           .context = study,
+                           .work = work_as_one};
+  SCREE_TRY(scree_study_open(study, folder, error));
+  SCREE_TRY(scree_study_prepare(study, &o, call->progress, error));
+  if (a->slurm) return study_run_slurm(call, folder, runs, error);
+  if (!worker && !a->keep_failed) SCREE_TRY(scree_study_reopen(study, error));
+  scree_status status = study_run_crew(&crew, worker);
+  if (worker) return status;
   cli_terminal_end();
-  status = scree_study_collect(study, true, &late);
-  if (status == SCREE_OK) status = report(call, study, folder, code == 0, &failed, &late);
-  if (status != SCREE_OK) return cli_fail(&late);
-  return code == 0 && failed ? 1 : code;
+  SCREE_TRY(scree_study_collect(study, true, error));
+  SCREE_TRY(report(call, study, folder, status == SCREE_OK, &failed, error));
+  return failed ? CLI_TOLD : status;
 }
 
-static int run(const cli_call *call) {
+static scree_status run(const cli_call *call, scree_error *error) {
   const study_arguments *a = call->options;
-  scree_study *study = NULL;
-  scree_error error;
+  SCREE_OWNED(scree_study, study);
   char folder[256];
-  int code = study_check_call(call);
-  if (code) return code;
-  if (!strcmp(call->inputs[0], "status")) return show_status(call);
-  if (scree_study_read(call->inputs[0], &study, &error) != SCREE_OK) return cli_fail(&error);
-  code = a->dry_run && !a->slurm
-             ? list_runs(study)
-             : run_study(call, study, study_folder(call, "study", folder, sizeof folder), &error);
-  scree_study_free(study);
-  return code;
+  SCREE_TRY(study_check_call(call));
+  if (study_asks_status(call)) return show_status(call, error);
+  SCREE_TRY(scree_study_read(call->inputs[0], &study, error));
+  if (a->dry_run && !a->slurm) return list_runs(study, error);
+  return run_study(call, study, study_folder(call, "study", folder, sizeof folder), error);
 }
 
 const cli_verb cli_verb_study = {
@@ -232,5 +196,6 @@ const cli_verb cli_verb_study = {
     .input_minimum = 1,
     .input_maximum = 2,
     .partners = "tasks:slurm",
+    .exclusive = STUDY_EXCLUSIVE,
     .run = run,
 };

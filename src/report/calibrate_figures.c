@@ -9,12 +9,12 @@
 enum { MOST_DRAWN = 6, MOST_POINTS = 600, BINS = 24, MOST_PANELS = 36 };
 
 static scree_status finish(scree_drawing *d, const scree_calibration_result *r, scree_figure figure,
-                           const char *stem, scree_error *error) {
+                           const char *stem, bool overwrite, scree_error *error) {
   char note[256];
   snprintf(note, sizeof note, "scree %s, %.100s, %zu runs, seed %llu", r->version, r->title,
            r->progress.done, (unsigned long long)r->seed);
   figure.note = note;
-  return scree_drawing_write_all(d, figure, stem, error);
+  return scree_drawing_write(d, figure, stem, overwrite, error);
 }
 
 static scree_axis axis_of(const scree_parameter_result *p) {
@@ -60,8 +60,9 @@ static void add_pair(scree_drawing *d, const scree_calibration_result *r, size_t
   }
 }
 
-static scree_status draw_corner(const scree_calibration_result *r, const char *stem,
+static scree_status draw_corner(const void *result, const char *stem, bool overwrite,
                                 scree_error *error) {
+  const scree_calibration_result *r = result;
   scree_drawing d = {0};
   size_t n = r->parameter_count < MOST_DRAWN ? r->parameter_count : MOST_DRAWN;
   for (size_t up = 0; up < n; up++)
@@ -75,7 +76,7 @@ static scree_status draw_corner(const scree_calibration_result *r, const char *s
         add_pair(&d, r, across, up);
     }
   scree_figure figure = {.columns = n, .panel_width = 230, .panel_height = 210};
-  return finish(&d, r, figure, stem, error);
+  return finish(&d, r, figure, stem, overwrite, error);
 }
 
 /* ---- answers ---- */
@@ -122,19 +123,21 @@ static void draw_answer(scree_drawing *d, const scree_answer_result *a) {
   add_point(d, "a single one, interval", 3, a->mean, a->single_low, a->single_high);
 }
 
-static scree_status draw_answers(const scree_calibration_result *r, const char *stem,
+static scree_status draw_answers(const void *result, const char *stem, bool overwrite,
                                  scree_error *error) {
+  const scree_calibration_result *r = result;
   scree_drawing d = {0};
   for (size_t i = 0; i < r->answer_count && i < MOST_PANELS; i++) draw_answer(&d, &r->answers[i]);
   scree_figure figure = {
       .columns = d.panels.count < 3 ? d.panels.count : 3, .panel_width = 260, .panel_height = 260};
-  return finish(&d, r, figure, stem, error);
+  return finish(&d, r, figure, stem, overwrite, error);
 }
 
 /* ---- history ---- */
 
-static scree_status draw_history(const scree_calibration_result *r, const char *stem,
+static scree_status draw_history(const void *result, const char *stem, bool overwrite,
                                  scree_error *error) {
+  const scree_calibration_result *r = result;
   static const scree_guide half = {"identified", 0.5, true};
   scree_drawing d = {0};
   size_t lines = r->is_search ? 1 : r->parameter_count, width = 1 + lines;
@@ -158,35 +161,33 @@ static scree_status draw_history(const scree_calibration_result *r, const char *
     }
   }
   scree_figure figure = {.columns = 1, .panel_width = 380, .panel_height = 300};
-  return finish(&d, r, figure, stem, error);
+  return finish(&d, r, figure, stem, overwrite, error);
 }
 
 /* ---- all files ---- */
 
-static scree_status write_text(const scree_calibration_result *r, const char *path,
+static scree_status write_text(const void *result, const char *path, bool overwrite,
                                scree_error *error) {
   scree_output output;
-  SCREE_TRY(scree_output_open(path, true, &output, error));
-  scree_calibration_print(r, output.stream);
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
+  scree_calibration_print(result, output.stream);
   return scree_output_commit(&output, error);
 }
 
 scree_status scree_calibration_report_write(const scree_calibration_result *result,
                                             const char *folder, scree_error *error) {
-  char path[4200];
-#define IN_FOLDER(name) (snprintf(path, sizeof path, "%.4100s/%s", folder, name), path)
-  scree_status status =
-      scree_calibration_json_write(result, IN_FOLDER("calibration.json"), true, error);
-  if (status == SCREE_OK)
-    status = scree_calibration_csv_write(
-        result, IN_FOLDER(result->is_search ? "settings.csv" : "samples.csv"), true, error);
-  if (status == SCREE_OK) status = write_text(result, IN_FOLDER("calibration.txt"), error);
-  scree_status drawn = status;
-  if (drawn == SCREE_OK && !result->is_search)
-    drawn = draw_corner(result, IN_FOLDER("corner"), error);
-  if (drawn == SCREE_OK && !result->is_search)
-    drawn = draw_answers(result, IN_FOLDER("answers"), error);
-  if (drawn == SCREE_OK) drawn = draw_history(result, IN_FOLDER("history"), error);
-#undef IN_FOLDER
-  return drawn == SCREE_UNSUPPORTED ? SCREE_OK : drawn; /* a build without pictures */
+  static const scree_product of_search[] = {{"calibration.json", scree_calibration_json_write},
+                                            {"settings.csv", scree_calibration_csv_write},
+                                            {"calibration.txt", write_text},
+                                            {"history", draw_history}};
+  static const scree_product of_fit[] = {{"calibration.json", scree_calibration_json_write},
+                                         {"samples.csv", scree_calibration_csv_write},
+                                         {"calibration.txt", write_text},
+                                         {"corner", draw_corner},
+                                         {"answers", draw_answers},
+                                         {"history", draw_history}};
+  return result->is_search ? scree_products_write(of_search, sizeof of_search / sizeof *of_search,
+                                                  result, folder, true, error)
+                           : scree_products_write(of_fit, sizeof of_fit / sizeof *of_fit, result,
+                                                  folder, true, error);
 }

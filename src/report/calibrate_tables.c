@@ -286,8 +286,8 @@ static void put_result(scree_json *json, const void *result) {
   scree_json_end(json);
 }
 
-scree_status scree_calibration_json_write(const scree_calibration_result *result, const char *path,
-                                          bool overwrite, scree_error *error) {
+scree_status scree_calibration_json_write(const void *result, const char *path, bool overwrite,
+                                          scree_error *error) {
   return scree_json_file(path, overwrite, put_result, result, error);
 }
 
@@ -300,8 +300,9 @@ static void put_row(FILE *s, const double *values, size_t count) {
   }
 }
 
-scree_status scree_calibration_csv_write(const scree_calibration_result *r, const char *path,
-                                         bool overwrite, scree_error *error) {
+scree_status scree_calibration_csv_write(const void *what, const char *path, bool overwrite,
+                                         scree_error *error) {
+  const scree_calibration_result *r = what;
   scree_output output;
   SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   FILE *s = output.stream;

@@ -194,8 +194,9 @@ static const char *reference_text(const scree_choice_report *report) {
   return found == report->entry_count ? "free of noise" : "free of noise where found";
 }
 
-scree_status scree_choice_figure_write(const scree_choice_report *report, const char *path,
-                                       bool overwrite, scree_error *error) {
+scree_status scree_choice_figure_write(const void *what, const char *path, bool overwrite,
+                                       scree_error *error) {
+  const scree_choice_report *report = what;
   if (report->entry_count == 0)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: no object to draw", path);
   scree_drawing d = {0};

@@ -236,8 +236,8 @@ static void json_report(scree_json *json, const void *what) {
   scree_json_end(json);
 }
 
-scree_status scree_choice_json_write(const scree_choice_report *report, const char *path,
-                                     bool overwrite, scree_error *error) {
+scree_status scree_choice_json_write(const void *report, const char *path, bool overwrite,
+                                     scree_error *error) {
   return scree_json_file(path, overwrite, json_report, report, error);
 }
 
@@ -342,8 +342,9 @@ static void csv_entry(FILE *stream, const scree_choice_entry *entry) {
   csv_recommended(stream, entry);
 }
 
-scree_status scree_choice_csv_write(const scree_choice_report *report, const char *path,
-                                    bool overwrite, scree_error *error) {
+scree_status scree_choice_csv_write(const void *what, const char *path, bool overwrite,
+                                    scree_error *error) {
+  const scree_choice_report *report = what;
   scree_output output;
   SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   fprintf(output.stream, "file,scan_triangle_count,%s,choice", LEVEL_HEADER);

@@ -59,8 +59,9 @@ static void add_panel(scree_drawing *d, const scree_clump_report *report, bool c
   add_choices(d, report, criterion);
 }
 
-scree_status scree_clump_figure_write(const scree_clump_report *report, const char *path,
-                                      bool overwrite, scree_error *error) {
+scree_status scree_clump_figure_write(const void *what, const char *path, bool overwrite,
+                                      scree_error *error) {
+  const scree_clump_report *report = what;
   scree_drawing d = {0};
   char note[256];
   if (report->entry_count == 0)

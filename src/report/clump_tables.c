@@ -117,13 +117,14 @@ static void json_report(scree_json *json, const void *what) {
   scree_json_end(json);
 }
 
-scree_status scree_clump_json_write(const scree_clump_report *report, const char *path,
-                                    bool overwrite, scree_error *error) {
+scree_status scree_clump_json_write(const void *report, const char *path, bool overwrite,
+                                    scree_error *error) {
   return scree_json_file(path, overwrite, json_report, report, error);
 }
 
-scree_status scree_clump_csv_write(const scree_clump_report *report, const char *path,
-                                   bool overwrite, scree_error *error) {
+scree_status scree_clump_csv_write(const void *what, const char *path, bool overwrite,
+                                   scree_error *error) {
+  const scree_clump_report *report = what;
   scree_output output;
   SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   FILE *f = output.stream;

@@ -37,11 +37,8 @@ void scree_drawing_free(scree_drawing *d) {
   scree_free(d->series.items);
 }
 
-typedef scree_status write_figure(const scree_figure *figure, const char *path, bool overwrite,
-                                  scree_error *error);
-
-static scree_status finish(scree_drawing *d, scree_figure figure, write_figure *write,
-                           const char *path, bool overwrite, scree_error *error) {
+scree_status scree_drawing_write(scree_drawing *d, scree_figure figure, const char *path,
+                                 bool overwrite, scree_error *error) {
   const scree_series *first = d->series.items;
   for (size_t p = 0; !d->failed && p < d->panels.count; p++) {
     d->panels.items[p].series = first;
@@ -49,18 +46,8 @@ static scree_status finish(scree_drawing *d, scree_figure figure, write_figure *
   }
   figure.panels = d->panels.items;
   figure.panel_count = d->panels.count;
-  scree_status status =
-      d->failed ? scree_fail_memory(error, 0, "a figure") : write(&figure, path, overwrite, error);
+  scree_status status = d->failed ? scree_fail_memory(error, 0, "a figure")
+                                  : scree_figure_write(&figure, path, overwrite, error);
   scree_drawing_free(d);
   return status;
-}
-
-scree_status scree_drawing_write(scree_drawing *d, scree_figure figure, const char *path,
-                                 bool overwrite, scree_error *error) {
-  return finish(d, figure, scree_figure_write, path, overwrite, error);
-}
-
-scree_status scree_drawing_write_all(scree_drawing *d, scree_figure figure, const char *stem,
-                                     scree_error *error) {
-  return finish(d, figure, scree_figure_write_all, stem, true, error);
 }

@@ -32,11 +32,8 @@ scree_curve_room scree_drawing_add(scree_drawing *drawing, size_t count, scree_s
 /* One whose numbers are there already. */
 void scree_drawing_put(scree_drawing *drawing, scree_series series);
 
-/* All panels as `figure` has it besides, into the file or beside each other, as scree_figure_write
- * and scree_figure_write_all. Frees the drawing. */
+/* All panels, as `figure` has it besides, by scree_figure_write. Frees the drawing. */
 scree_status scree_drawing_write(scree_drawing *drawing, scree_figure figure, const char *path,
                                  bool overwrite, scree_error *error);
-scree_status scree_drawing_write_all(scree_drawing *drawing, scree_figure figure, const char *stem,
-                                     scree_error *error);
 /* Of one that is not written after all. */
 void scree_drawing_free(scree_drawing *drawing);

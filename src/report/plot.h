@@ -80,13 +80,10 @@ typedef struct scree_figure {
 } scree_figure;
 
 /* Writes by the path's ending: .png (2 pixels a point), .svg, .pdf, .csv (panel, series, label, x,
- * y, low, high) or .gnuplot (a script that reads the .csv of the same name). */
+ * y, low, high) or .gnuplot (a script that reads the .csv of the same name). Of a name without an
+ * ending all five, but pictures where this build has none. */
 scree_status scree_figure_write(const scree_figure *figure, const char *path, bool overwrite,
                                 scree_error *error);
-
-/* The same set of five beside each other: stem.png, stem.svg and so on. */
-scree_status scree_figure_write_all(const scree_figure *figure, const char *stem, bool overwrite,
-                                    scree_error *error);
 
 /* ---- ticks, for tests ---- */
 

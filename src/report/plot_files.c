@@ -1,9 +1,10 @@
 /* One description, five files. */
 #include "report/plot_draw.h"
 
-#include "base/alloc.h"
+#include "base/ending.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/path.h"
 #include "report/csv.h"
 #include "report/text.h"
 
@@ -113,34 +114,18 @@ static void write_script(const scree_figure *figure, const char *data, FILE *str
 static scree_status write_script_for(const scree_figure *figure, const char *path, FILE *stream,
                                      scree_error *error) {
   const char *slash = strrchr(path, '/');
-  char *data = scree_strdup(slash ? slash + 1 : path);
+  SCREE_CLEANUP(scree_free_at) char *data = scree_strdup(slash ? slash + 1 : path);
   if (!data) return scree_fail_memory(error, strlen(path), "a file name");
   memcpy(data + strlen(data) - strlen(".gnuplot"), ".csv", sizeof ".csv");
   write_script(figure, data, stream);
-  scree_free(data);
   return SCREE_OK;
 }
 
-static int ending_of(const char *path) {
-  size_t length = strlen(path);
-  for (int i = 0; i < ENDING_COUNT; i++) {
-    size_t size = strlen(ENDINGS[i]);
-    if (length > size && !strcmp(path + length - size, ENDINGS[i])) return i;
-  }
-  return -1;
-}
-
-scree_status scree_figure_write(const scree_figure *figure, const char *path, bool overwrite,
-                                scree_error *error) {
-  int ending = ending_of(path);
-  if (ending < 0)
-    return scree_fail(error, SCREE_BAD_ARGUMENT,
-                      "%s: a figure ends in .png, .svg, .pdf, .csv or .gnuplot", path);
-  if (figure->panel_count == 0)
-    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: a figure without panels", path);
+static scree_status write_one(const scree_figure *figure, int ending, const char *path,
+                              bool overwrite, scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
+  scree_status status = SCREE_OK;
   if (ending <= SCREE_PAINT_PDF)
     status = scree_figure_paint(figure, (scree_paint)ending, output.stream, path, error);
   else if (!strcmp(ENDINGS[ending], ".csv"))
@@ -152,17 +137,26 @@ scree_status scree_figure_write(const scree_figure *figure, const char *path, bo
   return status;
 }
 
-scree_status scree_figure_write_all(const scree_figure *figure, const char *stem, bool overwrite,
-                                    scree_error *error) {
-  size_t size = strlen(stem) + 16;
-  char *path = scree_alloc(size, 1);
-  if (!path) return scree_fail_memory(error, size, "a file name");
-  scree_status status = SCREE_OK;
-  for (int i = 0; i < ENDING_COUNT && status == SCREE_OK; i++) {
-    snprintf(path, size, "%s%s", stem, ENDINGS[i]);
-    status = scree_figure_write(figure, path, overwrite, error);
-    if (status == SCREE_UNSUPPORTED) status = SCREE_OK; /* a build without pictures */
+static scree_status write_all(const scree_figure *figure, const char *stem, bool overwrite,
+                              scree_error *error) {
+  for (int i = 0; i < ENDING_COUNT; i++) {
+    char path[SCREE_PATH_BYTES];
+    snprintf(path, sizeof path, "%s%s", stem, ENDINGS[i]);
+    scree_status status = write_one(figure, i, path, overwrite, error);
+    if (status != SCREE_OK && status != SCREE_UNSUPPORTED) return status;
   }
-  scree_free(path);
-  return status;
+  return SCREE_OK;
+}
+
+scree_status scree_figure_write(const scree_figure *figure, const char *path, bool overwrite,
+                                scree_error *error) {
+  const char *dot = strrchr(path, '.'), *slash = strrchr(path, '/');
+  bool bare = !dot || (slash && dot < slash);
+  if (figure->panel_count == 0)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: a figure without panels", path);
+  for (int i = 0; !bare && i < ENDING_COUNT; i++)
+    if (scree_ends_with(path, ENDINGS[i])) return write_one(figure, i, path, overwrite, error);
+  if (bare) return write_all(figure, path, overwrite, error);
+  return scree_fail(error, SCREE_BAD_ARGUMENT,
+                    "%s: a figure ends in .png, .svg, .pdf, .csv or .gnuplot", path);
 }

@@ -3,6 +3,22 @@
 
 #include "scree.h"
 
+/* Writes a file of a result: of a scree_choice_report, scree_clump_report, scree_study_result or
+ * scree_calibration_result, as the function's name says. "-" is stdout. */
+typedef scree_status scree_writer(const void *result, const char *path, bool overwrite,
+                                  scree_error *error);
+
+/* A file that a result leaves in its folder. */
+typedef struct scree_product {
+  const char *name;
+  scree_writer *write;
+} scree_product;
+/* Not where it is a picture and this build has none. */
+bool scree_product_is_made(const scree_product *product);
+/* Writes them in their order, but those that are not made or of which there is nothing to draw. */
+scree_status scree_products_write(const scree_product *products, size_t count, const void *result,
+                                  const char *folder, bool overwrite, scree_error *error);
+
 /* What became of one file, for scree_check_json_write. */
 typedef struct scree_check_entry {
   const char *file;       /* as given */
@@ -78,18 +94,15 @@ size_t scree_choice_warnings(const scree_choice_report *report, size_t entry,
 
 /* The paper's Fig. 4, by the path's ending (.png, .svg, .pdf; .csv and .gnuplot for its data and a
  * script): eps_s and Ip against Rp, all objects, the choices marked. */
-scree_status scree_choice_figure_write(const scree_choice_report *report, const char *path,
-                                       bool overwrite, scree_error *error);
+scree_writer scree_choice_figure_write;
 
 /* One array: an object per entry, then the set's with "set": true. Lengths in metres, areas and
  * volumes in m2 and m3. docs/reference/formats.md has every field. "-" is stdout. */
-scree_status scree_choice_json_write(const scree_choice_report *report, const char *path,
-                                     bool overwrite, scree_error *error);
+scree_writer scree_choice_json_write;
 
 /* One row per object and grid Rp, one for its robust and one for its recommended choice, and two
  * for a set of several objects (docs/reference/formats.md). "-" is stdout. */
-scree_status scree_choice_csv_write(const scree_choice_report *report, const char *path,
-                                    bool overwrite, scree_error *error);
+scree_writer scree_choice_csv_write;
 
 /* The dense curve of one object: one row per point of its trace that is another level. */
 scree_status scree_choice_curve_csv_write(const scree_choice_entry *entry, const char *path,
@@ -180,15 +193,12 @@ typedef struct scree_clump_report {
 
 /* The errors and the criterion against the number of spheres, by the path's ending (.png, .svg,
  * .pdf, .csv, .gnuplot). */
-scree_status scree_clump_figure_write(const scree_clump_report *report, const char *path,
-                                      bool overwrite, scree_error *error);
+scree_writer scree_clump_figure_write;
 /* An array with an object per body, all its clumps in it (docs/reference/formats.md). "-" is
  * stdout. */
-scree_status scree_clump_json_write(const scree_clump_report *report, const char *path,
-                                    bool overwrite, scree_error *error);
+scree_writer scree_clump_json_write;
 /* A row per body and count. "-" is stdout. */
-scree_status scree_clump_csv_write(const scree_clump_report *report, const char *path,
-                                   bool overwrite, scree_error *error);
+scree_writer scree_clump_csv_write;
 
 /* ---- Measures and distances: tables, JSON ---- */
 
@@ -277,21 +287,16 @@ scree_status scree_scene_pile_picture(const scree_scene *scene, const scree_rend
 /* ---- Reports of a study ---- */
 
 /* docs/reference/formats.md has every field. "-" is stdout. */
-scree_status scree_study_json_write(const scree_study_result *result, const char *path,
-                                    bool overwrite, scree_error *error);
+scree_writer scree_study_json_write;
 /* One row per point. */
-scree_status scree_study_csv_write(const scree_study_result *result, const char *path,
-                                   bool overwrite, scree_error *error);
+scree_writer scree_study_csv_write;
 /* After the paper's Figs. 5, 7 and 8, by the path's ending as scree_choice_figure_write: angle with
  * standard deviation, and coefficient of variation, against Rp; mean rotation against time;
  * processor time of a run against Rp with both fits. SCREE_UNSUPPORTED where the study has nothing
  * to draw. */
-scree_status scree_study_angle_figure(const scree_study_result *result, const char *path,
-                                      bool overwrite, scree_error *error);
-scree_status scree_study_rotation_figure(const scree_study_result *result, const char *path,
-                                         bool overwrite, scree_error *error);
-scree_status scree_study_time_figure(const scree_study_result *result, const char *path,
-                                     bool overwrite, scree_error *error);
+scree_writer scree_study_angle_figure;
+scree_writer scree_study_rotation_figure;
+scree_writer scree_study_time_figure;
 /* All of these into a folder: study.json, points.csv, and angle, rotation and time as .png, .svg,
  * .pdf, .csv and .gnuplot; what is there is overwritten. */
 scree_status scree_study_report_write(const scree_study_result *result, const char *folder,
@@ -302,11 +307,9 @@ scree_status scree_study_report_write(const scree_study_result *result, const ch
 /* For people, on one screen. */
 void scree_calibration_print(const scree_calibration_result *result, FILE *stream);
 /* docs/reference/formats.md has every field. "-" is stdout. */
-scree_status scree_calibration_json_write(const scree_calibration_result *result, const char *path,
-                                          bool overwrite, scree_error *error);
+scree_writer scree_calibration_json_write;
 /* The samples, a row each. */
-scree_status scree_calibration_csv_write(const scree_calibration_result *result, const char *path,
-                                         bool overwrite, scree_error *error);
+scree_writer scree_calibration_csv_write;
 
 /* "surfaces", "points", "contacts" or "walls"; NULL beyond. */
 const char *scree_world_view_name(scree_world_view view);

@@ -3,7 +3,6 @@
 #include "report/program.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { CURVE_POINTS = 200, TEXT = 160 };
 static const double PANEL_WIDTH = 350, PANEL_HEIGHT = 300;
@@ -14,7 +13,6 @@ static const char *label_of(const char *label, const char *none) {
   return label[0] ? label : none;
 }
 
-/* One file, or of a path without an ending all. */
 static scree_status finish(scree_drawing *d, const scree_study_result *r, const char *path,
                            bool overwrite, scree_error *error) {
   char note[256];
@@ -22,9 +20,7 @@ static scree_status finish(scree_drawing *d, const scree_study_result *r, const 
            "scree %s, study %s, %zu replicates, %zu runs done, method %s, seed %llu", r->version,
            r->name, r->replicate_count, r->counts.done, r->method, (unsigned long long)r->seed);
   scree_figure figure = {.panel_width = PANEL_WIDTH, .panel_height = PANEL_HEIGHT, .note = note};
-  const char *dot = strrchr(path, '.'), *slash = strrchr(path, '/');
-  if (dot && (!slash || dot > slash)) return scree_drawing_write(d, figure, path, overwrite, error);
-  return scree_drawing_write_all(d, figure, path, error);
+  return scree_drawing_write(d, figure, path, overwrite, error);
 }
 
 static scree_status nothing_to_draw(const char *path, const char *what, scree_error *error) {
@@ -109,8 +105,9 @@ static void add_angle_panel(scree_drawing *d, const scree_study_result *r, bool 
   for (size_t f = 0; f < r->family_count; f++) add_angles(d, r, f, variation);
 }
 
-scree_status scree_study_angle_figure(const scree_study_result *result, const char *path,
-                                      bool overwrite, scree_error *error) {
+scree_status scree_study_angle_figure(const void *what, const char *path, bool overwrite,
+                                      scree_error *error) {
+  const scree_study_result *result = what;
   scree_drawing d = {0};
   char texts[2][TEXT];
   scree_guide guides[3];
@@ -124,8 +121,9 @@ scree_status scree_study_angle_figure(const scree_study_result *result, const ch
 
 /* ---- rotation against time ---- */
 
-scree_status scree_study_rotation_figure(const scree_study_result *result, const char *path,
-                                         bool overwrite, scree_error *error) {
+scree_status scree_study_rotation_figure(const void *what, const char *path, bool overwrite,
+                                         scree_error *error) {
+  const scree_study_result *result = what;
   scree_drawing d = {0};
   scree_drawing_panel(
       &d, "rotational velocity of the particles",
@@ -187,8 +185,9 @@ static void add_curve(scree_drawing *d, const scree_study_result *r, bool polyno
   }
 }
 
-scree_status scree_study_time_figure(const scree_study_result *result, const char *path,
-                                     bool overwrite, scree_error *error) {
+scree_status scree_study_time_figure(const void *what, const char *path, bool overwrite,
+                                     scree_error *error) {
+  const scree_study_result *result = what;
   scree_drawing d = {0};
   char labels[2][TEXT];
   if (result->family_count == 0) return nothing_to_draw(path, "fewer than two Rp", error);
@@ -206,28 +205,13 @@ scree_status scree_study_time_figure(const scree_study_result *result, const cha
 
 /* ---- all ---- */
 
-typedef scree_status writer(const scree_study_result *result, const char *path, bool overwrite,
-                            scree_error *error);
-
 scree_status scree_study_report_write(const scree_study_result *result, const char *folder,
                                       scree_error *error) {
-  static const struct {
-    writer *write;
-    const char *name;
-  } parts[] = {{scree_study_json_write, "study.json"},
-               {scree_study_csv_write, "points.csv"},
-               {scree_study_angle_figure, "angle"},
-               {scree_study_rotation_figure, "rotation"},
-               {scree_study_time_figure, "time"}};
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < sizeof parts / sizeof *parts; i++) {
-    size_t size = strlen(folder) + strlen(parts[i].name) + 2;
-    char *path = scree_alloc(size, 1);
-    if (!path) return scree_fail_memory(error, size, "a path");
-    snprintf(path, size, "%s/%s", folder, parts[i].name);
-    status = parts[i].write(result, path, true, error);
-    if (status == SCREE_UNSUPPORTED) status = SCREE_OK; /* nothing to draw yet */
-    scree_free(path);
-  }
-  return status;
+  static const scree_product products[] = {{"study.json", scree_study_json_write},
+                                           {"points.csv", scree_study_csv_write},
+                                           {"angle", scree_study_angle_figure},
+                                           {"rotation", scree_study_rotation_figure},
+                                           {"time", scree_study_time_figure}};
+  return scree_products_write(products, sizeof products / sizeof *products, result, folder, true,
+                              error);
 }

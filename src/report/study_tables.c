@@ -139,8 +139,8 @@ static void put_result(scree_json *json, const void *result) {
   scree_json_end(json);
 }
 
-scree_status scree_study_json_write(const scree_study_result *result, const char *path,
-                                    bool overwrite, scree_error *error) {
+scree_status scree_study_json_write(const void *result, const char *path, bool overwrite,
+                                    scree_error *error) {
   return scree_json_file(path, overwrite, put_result, result, error);
 }
 
@@ -166,8 +166,9 @@ static bool has_column(const char *factor) {
   return !strcmp(factor, "rp") || !strcmp(factor, "shapes");
 }
 
-scree_status scree_study_csv_write(const scree_study_result *result, const char *path,
-                                   bool overwrite, scree_error *error) {
+scree_status scree_study_csv_write(const void *what, const char *path, bool overwrite,
+                                   scree_error *error) {
+  const scree_study_result *result = what;
   scree_output output;
   SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   FILE *stream = output.stream;

@@ -386,7 +386,7 @@ static void plots_stand_empty_and_odd_data(void **state) {
                                  .series_count = count};
       const scree_panel panels[3] = {panel, panel, panel};
       const scree_figure figure = {.panels = panels, .panel_count = 3, .columns = 2};
-      CHECK_OK(scree_figure_write_all(&figure, in_folder("odd"), true, &error), error);
+      CHECK_OK(scree_figure_write(&figure, in_folder("odd"), true, &error), error);
     }
   const scree_figure none = {0};
   assert_int_equal(scree_figure_write(&none, in_folder("none.png"), true, &error),
@@ -418,7 +418,7 @@ static void bars_and_bands(void **state) {
                              .guides = &guide,
                              .guide_count = 1};
   const scree_figure figure = {.panels = &panel, .panel_count = 1};
-  CHECK_OK(scree_figure_write_all(&figure, in_folder("bars"), true, &error), error);
+  CHECK_OK(scree_figure_write(&figure, in_folder("bars"), true, &error), error);
 }
 
 int main(void) {
