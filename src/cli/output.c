@@ -1,5 +1,7 @@
 #include "cli/output.h"
 #include "base/file.h"
+#include "base/owned.h"
+#include "base/path.h"
 #include "base/platform.h"
 #include "cli/input.h"
 
@@ -111,25 +113,15 @@ static bool is_called(const char *file, const char *name) {
 
 typedef scree_status run_file_visit(const cli_call *call, const char *path, scree_error *error);
 
-static scree_status visit_file(const cli_call *call, const char *folder, const char *name,
-                               run_file_visit *visit, scree_error *error) {
-  char path[4200];
-  if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path)
-    return cli_refuse(error, SCREE_LIMIT, folder, "the folder's name is too long");
-  return visit(call, path, error);
-}
-
 /* Of a name with a # or a * those that are there, of another one the file, there or not. */
 static scree_status visit_files(const cli_call *call, const char *folder, const char *name,
                                 run_file_visit *visit, scree_error *error) {
-  if (!strpbrk(name, "#*")) return visit_file(call, folder, name, visit, error);
-  scree_status status = SCREE_OK;
-  scree_folder *entries = scree_folder_open(folder);
+  if (!strpbrk(name, "#*")) return visit(call, SCREE_PATH_IN(folder, name), error);
+  SCREE_CLEANUP(scree_folder_close_at) scree_folder *entries = scree_folder_open(folder);
   if (!entries) return cli_refuse(error, SCREE_IO, folder, strerror(errno));
-  for (const char *found; status == SCREE_OK && (found = scree_folder_next(entries));)
-    if (is_called(found, name)) status = visit_file(call, folder, found, visit, error);
-  scree_folder_close(entries);
-  return status;
+  for (const char *found; (found = scree_folder_next(entries));)
+    if (is_called(found, name)) SCREE_TRY(visit(call, SCREE_PATH_IN(folder, found), error));
+  return SCREE_OK;
 }
 
 static scree_status check_new(const cli_call *call, const char *path, scree_error *error) {
@@ -142,16 +134,15 @@ static scree_status check_replaced(const cli_call *call, const char *path, scree
 
 scree_status cli_check_run_output(const cli_call *call, const char *folder,
                                   const cli_run_files *files, bool overwrite, scree_error *error) {
-  char path[4200];
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < files->count && status == SCREE_OK; i++) {
-    status =
+  for (size_t i = 0; i < files->count; i++) {
+    scree_status status =
         visit_files(call, folder, files->names[i], overwrite ? check_replaced : check_new, error);
-    if (status != SCREE_EXISTS || i > 0) continue;
-    snprintf(path, sizeof path, "%.4000s/%.100s", folder, files->names[i]);
-    return cli_refuse(error, status, path, "exists already: --resume goes on, -f begins anew");
+    if (status == SCREE_EXISTS && i == 0)
+      return cli_refuse(error, status, SCREE_PATH_IN(folder, files->names[i]),
+                        "exists already: --resume goes on, -f begins anew");
+    if (status != SCREE_OK) return status;
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status remove_file(const cli_call *call, const char *path, scree_error *error) {
@@ -207,8 +198,7 @@ scree_status cli_beside(const char *path, const char *ending, char *buffer, size
   const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
   int stem = (int)(dot ? (size_t)(dot - path) : strlen(path));
   if (snprintf(buffer, size, "%.*s%s", stem, path, ending) < (int)size) return SCREE_OK;
-  *error = (scree_error){SCREE_LIMIT, "the output's name is too long"};
-  return SCREE_LIMIT;
+  return scree_fail(error, SCREE_LIMIT, "the output's name is too long");
 }
 
 scree_status cli_join_path(const char *folder, const char *before, const char *name,
@@ -216,4 +206,14 @@ scree_status cli_join_path(const char *folder, const char *before, const char *n
   int length = snprintf(buffer, size, "%s/%s%s%s", folder, before, name, after);
   if (length >= 0 && (size_t)length < size) return SCREE_OK;
   return cli_refuse(error, SCREE_LIMIT, folder, "the path is too long");
+}
+
+scree_write_options cli_write_options(const cli_call *call, const char *path, double unit,
+                                      bool overwrite) {
+  scree_write_options write = scree_default_write_options();
+  write.unit_m = unit;
+  write.overwrite = overwrite;
+  write.comment = call->command_line;
+  if (!strcmp(path, "-")) write.format = SCREE_FORMAT_STL;
+  return write;
 }

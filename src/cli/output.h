@@ -49,6 +49,10 @@ void cli_remove_empty_folders(void);
 scree_status cli_join_path(const char *folder, const char *before, const char *name,
                            const char *after, char *buffer, size_t size, scree_error *error);
 
+/* How a mesh is written by this call, in a unit (m); "-" is an STL. */
+scree_write_options cli_write_options(const cli_call *call, const char *path, double unit,
+                                      bool overwrite);
+
 /* The path with another ending, as "p.json" of "p.stl": a file beside it. SCREE_LIMIT where it does
  * not fit. */
 scree_status cli_beside(const char *path, const char *ending, char *buffer, size_t size,

@@ -109,10 +109,7 @@ static scree_status take_plane(const cli_call *call, double unit, scree_repair_o
 
 static scree_status write_result(const cli_call *call, const scree_mesh *mesh, scree_error *error) {
   const repair_arguments *a = call->options;
-  scree_write_options write = scree_default_write_options();
-  write.unit_m = a->source.unit;
-  write.overwrite = a->force;
-  write.comment = call->command_line;
+  const scree_write_options write = cli_write_options(call, a->output, a->source.unit, a->force);
   scree_check_options how = {.intersections = !a->fast};
   SCREE_TRY(cli_check_rounded(mesh, a->output, a->source.unit, &how, call->progress, error));
   return scree_mesh_write(mesh, a->output, &write, error);

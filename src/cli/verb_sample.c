@@ -63,16 +63,14 @@ static scree_status make_one(const cli_call *call, const char *name, const char 
                              scree_error *error) {
   const sample_arguments *arguments = call->options;
   scree_sample_options sample = scree_default_sample_options();
-  scree_write_options write = scree_default_write_options();
+  const scree_write_options write =
+      cli_write_options(call, path, scree_default_write_options().unit_m, arguments->force);
   SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
   bool to_stdout = !strcmp(path, "-");
   FILE *stream = to_stdout ? stderr : stdout;
   sample.resolution = arguments->resolution;
   sample.noise = arguments->noise;
   sample.seed = arguments->seed;
-  write.overwrite = arguments->force;
-  write.comment = call->command_line;
-  if (to_stdout) write.format = SCREE_FORMAT_STL;
   SCREE_TRY(scree_sample_make(name, &sample, call->progress, &mesh, error));
   SCREE_TRY(scree_mesh_write(&mesh, path, &write, error));
   cli_terminal_end();

@@ -91,11 +91,8 @@ static void say(const cli_call *call, const scree_curve *curve, size_t index, wr
 
 static scree_status write_plain(const cli_call *call, const scree_mesh *mesh, scree_error *error) {
   const simplify_arguments *arguments = call->options;
-  scree_write_options write = scree_default_write_options();
-  write.overwrite = arguments->force;
-  write.unit_m = arguments->source.unit;
-  write.comment = call->command_line;
-  if (!strcmp(arguments->output, "-")) write.format = SCREE_FORMAT_STL;
+  const scree_write_options write =
+      cli_write_options(call, arguments->output, arguments->source.unit, arguments->force);
   return scree_mesh_write(mesh, arguments->output, &write, error);
 }
 

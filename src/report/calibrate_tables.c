@@ -163,8 +163,7 @@ void scree_calibration_print(const scree_calibration_result *result, FILE *strea
 /* ---- JSON ---- */
 
 static void put_parameters(scree_json *json, const scree_calibration_result *r) {
-  scree_json_array(json, "parameters");
-  for (size_t k = 0; k < r->parameter_count; k++) {
+  SCREE_JSON_LIST (json, "parameters", k, r->parameter_count) {
     const scree_parameter_result *p = &r->parameters[k];
     scree_json_object(json, NULL);
     scree_json_text(json, "name", p->name);
@@ -176,12 +175,10 @@ static void put_parameters(scree_json *json, const scree_calibration_result *r) 
     }
     scree_json_end(json);
   }
-  scree_json_end(json);
 }
 
 static void put_trades(scree_json *json, const scree_calibration_result *r) {
-  scree_json_array(json, "trades");
-  for (size_t i = 0; i < r->trade_count; i++) {
+  SCREE_JSON_LIST (json, "trades", i, r->trade_count) {
     const scree_trade *t = &r->trades[i];
     scree_json_object(json, NULL);
     scree_json_text(json, "a", r->parameters[t->a].name);
@@ -191,7 +188,6 @@ static void put_trades(scree_json *json, const scree_calibration_result *r) {
     scree_json_numbers(json, "other_end", t->ends[1], 2);
     scree_json_end(json);
   }
-  scree_json_end(json);
 }
 
 static void put_answer(scree_json *json, const scree_answer_result *a) {
@@ -220,8 +216,7 @@ static void put_answer(scree_json *json, const scree_answer_result *a) {
 }
 
 static void put_advice(scree_json *json, const scree_calibration_result *r) {
-  scree_json_array(json, "advice");
-  for (size_t i = 0; i < r->advice_count; i++) {
+  SCREE_JSON_LIST (json, "advice", i, r->advice_count) {
     scree_json_object(json, NULL);
     scree_json_text(json, "name", r->advice[i].name);
     scree_json_count(json, "repeats", r->advice[i].repeat_count);
@@ -229,24 +224,20 @@ static void put_advice(scree_json *json, const scree_calibration_result *r) {
     scree_json_count(json, "identified", r->advice[i].identified);
     scree_json_end(json);
   }
-  scree_json_end(json);
 }
 
 /* Some of them, evenly: all are in samples.csv. */
 static void put_samples(scree_json *json, const scree_calibration_result *r) {
   enum { MOST_ROWS = 300 };
   size_t count = r->sample_count < MOST_ROWS ? r->sample_count : MOST_ROWS;
-  scree_json_array(json, "samples");
-  for (size_t i = 0; i < count; i++)
+  SCREE_JSON_LIST (json, "samples", i, count)
     scree_json_numbers(json, NULL, r->samples + i * r->sample_count / count * r->parameter_count,
                        r->parameter_count);
-  scree_json_end(json);
 }
 
 static void put_settings(scree_json *json, const scree_calibration_result *r) {
   SCREE_JSON_MEMBERS(json, r, sought, maximise);
-  scree_json_array(json, "settings");
-  for (size_t i = 0; i < r->setting_count; i++) {
+  SCREE_JSON_LIST (json, "settings", i, r->setting_count) {
     const scree_setting *c = &r->settings[i];
     scree_json_object(json, NULL);
     scree_json_numbers(json, "values", c->values, r->parameter_count);
@@ -254,7 +245,6 @@ static void put_settings(scree_json *json, const scree_calibration_result *r) {
     scree_json_count(json, "runs", c->run_count);
     scree_json_end(json);
   }
-  scree_json_end(json);
 }
 
 static void put_result(scree_json *json, const void *result) {
@@ -267,22 +257,17 @@ static void put_result(scree_json *json, const void *result) {
   SCREE_JSON_MEMBERS(json, &r->progress, done, failed, budget, seconds, planning_seconds);
   put_parameters(json, r);
   if (!r->is_search) put_trades(json, r);
-  scree_json_array(json, "answers");
-  for (size_t i = 0; i < r->answer_count; i++) put_answer(json, &r->answers[i]);
-  scree_json_end(json);
+  SCREE_JSON_LIST (json, "answers", i, r->answer_count) put_answer(json, &r->answers[i]);
   if (r->is_search) {
     put_settings(json, r);
   } else {
     put_advice(json, r);
     put_samples(json, r);
   }
-  scree_json_array(json, "history");
-  for (size_t i = 0; i < r->history_count; i++)
+  SCREE_JSON_LIST (json, "history", i, r->history_count)
     scree_json_numbers(json, NULL, r->history + i * width, width);
-  scree_json_end(json);
-  scree_json_array(json, "failures");
-  for (size_t i = 0; i < r->failure_count; i++) scree_json_text(json, NULL, r->failures[i]);
-  scree_json_end(json);
+  SCREE_JSON_LIST (json, "failures", i, r->failure_count)
+    scree_json_text(json, NULL, r->failures[i]);
   scree_json_end(json);
 }
 
@@ -294,10 +279,8 @@ scree_status scree_calibration_json_write(const void *result, const char *path, 
 /* ---- CSV ---- */
 
 static void put_row(FILE *s, const double *values, size_t count) {
-  for (size_t k = 0; k < count; k++) {
-    if (k) putc(',', s);
-    scree_csv_number(s, values[k]);
-  }
+  scree_csv_number(s, values[0]);
+  scree_csv_numbers(s, values + 1, count - 1);
 }
 
 scree_status scree_calibration_csv_write(const void *what, const char *path, bool overwrite,
@@ -319,8 +302,7 @@ scree_status scree_calibration_csv_write(const void *what, const char *path, boo
     const scree_setting *c = &r->settings[i];
     const double rest[] = {c->mean, c->low, c->high, c->allowed, (double)c->run_count};
     put_row(s, c->values, r->parameter_count);
-    putc(',', s);
-    put_row(s, rest, sizeof rest / sizeof *rest);
+    scree_csv_numbers(s, rest, sizeof rest / sizeof *rest);
     putc('\n', s);
   }
   return scree_output_commit(&output, error);

@@ -57,8 +57,6 @@ scree_status scree_check_json_write(const scree_check_entry *entries, size_t ent
   scree_output output;
   SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   scree_json json = scree_json_start(output.stream);
-  scree_json_array(&json, NULL);
-  for (size_t i = 0; i < entry_count; i++) json_entry(&json, &entries[i], command_line);
-  scree_json_end(&json);
+  SCREE_JSON_LIST (&json, NULL, i, entry_count) json_entry(&json, &entries[i], command_line);
   return scree_output_commit(&output, error);
 }

@@ -19,8 +19,10 @@ static void json_pick(scree_json *json, const char *key, const scree_pick *pick)
   scree_json_end(json);
 }
 
-static void json_errors(scree_json *json, const double errors[SCREE_SHAPE_ERROR_COUNT]) {
-  scree_json_row_object(json, "errors");
+/* Those that are known, or bounded. */
+static void json_errors(scree_json *json, const char *key,
+                        const double errors[SCREE_SHAPE_ERROR_COUNT]) {
+  scree_json_row_object(json, key);
   for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
     if (isfinite(errors[e]))
       scree_json_number(json, scree_shape_error_name((scree_shape_error)e), errors[e]);
@@ -34,9 +36,7 @@ static void json_sentences(scree_json *json, const char *key, const scree_choice
                            size_t entry, tell_sentences *tell) {
   char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES];
   size_t count = tell(report, entry, texts);
-  scree_json_array(json, key);
-  for (size_t i = 0; i < count; i++) scree_json_text(json, NULL, texts[i]);
-  scree_json_end(json);
+  SCREE_JSON_LIST (json, key, i, count) scree_json_text(json, NULL, texts[i]);
 }
 
 static void json_changes(scree_json *json, const scree_fidelity *fidelity, size_t row) {
@@ -51,18 +51,22 @@ static void json_changes(scree_json *json, const scree_fidelity *fidelity, size_
   scree_json_end(json);
 }
 
+static void recommended_errors(const scree_choice *c, double errors[SCREE_SHAPE_ERROR_COUNT]) {
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    errors[e] = scree_fidelity_error(c->fidelity, c->recommended_row, (scree_shape_error)e);
+}
+
 /* Of a choice without the errors of levels there is none. */
 static void json_recommended(scree_json *json, const scree_choice_report *report, size_t entry) {
   const scree_choice *c = report->entries[entry].choice;
   const scree_fidelity *f = c->fidelity;
   double errors[SCREE_SHAPE_ERROR_COUNT], at[3];
   if (!f) return;
-  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
-    errors[e] = scree_fidelity_error(f, c->recommended_row, (scree_shape_error)e);
+  recommended_errors(c, errors);
   scree_fidelity_farthest(f, c->recommended_row, at);
   scree_json_object(json, "recommended");
   SCREE_JSON_MEMBERS(json, &c->recommended, rp, triangle_count, area, volume, level_eps_s);
-  json_errors(json, errors);
+  json_errors(json, "errors", errors);
   json_changes(json, f, c->recommended_row);
   scree_json_numbers(json, "farthest", at, 3);
   scree_json_text(json, "limited_by", scree_shape_error_name(c->limited_by));
@@ -76,26 +80,22 @@ static void json_recommended(scree_json *json, const scree_choice_report *report
   scree_json_number(json, "clean_area", scree_fidelity_scan(f, SCREE_SCAN_CLEAN_AREA));
   scree_json_number(json, "thickness", scree_fidelity_scan(f, SCREE_SCAN_THICKNESS));
   scree_json_number(json, "thinnest", scree_fidelity_scan(f, SCREE_SCAN_THINNEST));
-  scree_json_row_array(json, "dimensions");
-  for (int i = 0; i < 3; i++)
+  SCREE_JSON_ROW_LIST (json, "dimensions", i, 3)
     scree_json_number(json, NULL,
                       scree_fidelity_scan(f, (scree_scan_fact)(SCREE_SCAN_BOX_LENGTH + i)));
-  scree_json_end(json);
   scree_json_end(json);
   scree_json_text(json, "limited_by", scree_shape_error_name(c->limited_by));
 }
 
 static void json_levels(scree_json *json, const scree_choice *choice) {
-  scree_json_array(json, "levels");
-  for (size_t i = 0; i < choice->level_count; i++) {
+  SCREE_JSON_LIST (json, "levels", i, choice->level_count) {
     const scree_choice_level *level = &choice->levels[i];
     scree_json_row_object(json, NULL);
     SCREE_JSON_MEMBERS(json, level, rp, triangle_count, area, volume, eps_s, ip, worst_eps_s,
                        robust_ip, reached);
-    json_errors(json, level->errors);
+    json_errors(json, "errors", level->errors);
     scree_json_end(json);
   }
-  scree_json_end(json);
 }
 
 /* The level with the least error + w Nr/Nm for each error that was measured. */
@@ -130,17 +130,8 @@ static void json_options(scree_json *json, const scree_choice_report *report) {
   SCREE_JSON_MEMBERS(json, o, weight, rp_min, rp_max);
   scree_json_count(json, "per_decade", (uint64_t)o->per_decade);
   scree_json_text(json, "reference", reference_name(o->reference));
-  scree_json_row_object(json, "tolerances");
-  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
-    if (o->tolerances[e] < INFINITY)
-      scree_json_number(json, scree_shape_error_name((scree_shape_error)e), o->tolerances[e]);
-  scree_json_end(json);
-  scree_json_row_object(json, "tolerance_lengths");
-  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
-    if (o->tolerance_lengths[e] < INFINITY)
-      scree_json_number(json, scree_shape_error_name((scree_shape_error)e),
-                        o->tolerance_lengths[e]);
-  scree_json_end(json);
+  json_errors(json, "tolerances", o->tolerances);
+  json_errors(json, "tolerance_lengths", o->tolerance_lengths);
   scree_json_end(json);
 }
 
@@ -200,8 +191,7 @@ static void json_set(scree_json *json, const scree_choice_report *report) {
   scree_json_object(json, NULL);
   scree_json_bool(json, "set", true);
   scree_json_count(json, "object_count", set->object_count);
-  scree_json_array(json, "levels");
-  for (size_t i = 0; i < set->level_count; i++) {
+  SCREE_JSON_LIST (json, "levels", i, set->level_count) {
     scree_json_row_object(json, NULL);
     scree_json_number(json, "rp", scree_choice_grid_rp(report->options, i));
     scree_json_number(json, "ip", set->ip[i]);
@@ -209,14 +199,11 @@ static void json_set(scree_json *json, const scree_choice_report *report) {
     scree_json_number(json, "ip_high", set->high[i]);
     scree_json_end(json);
   }
-  scree_json_end(json);
   json_sentences(json, "answer", report, report->entry_count, scree_choice_answer);
   json_sentences(json, "warnings", report, report->entry_count, scree_choice_warnings);
-  scree_json_row_array(json, "recommended_triangle_counts");
-  for (size_t i = 0; i < report->entry_count; i++)
+  SCREE_JSON_ROW_LIST (json, "recommended_triangle_counts", i, report->entry_count)
     if (report->entries[i].choice->fidelity)
       scree_json_count(json, NULL, report->entries[i].choice->recommended.triangle_count);
-  scree_json_end(json);
   json_set_pick(json, "paper", &set->paper);
   json_set_pick(json, "robust", &set->robust);
   json_set_pick(json, "smooth", &set->smooth);
@@ -249,10 +236,7 @@ static void csv_level(FILE *stream, const scree_choice_level *level) {
   scree_csv_number(stream, level->rp);
   putc(',', stream);
   if (level->triangle_count) fprintf(stream, "%zu", level->triangle_count);
-  for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
-    putc(',', stream);
-    scree_csv_number(stream, values[i]);
-  }
+  scree_csv_numbers(stream, values, sizeof values / sizeof *values);
 }
 
 static const char LEVEL_HEADER[] =
@@ -265,69 +249,68 @@ static void csv_start(FILE *stream, const char *file, size_t triangle_count) {
   putc(',', stream);
 }
 
-/* What was chosen here, and the errors beside area: NULL where there are none. */
-static void csv_finish(FILE *stream, const char *choice, const double *errors) {
+/* What was chosen here, and the errors beside area. */
+static void csv_finish(FILE *stream, const char *choice,
+                       const double errors[SCREE_SHAPE_ERROR_COUNT]) {
   fprintf(stream, ",%s", choice);
-  for (int e = SCREE_ERROR_VOLUME; e < SCREE_SHAPE_ERROR_COUNT; e++) {
-    putc(',', stream);
-    if (errors) scree_csv_number(stream, errors[e]);
-  }
+  scree_csv_numbers(stream, errors + SCREE_ERROR_VOLUME,
+                    SCREE_SHAPE_ERROR_COUNT - SCREE_ERROR_VOLUME);
   putc('\n', stream);
 }
 
-/* The robust choice lies off the grid; what it has beside a level of it is not known. */
+/* What a choice off the grid has of a level's row; the rest is not known. */
+static scree_choice_level csv_pick(const scree_pick *pick) {
+  return (scree_choice_level){.rp = pick->rp,
+                              .triangle_count = pick->triangle_count,
+                              .area = pick->area,
+                              .volume = pick->volume,
+                              .eps_s = pick->level_eps_s,
+                              .ip = NAN,
+                              .worst_eps_s = NAN,
+                              .robust_ip = NAN,
+                              .smooth_ip = NAN};
+}
+
+static void no_errors(double errors[SCREE_SHAPE_ERROR_COUNT]) {
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++) errors[e] = NAN;
+}
+
 static void csv_robust(FILE *stream, const scree_choice_entry *entry) {
   const scree_choice *choice = entry->choice;
   const scree_pick *pick = &choice->robust;
-  double errors[SCREE_SHAPE_ERROR_COUNT], penalty = pick->ip - pick->eps_s;
-  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++) errors[e] = NAN;
+  scree_choice_level level = csv_pick(pick);
+  double errors[SCREE_SHAPE_ERROR_COUNT];
+  level.ip = pick->level_eps_s + (pick->ip - pick->eps_s);
+  level.worst_eps_s = pick->eps_s;
+  level.robust_ip = pick->ip;
+  no_errors(errors);
   errors[SCREE_ERROR_VOLUME] = fabs(pick->volume - choice->volume) / fabs(choice->volume);
   csv_start(stream, entry->file, choice->triangle_count);
-  csv_level(stream, &(scree_choice_level){.rp = pick->rp,
-                                          .triangle_count = pick->triangle_count,
-                                          .area = pick->area,
-                                          .volume = pick->volume,
-                                          .eps_s = pick->level_eps_s,
-                                          .ip = pick->level_eps_s + penalty,
-                                          .worst_eps_s = pick->eps_s,
-                                          .robust_ip = pick->ip,
-                                          .smooth_ip = NAN});
+  csv_level(stream, &level);
   csv_finish(stream, "robust", errors);
 }
 
 static void csv_recommended(FILE *stream, const scree_choice_entry *entry) {
   const scree_choice *choice = entry->choice;
-  const scree_pick *pick = &choice->recommended;
+  const scree_choice_level level = csv_pick(&choice->recommended);
   double errors[SCREE_SHAPE_ERROR_COUNT];
   if (!choice->fidelity) return;
-  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
-    errors[e] =
-        scree_fidelity_error(choice->fidelity, choice->recommended_row, (scree_shape_error)e);
+  recommended_errors(choice, errors);
   csv_start(stream, entry->file, choice->triangle_count);
-  csv_level(stream, &(scree_choice_level){.rp = pick->rp,
-                                          .triangle_count = pick->triangle_count,
-                                          .area = pick->area,
-                                          .volume = pick->volume,
-                                          .eps_s = pick->level_eps_s,
-                                          .ip = NAN,
-                                          .worst_eps_s = NAN,
-                                          .robust_ip = NAN,
-                                          .smooth_ip = NAN});
+  csv_level(stream, &level);
   csv_finish(stream, "recommended", errors);
 }
 
 /* The set's choice is an Rp and a mean: of no file, of no one count. */
 static void csv_set(FILE *stream, const scree_set_pick *pick, bool robust) {
+  scree_choice_level level =
+      csv_pick(&(scree_pick){.rp = pick->rp, .area = NAN, .volume = NAN, .level_eps_s = NAN});
+  double errors[SCREE_SHAPE_ERROR_COUNT];
+  *(robust ? &level.robust_ip : &level.ip) = pick->ip;
+  no_errors(errors);
   csv_start(stream, "", 0);
-  csv_level(stream, &(scree_choice_level){.rp = pick->rp,
-                                          .area = NAN,
-                                          .volume = NAN,
-                                          .eps_s = NAN,
-                                          .ip = robust ? NAN : pick->ip,
-                                          .worst_eps_s = NAN,
-                                          .robust_ip = robust ? pick->ip : NAN,
-                                          .smooth_ip = NAN});
-  csv_finish(stream, robust ? "set robust" : "set paper", NULL);
+  csv_level(stream, &level);
+  csv_finish(stream, robust ? "set robust" : "set paper", errors);
 }
 
 static void csv_entry(FILE *stream, const scree_choice_entry *entry) {

@@ -6,6 +6,7 @@
  * the origin along the principal axes, to be pasted); MFiX by what its generator of glued spheres
  * writes as gsp_config.csv. */
 #include "base/file.h"
+#include "base/path.h"
 #include "base/vec.h"
 #include "report/program.h"
 
@@ -15,7 +16,6 @@
 typedef struct clump_job {
   const scree_particle *particle;
   const scree_code_options *options;
-  const char *folder;
   scree_particle_measures m;
   double mass, inertia[3];
   double width, height; /* of the script's box, m */
@@ -30,12 +30,15 @@ static const double pi = 3.14159265358979323846;
 /* Of the scripts, to be edited there. */
 static const double poisson = 0.3, friction = 0.5, gravity = 9.81;
 
+static scree_sphere sphere_of(const clump_job *j, size_t index) {
+  scree_sphere s;
+  scree_particle_point(j->particle, index, s.centre, &s.radius);
+  return s;
+}
+
 static double least_radius(const clump_job *j) {
-  double least = INFINITY, centre[3], radius;
-  for (size_t i = 0; i < j->m.point_count; i++) {
-    scree_particle_point(j->particle, i, centre, &radius);
-    least = fmin(least, radius);
-  }
+  double least = INFINITY;
+  for (size_t i = 0; i < j->m.point_count; i++) least = fmin(least, sphere_of(j, i).radius);
   return least;
 }
 
@@ -76,9 +79,8 @@ static const char *modulus_source(const clump_job *j) {
                                : "softened, so that the fall presses a tenth of a radius";
 }
 
-static clump_job prepare(const scree_particle *particle, const scree_code_options *o,
-                         const char *folder) {
-  clump_job j = {.particle = particle, .options = o, .folder = folder};
+static clump_job prepare(const scree_particle *particle, const scree_code_options *o) {
+  clump_job j = {.particle = particle, .options = o};
   scree_particle_measure(particle, &j.m);
   j.mass = o->density * j.m.volume;
   for (int k = 0; k < 3; k++) j.inertia[k] = o->density * j.m.inertia[k];
@@ -92,25 +94,12 @@ static clump_job prepare(const scree_particle *particle, const scree_code_option
   return j;
 }
 
-static scree_status open_part(const clump_job *j, const char *prefix, const char *ending,
-                              scree_output *output, scree_error *error) {
-  char path[4096];
-  int length = snprintf(path, sizeof path, "%s/%s%s%s", j->folder, prefix, j->name, ending);
-  if (length < 0 || (size_t)length >= sizeof path)
-    return scree_fail(error, SCREE_LIMIT, "%.200s: the path is too long", j->folder);
-  return scree_output_open(path, j->options->overwrite, output, error);
-}
-
-/* A sphere a line after the number's pattern: "x y z" and the radius times a factor, in some order.
- */
-static void put_spheres(const clump_job *j, FILE *f, bool radius_first, char between) {
+/* A line for each: x, y, z and the radius, with that between them. */
+static void put_spheres(const clump_job *j, FILE *f, char between) {
   for (size_t i = 0; i < j->m.point_count; i++) {
-    double c[3], r;
-    scree_particle_point(j->particle, i, c, &r);
-    if (radius_first) fprintf(f, "%.12g%c", r, between);
-    fprintf(f, "%.12g%c%.12g%c%.12g", c[0], between, c[1], between, c[2]);
-    if (!radius_first) fprintf(f, "%c%.12g", between, r);
-    fputs(radius_first ? " ...\n" : "\n", f);
+    scree_sphere s = sphere_of(j, i);
+    fprintf(f, "%.12g%c%.12g%c%.12g%c%.12g\n", s.centre[0], between, s.centre[1], between,
+            s.centre[2], between, s.radius);
   }
 }
 
@@ -118,27 +107,24 @@ static void put_spheres(const clump_job *j, FILE *f, bool radius_first, char bet
 
 static void put_molecule(const clump_job *j, FILE *f) {
   size_t n = j->m.point_count;
-  double cubes = 0, c[3], r;
+  double cubes = 0;
   fprintf(f,
           "# clump %s from scree %s: m, kg, about the centre of mass, along the principal axes\n\n",
           j->name, scree_version());
   fprintf(f, "%zu atoms\n%.12g mass\n0 0 0 com\n%.12g %.12g %.12g 0 0 0 inertia\n\nCoords\n\n", n,
           j->mass, j->inertia[0], j->inertia[1], j->inertia[2]);
   for (size_t i = 0; i < n; i++) {
-    scree_particle_point(j->particle, i, c, &r);
-    fprintf(f, "%zu %.12g %.12g %.12g\n", i + 1, c[0], c[1], c[2]);
-    cubes += r * r * r;
+    scree_sphere s = sphere_of(j, i);
+    fprintf(f, "%zu %.12g %.12g %.12g\n", i + 1, s.centre[0], s.centre[1], s.centre[2]);
+    cubes += s.radius * s.radius * s.radius;
   }
   fputs("\nTypes\n\n", f);
   for (size_t i = 0; i < n; i++) fprintf(f, "%zu 1\n", i + 1);
   fputs("\nDiameters\n\n", f);
-  for (size_t i = 0; i < n; i++) {
-    scree_particle_point(j->particle, i, c, &r);
-    fprintf(f, "%zu %.12g\n", i + 1, 2 * r);
-  }
+  for (size_t i = 0; i < n; i++) fprintf(f, "%zu %.12g\n", i + 1, 2 * sphere_of(j, i).radius);
   fputs("\nMasses\n\n", f);
   for (size_t i = 0; i < n; i++) {
-    scree_particle_point(j->particle, i, c, &r);
+    double r = sphere_of(j, i).radius;
     fprintf(f, "%zu %.12g\n", i + 1, j->mass * r * r * r / cubes);
   }
 }
@@ -191,17 +177,6 @@ static void put_lammps_input(const clump_job *j, FILE *f) {
           "if \"${there} != %zu\" then \"print 'only ${there} of %zu spheres are in the box'\" "
           "\"quit 1\"\n",
           j->options->count * j->m.point_count, j->options->count * j->m.point_count);
-}
-
-static scree_status write_lammps(const clump_job *j, scree_error *error) {
-  scree_output output;
-  SCREE_TRY(open_part(j, "", ".mol", &output, error));
-  put_molecule(j, output.stream);
-  scree_status status = scree_output_commit(&output, error);
-  if (status == SCREE_OK) status = open_part(j, "in.", "", &output, error);
-  if (status != SCREE_OK) return status;
-  put_lammps_input(j, output.stream);
-  return scree_output_commit(&output, error);
 }
 
 /* ---- LIGGGHTS ---- */
@@ -267,15 +242,8 @@ static void put_liggghts_input(const clump_job *j, FILE *f) {
       j->options->count * j->m.point_count);
 }
 
-static scree_status write_liggghts(const clump_job *j, scree_error *error) {
-  scree_output output;
-  SCREE_TRY(open_part(j, "", ".txt", &output, error));
-  put_spheres(j, output.stream, false, ' ');
-  scree_status status = scree_output_commit(&output, error);
-  if (status == SCREE_OK) status = open_part(j, "in.", "", &output, error);
-  if (status != SCREE_OK) return status;
-  put_liggghts_input(j, output.stream);
-  return scree_output_commit(&output, error);
+static void put_liggghts_spheres(const clump_job *j, FILE *f) {
+  put_spheres(j, f, ' ');
 }
 
 /* ---- YADE ---- */
@@ -294,9 +262,9 @@ static void put_yade(const clump_job *j, FILE *f) {
           j->name, scree_version(), j->name, modulus_source(j), j->mass, j->inertia[0],
           j->inertia[1], j->inertia[2]);
   for (size_t i = 0; i < j->m.point_count; i++) {
-    double c[3], r;
-    scree_particle_point(j->particle, i, c, &r);
-    fprintf(f, "    (%.12g, %.12g, %.12g, %.12g),\n", c[0], c[1], c[2], r);
+    scree_sphere s = sphere_of(j, i);
+    fprintf(f, "    (%.12g, %.12g, %.12g, %.12g),\n", s.centre[0], s.centre[1], s.centre[2],
+            s.radius);
   }
   fprintf(f,
           "]\nGRAVITY = Vector3(0, 0, -%.6g)\nSIZE, COUNT = %.6g, %zu\n"
@@ -360,7 +328,10 @@ static void put_pfc(const clump_job *j, FILE *f) {
       "; clump %s from scree %s: volume in m3, inertia for density 1; pebbles: radius, x, y, z\n"
       "clump template create ...\n    name '%s' ...\n    pebbles %zu ...\n",
       j->name, scree_version(), j->name, j->m.point_count);
-  put_spheres(j, f, true, ' ');
+  for (size_t i = 0; i < j->m.point_count; i++) {
+    scree_sphere s = sphere_of(j, i);
+    fprintf(f, "%.12g %.12g %.12g %.12g ...\n", s.radius, s.centre[0], s.centre[1], s.centre[2]);
+  }
   fprintf(f, "    volume %.12g ...\n    inertia %.12g %.12g %.12g 0 0 0\n", j->m.volume,
           j->m.inertia[0], j->m.inertia[1], j->m.inertia[2]);
 }
@@ -373,45 +344,32 @@ static void put_chrono(const clump_job *j, FILE *f) {
           j->name, scree_version(), j->mass, j->inertia[0], j->inertia[1], j->inertia[2], j->name);
 }
 
-static scree_status write_one(const clump_job *j, const char *ending,
-                              void (*put)(const clump_job *, FILE *), scree_error *error) {
-  scree_output output;
-  SCREE_TRY(open_part(j, "", ending, &output, error));
-  put(j, output.stream);
-  return scree_output_commit(&output, error);
-}
-
-static scree_status write_chrono(const clump_job *j, scree_error *error) {
-  scree_output output;
-  SCREE_TRY(open_part(j, "", ".csv", &output, error));
-  fputs("x,y,z,r\n", output.stream);
-  put_spheres(j, output.stream, false, ',');
-  SCREE_TRY(scree_output_commit(&output, error));
-  return write_one(j, ".py", put_chrono, error);
+static void put_chrono_spheres(const clump_job *j, FILE *f) {
+  fputs("x,y,z,r\n", f);
+  put_spheres(j, f, ',');
 }
 
 /* ---- EDEM and MFiX ---- */
 
 static void put_edem(const clump_job *j, FILE *f) {
   fputs("X (m)\tY (m)\tZ (m)\tRadius (m)\n", f);
-  put_spheres(j, f, false, '\t');
+  put_spheres(j, f, '\t');
 }
 
 /* The share of a sphere's surface that lies in no other, by points on a spiral. */
 static double exposed_share(const clump_job *j, size_t index) {
   enum { POINTS = 1000 };
   size_t exposed = 0;
-  double c[3], r;
-  scree_particle_point(j->particle, index, c, &r);
+  scree_sphere own = sphere_of(j, index);
   for (int k = 0; k < POINTS; k++) {
     double z = 1 - (2 * k + 1.) / POINTS, ring = sqrt(1 - z * z), turn = 2.399963229728653 * k;
-    vec3 p = vec3_mad(vec3_load(c), (vec3){ring * cos(turn), ring * sin(turn), z}, r);
+    vec3 p =
+        vec3_mad(vec3_load(own.centre), (vec3){ring * cos(turn), ring * sin(turn), z}, own.radius);
     bool covered = false;
     for (size_t i = 0; i < j->m.point_count && !covered; i++) {
-      double other[3], radius;
-      scree_particle_point(j->particle, i, other, &radius);
-      vec3 d = vec3_sub(p, vec3_load(other));
-      covered = i != index && vec3_dot(d, d) < radius * radius;
+      scree_sphere other = sphere_of(j, i);
+      vec3 d = vec3_sub(p, vec3_load(other.centre));
+      covered = i != index && vec3_dot(d, d) < other.radius * other.radius;
     }
     exposed += !covered;
   }
@@ -425,43 +383,32 @@ static void put_mfix(const clump_job *j, FILE *f) {
         "x,y,z,rel_d,rel_sa,w,e,s,n,t,b,w_na,e_na,s_na,n_na,t_na,b_na,pid\n",
         f);
   for (size_t i = 0; i < j->m.point_count; i++) {
-    double c[3], r;
-    scree_particle_point(j->particle, i, c, &r);
-    fprintf(f, "%.12g,%.12g,%.12g,%.12g,%.12g,-1,-1,-1,-1,-1,-1,0,0,0,0,0,0,1\n", c[0] / size,
-            c[1] / size, c[2] / size, 2 * r / size,
+    scree_sphere s = sphere_of(j, i);
+    double r = s.radius;
+    fprintf(f, "%.12g,%.12g,%.12g,%.12g,%.12g,-1,-1,-1,-1,-1,-1,0,0,0,0,0,0,1\n",
+            s.centre[0] / size, s.centre[1] / size, s.centre[2] / size, 2 * r / size,
             4 * pi * r * r / (size * size) * exposed_share(j, i));
   }
 }
 
-static scree_status write_yade(const clump_job *j, scree_error *error) {
-  return write_one(j, ".py", put_yade, error);
-}
-
-static scree_status write_pfc(const clump_job *j, scree_error *error) {
-  return write_one(j, ".dat", put_pfc, error);
-}
-
-static scree_status write_edem(const clump_job *j, scree_error *error) {
-  return write_one(j, ".tsv", put_edem, error);
-}
-
-static scree_status write_mfix(const clump_job *j, scree_error *error) {
-  return write_one(j, "-gsp_config.csv", put_mfix, error);
-}
-
 /* ---- All of them ---- */
 
+/* The files of each: what stands before and behind the clump's name. */
 static const struct {
   const char *name;
-  scree_status (*write)(const clump_job *job, scree_error *error);
+  struct {
+    const char *before, *behind;
+    void (*put)(const clump_job *job, FILE *stream);
+  } files[2];
 } codes[SCREE_DEM_CODE_COUNT] = {
-    [SCREE_DEM_LAMMPS] = {"lammps", write_lammps},
-    [SCREE_DEM_LIGGGHTS] = {"liggghts", write_liggghts},
-    [SCREE_DEM_YADE] = {"yade", write_yade},
-    [SCREE_DEM_PFC] = {"pfc", write_pfc},
-    [SCREE_DEM_CHRONO] = {"chrono", write_chrono},
-    [SCREE_DEM_EDEM] = {"edem", write_edem},
-    [SCREE_DEM_MFIX] = {"mfix", write_mfix},
+    [SCREE_DEM_LAMMPS] = {"lammps", {{"", ".mol", put_molecule}, {"in.", "", put_lammps_input}}},
+    [SCREE_DEM_LIGGGHTS] = {"liggghts",
+                            {{"", ".txt", put_liggghts_spheres}, {"in.", "", put_liggghts_input}}},
+    [SCREE_DEM_YADE] = {"yade", {{"", ".py", put_yade}}},
+    [SCREE_DEM_PFC] = {"pfc", {{"", ".dat", put_pfc}}},
+    [SCREE_DEM_CHRONO] = {"chrono", {{"", ".csv", put_chrono_spheres}, {"", ".py", put_chrono}}},
+    [SCREE_DEM_EDEM] = {"edem", {{"", ".tsv", put_edem}}},
+    [SCREE_DEM_MFIX] = {"mfix", {{"", "-gsp_config.csv", put_mfix}}},
 };
 
 const char *scree_dem_code_name(scree_dem_code code) {
@@ -487,6 +434,16 @@ scree_status scree_clump_code_write(const scree_particle *particle, scree_dem_co
     return scree_fail(error, SCREE_BAD_ARGUMENT,
                       "density %g kg/m3 and %zu particles; both must be above 0", used.density,
                       used.count);
-  clump_job j = prepare(particle, &used, folder);
-  return codes[code].write(&j, error);
+  clump_job j = prepare(particle, &used);
+  for (int i = 0; i < 2 && codes[code].files[i].put; i++) {
+    char path[SCREE_PATH_BYTES];
+    scree_output output;
+    if (snprintf(path, sizeof path, "%s/%s%s%s", folder, codes[code].files[i].before, j.name,
+                 codes[code].files[i].behind) >= (int)sizeof path)
+      return scree_fail(error, SCREE_LIMIT, "%.200s: the path is too long", folder);
+    SCREE_TRY(scree_output_open(path, used.overwrite, &output, error));
+    codes[code].files[i].put(&j, output.stream);
+    SCREE_TRY(scree_output_commit(&output, error));
+  }
+  return SCREE_OK;
 }

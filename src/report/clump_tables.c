@@ -29,8 +29,8 @@ static const struct {
 #undef COLUMN
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
 
-static double value_of(const scree_clump *clump, int column) {
-  return *(const double *)(const void *)((const char *)clump + columns[column].offset);
+static const double *value_of(const scree_clump *clump, int column) {
+  return (const void *)((const char *)clump + columns[column].offset);
 }
 
 /* To a millionth of the size: shorter, and finer than any scan. */
@@ -40,29 +40,26 @@ static double shortened(double value, double size) {
 }
 
 static void json_spheres(scree_json *json, const scree_clump *c, double size) {
-  scree_json_row_array(json, "spheres");
-  for (size_t i = 0; i < c->sphere_count; i++) {
+  SCREE_JSON_ROW_LIST (json, "spheres", i, c->sphere_count) {
     const scree_sphere *s = &c->spheres[i];
     scree_json_row_array(json, NULL);
     for (int k = 0; k < 3; k++) scree_json_number(json, NULL, shortened(s->centre[k], size));
     scree_json_number(json, NULL, shortened(s->radius, size));
     scree_json_end(json);
   }
-  scree_json_end(json);
 }
 
 static void json_clumps(scree_json *json, const scree_clumps *clumps) {
-  scree_json_array(json, "clumps");
-  for (size_t i = 0; i < clumps->clump_count; i++) {
+  SCREE_JSON_LIST (json, "clumps", i, clumps->clump_count) {
     const scree_clump *c = &clumps->clumps[i];
     scree_json_row_object(json, NULL);
     scree_json_count(json, "sphere_count", c->sphere_count);
-    for (int k = 0; k < COLUMN_COUNT; k++) scree_json_number(json, columns[k].name, value_of(c, k));
+    for (int k = 0; k < COLUMN_COUNT; k++)
+      scree_json_number(json, columns[k].name, *value_of(c, k));
     scree_json_count(json, "useless_count", c->useless_count);
     json_spheres(json, c, clumps->size);
     scree_json_end(json);
   }
-  scree_json_end(json);
 }
 
 /* The mass properties that go with every clump. */
@@ -79,14 +76,10 @@ static void json_body(scree_json *json, const scree_clumps *clumps) {
 /* The surface that the spheres stand for. */
 static void json_surface(scree_json *json, const scree_mesh *mesh, double size) {
   scree_json_object(json, "surface");
-  scree_json_row_array(json, "points");
-  for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+  SCREE_JSON_ROW_LIST (json, "points", i, 3 * mesh->vertex_count)
     scree_json_number(json, NULL, shortened(mesh->positions[i], size));
-  scree_json_end(json);
-  scree_json_row_array(json, "triangles");
-  for (size_t i = 0; i < 3 * mesh->triangle_count; i++)
+  SCREE_JSON_ROW_LIST (json, "triangles", i, 3 * mesh->triangle_count)
     scree_json_count(json, NULL, mesh->triangles[i]);
-  scree_json_end(json);
   scree_json_end(json);
 }
 
@@ -112,9 +105,8 @@ static void json_entry(scree_json *json, const scree_clump_report *report,
 
 static void json_report(scree_json *json, const void *what) {
   const scree_clump_report *report = what;
-  scree_json_array(json, NULL);
-  for (size_t i = 0; i < report->entry_count; i++) json_entry(json, report, &report->entries[i]);
-  scree_json_end(json);
+  SCREE_JSON_LIST (json, NULL, i, report->entry_count)
+    json_entry(json, report, &report->entries[i]);
 }
 
 scree_status scree_clump_json_write(const void *report, const char *path, bool overwrite,
@@ -138,10 +130,7 @@ scree_status scree_clump_csv_write(const void *what, const char *path, bool over
       const scree_clump *c = &clumps->clumps[i];
       scree_csv_text(f, entry->name);
       fprintf(f, ",%zu", c->sphere_count);
-      for (int k = 0; k < COLUMN_COUNT; k++) {
-        putc(',', f);
-        scree_csv_number(f, value_of(c, k));
-      }
+      for (int k = 0; k < COLUMN_COUNT; k++) scree_csv_numbers(f, value_of(c, k), 1);
       fprintf(f, ",%zu,%d,%d\n", c->useless_count, i == clumps->recommended, c == entry->chosen);
     }
   }

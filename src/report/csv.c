@@ -24,3 +24,10 @@ void scree_csv_number(FILE *stream, double value) {
   scree_number_format(value, buffer);
   fputs(buffer, stream);
 }
+
+void scree_csv_numbers(FILE *stream, const double *values, size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    putc(',', stream);
+    scree_csv_number(stream, values[i]);
+  }
+}

@@ -7,3 +7,5 @@
 void scree_csv_text(FILE *stream, const char *text);
 /* The shortest form that reads back the same; nothing for NaN and infinities. */
 void scree_csv_number(FILE *stream, double value);
+/* A comma before each. */
+void scree_csv_numbers(FILE *stream, const double *values, size_t count);

@@ -180,21 +180,18 @@ static scree_status decode(const char *path, png_bytes b, scree_image *image, sc
 }
 
 scree_status scree_image_read_png(const char *path, scree_image *image, scree_error *error) {
-  char *content;
+  SCREE_CLEANUP(scree_free_at) char *content = NULL;
   size_t size;
   scree_image made = {0};
-  scree_status status = scree_file_read(path, LARGEST_PNG, &content, &size, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_file_read(path, LARGEST_PNG, &content, &size, error));
   if (!is_png(content, size, &made.width, &made.height))
-    status = scree_fail(error, SCREE_BAD_FILE, "%s: is no PNG", path);
-  else if (made.width > MOST_ACROSS || made.height > MOST_ACROSS || !made.width || !made.height)
-    status = scree_fail(error, SCREE_LIMIT, "%s: %zu x %zu pixels; must be 1 to %d each", path,
-                        made.width, made.height, MOST_ACROSS);
-  else
-    status = decode(path, (png_bytes){content, size}, &made, error);
-  scree_free(content);
-  if (status == SCREE_OK) *image = made;
-  return status;
+    return scree_fail(error, SCREE_BAD_FILE, "%s: is no PNG", path);
+  if (made.width > MOST_ACROSS || made.height > MOST_ACROSS || !made.width || !made.height)
+    return scree_fail(error, SCREE_LIMIT, "%s: %zu x %zu pixels; must be 1 to %d each", path,
+                      made.width, made.height, MOST_ACROSS);
+  SCREE_TRY(decode(path, (png_bytes){content, size}, &made, error));
+  *image = made;
+  return SCREE_OK;
 }
 
 /* Never fails: a write that does leaves its mark on the stream, and scree_output_commit, which

@@ -106,15 +106,11 @@ void scree_json_bool(scree_json *json, const char *key, bool value) {
 }
 
 void scree_json_numbers(scree_json *json, const char *key, const double *values, size_t count) {
-  scree_json_row_array(json, key);
-  for (size_t i = 0; i < count; i++) scree_json_number(json, NULL, values[i]);
-  scree_json_end(json);
+  SCREE_JSON_ROW_LIST (json, key, i, count) scree_json_number(json, NULL, values[i]);
 }
 
 void scree_json_matrix(scree_json *json, const char *key, const double values[3][3]) {
-  scree_json_row_array(json, key);
-  for (int i = 0; i < 3; i++) scree_json_numbers(json, NULL, values[i], 3);
-  scree_json_end(json);
+  SCREE_JSON_ROW_LIST (json, key, i, 3) scree_json_numbers(json, NULL, values[i], 3);
 }
 
 scree_status scree_json_file(const char *path, bool overwrite, scree_json_writer *write,

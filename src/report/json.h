@@ -41,6 +41,18 @@ void scree_json_bool(scree_json *json, const char *key, bool value);
 void scree_json_numbers(scree_json *json, const char *key, const double *values, size_t count);
 void scree_json_matrix(scree_json *json, const char *key, const double values[3][3]);
 
+/* An array of `count` elements, which the statement behind it writes one by one, without leaving
+ * it:
+ *
+ *   SCREE_JSON_LIST(json, "names", i, count) scree_json_text(json, NULL, names[i]); */
+#define SCREE_JSON_LIST(json, key, index, count)                                                   \
+  SCREE_JSON_EACH(scree_json_array, json, key, index, count)
+#define SCREE_JSON_ROW_LIST(json, key, index, count)                                               \
+  SCREE_JSON_EACH(scree_json_row_array, json, key, index, count)
+#define SCREE_JSON_EACH(open, json, key, index, count)                                             \
+  for (size_t index = (open((json), (key)), 0); index < (count) || (scree_json_end(json), false);  \
+       index++)
+
 /* Members of *object under their own names, up to ten, each as its type is written. */
 #define SCREE_JSON_MEMBERS(json, object, ...)                                                      \
   SCREE_JSON_CHOSEN(__VA_ARGS__, SCREE_JSON_10, SCREE_JSON_9, SCREE_JSON_8, SCREE_JSON_7,          \

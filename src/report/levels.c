@@ -9,15 +9,14 @@
 #include "report/levels.h"
 #include "report/program.h"
 
-#include "base/alloc.h"
-#include "base/file.h"
+#include "base/owned.h"
+#include "base/seal.h"
 #include "report/pack.h"
 
 #include <math.h>
 #include <string.h>
 
-static const char magic[] = "screeLVL";
-enum { VERSION = 3, BYTE_ORDER_MARK = 0x01020304, HEADER_BYTES = 40 };
+static const scree_seal seal = {"screeLVL", "file of scree's levels", "levels", 3};
 
 /* How the limit is shared: found on scans of 80,000 to 762,008 triangles, see
  * docs/reference/formats.md. */
@@ -35,13 +34,16 @@ typedef struct levels {
   const scree_curve *curve;
 } levels;
 
+static void free_levels(levels *l) {
+  scree_free(l->pack.out.bytes);
+}
+
 /* ---- the grid ---- */
 
 /* Holds the scan and every place that a collapse puts a vertex to. */
 static void find_grid(levels *l, const scree_mesh *scan) {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (size_t v = 0; v < scan->vertex_count; v++)
-    scree_pack_stretch(scan->positions + 3 * v, low, high);
+  double low[3], high[3];
+  scree_pack_box(scan, low, high);
   for (size_t i = 0; i < scree_curve_collapse_count(l->curve); i++) {
     scree_collapse collapse;
     scree_curve_collapse(l->curve, i, &collapse);
@@ -78,43 +80,26 @@ static void put_collapse(steps *s, size_t index) {
 static scree_status put_collapses(levels *l, size_t base_level, const scree_mesh *base,
                                   const uint32_t *number, const uint32_t *place) {
   size_t last = scree_curve_collapse_count(l->curve), count = last - base_level;
-  steps s = {.l = l, .number = number, .place = place};
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(s.pairs, 2 * count + 1, l->pack.error, done);
-  SCREE_ALLOC_OR(s.moves, count + 1, l->pack.error, done);
-  SCREE_ALLOC_OR(s.now, base->vertex_count, l->pack.error, done);
+  SCREE_SCRATCH(uint32_t, pairs, 2 * count + 1, l->pack.error);
+  SCREE_SCRATCH(scree_grid_point, moves, count + 1, l->pack.error);
+  SCREE_SCRATCH(scree_grid_point, now, base->vertex_count, l->pack.error);
+  steps s = {l, number, place, pairs, moves, now, 0};
   for (size_t v = 0; v < base->vertex_count; v++)
-    s.now[v] = scree_pack_point(&l->pack, base->positions + 3 * v);
+    now[v] = scree_pack_point(&l->pack, base->positions + 3 * v);
   for (size_t i = base_level; i < last; i++) put_collapse(&s, i);
   scree_pack_u32(&l->pack, s.count);
-  status = scree_pack_vertices(&l->pack, s.pairs, s.count, 2 * sizeof *s.pairs);
-  if (status == SCREE_OK) status = scree_pack_vertices(&l->pack, s.moves, s.count, sizeof *s.moves);
-done:
-  scree_free(s.pairs);
-  scree_free(s.moves);
-  scree_free(s.now);
-  return status;
+  SCREE_TRY(scree_pack_vertices(&l->pack, pairs, s.count, 2 * sizeof *pairs));
+  return scree_pack_vertices(&l->pack, moves, s.count, sizeof *moves);
 }
 
 static scree_status put_levels(levels *l, size_t base_level) {
-  scree_replay *replay = NULL;
+  SCREE_OWNED(scree_replay, replay);
   const scree_mesh *base;
-  uint32_t *place = NULL;
-  scree_status status = scree_replay_start(l->curve, &replay, l->pack.error);
-  if (status == SCREE_OK) status = scree_replay_step(replay, base_level, &base, l->pack.error);
-  if (status != SCREE_OK) goto done;
-  place = scree_alloc(base->vertex_count, sizeof *place);
-  if (!place) {
-    status = scree_fail_memory(l->pack.error, base->vertex_count * sizeof *place, "packed levels");
-    goto done;
-  }
-  status = scree_pack_mesh(&l->pack, base, place);
-  if (status == SCREE_OK)
-    status = put_collapses(l, base_level, base, scree_replay_numbering(replay), place);
-done:
-  scree_free(place);
-  scree_replay_free(replay);
-  return status;
+  SCREE_TRY(scree_replay_start(l->curve, &replay, l->pack.error));
+  SCREE_TRY(scree_replay_step(replay, base_level, &base, l->pack.error));
+  SCREE_SCRATCH(uint32_t, place, base->vertex_count, l->pack.error);
+  SCREE_TRY(scree_pack_mesh(&l->pack, base, place));
+  return put_collapses(l, base_level, base, scree_replay_numbering(replay), place);
 }
 
 /* The scan where it fits into room bytes, else the finest level that does. */
@@ -123,18 +108,14 @@ static scree_status put_scan(levels *l, const scree_mesh *scan, size_t room) {
   if ((double)target * bytes_per_scan_triangle > 1.3 * (double)room)
     target = (size_t)((double)room / bytes_per_scan_triangle);
   for (int i = 0;; i++) {
-    scree_mesh level = {0};
-    scree_status status = SCREE_OK;
-    if (target >= scan->triangle_count) {
-      status = scree_pack_mesh(&l->pack, scan, NULL);
-    } else {
-      status =
-          scree_curve_mesh(l->curve, scree_curve_find(l->curve, target), &level, l->pack.error);
-      if (status == SCREE_OK) status = scree_pack_mesh(&l->pack, &level, NULL);
-      scree_mesh_free(&level);
-    }
+    SCREE_CLEANUP(scree_mesh_free) scree_mesh level = {0};
+    bool whole = target >= scan->triangle_count;
+    if (!whole)
+      SCREE_TRY(
+          scree_curve_mesh(l->curve, scree_curve_find(l->curve, target), &level, l->pack.error));
+    SCREE_TRY(scree_pack_mesh(&l->pack, whole ? scan : &level, NULL));
     size_t used = l->pack.out.count - start;
-    if (status != SCREE_OK || used <= room || i == MOST_TRIES) return status;
+    if (used <= room || i == MOST_TRIES) return SCREE_OK;
     l->pack.out.count = start;
     target = (size_t)(retry_margin * (double)target * (double)room / (double)used);
   }
@@ -165,25 +146,17 @@ static scree_status put_measures(levels *l, const scree_mesh *scan, const scree_
   enum { PICKS = sizeof picks / sizeof *picks };
   scree_pack_u32(&l->pack, PICKS + 1);
   for (int i = -1; i < PICKS; i++) {
-    scree_mesh level = {0};
+    SCREE_CLEANUP(scree_mesh_free) scree_mesh level = {0};
+    const scree_mesh *of = i >= 0 ? &level : scan;
     scree_measures m;
-    scree_status status = SCREE_OK;
-    if (i >= 0) status = scree_curve_mesh(l->curve, picks[i]->level_index, &level, l->pack.error);
-    if (status == SCREE_OK) status = scree_mesh_measure(i >= 0 ? &level : scan, &m, l->pack.error);
-    double row[] = {(double)(i >= 0 ? level.triangle_count : scan->triangle_count),
-                    m.area,
-                    m.volume,
-                    m.oriented_dimensions[0],
-                    m.oriented_dimensions[1],
-                    m.oriented_dimensions[2],
-                    m.principal_moments[0],
-                    m.principal_moments[1],
-                    m.principal_moments[2],
-                    m.sphericity,
-                    m.convexity};
-    scree_mesh_free(&level);
-    if (status != SCREE_OK) return status;
+    if (i >= 0) SCREE_TRY(scree_curve_mesh(l->curve, picks[i]->level_index, &level, l->pack.error));
+    SCREE_TRY(scree_mesh_measure(of, &m, l->pack.error));
+    double row[] = {(double)of->triangle_count, m.area, m.volume};
     scree_code_reals(&l->pack.out, row, sizeof row / sizeof *row);
+    scree_code_reals(&l->pack.out, m.oriented_dimensions, 3);
+    scree_code_reals(&l->pack.out, m.principal_moments, 3);
+    scree_code_real(&l->pack.out, &m.sphericity);
+    scree_code_real(&l->pack.out, &m.convexity);
   }
   return SCREE_OK;
 }
@@ -211,84 +184,28 @@ static scree_status pack(levels *l, const scree_mesh *scan, const scree_choice *
   put_trace(l, choice);
   SCREE_TRY(put_measures(l, scan, choice));
   SCREE_TRY(put_levels(l, choose_base(l->curve, levels_share * (double)byte_limit)));
-  size_t room = byte_limit > l->pack.out.count ? byte_limit - l->pack.out.count : 0;
-  SCREE_TRY(put_scan(l, scan, room));
-  if (!scree_codec_good(&l->pack.out))
-    return scree_fail_memory(l->pack.error, l->pack.out.count, "packed levels");
-  return SCREE_OK;
+  size_t used = l->pack.out.count - SCREE_SEAL_BYTES;
+  return put_scan(l, scan, byte_limit > used ? byte_limit - used : 0);
 }
 
 /* ---- the file ---- */
 
-/* Free its bytes. */
-static scree_codec header_of(const void *bytes, size_t count) {
-  scree_codec header = {0};
-  scree_checksum sum = scree_checksum_of(bytes, count);
-  uint32_t version = VERSION, mark = BYTE_ORDER_MARK;
-  uint64_t length = count;
-  char text[8];
-  memcpy(text, magic, sizeof text);
-  scree_code_bytes(&header, text, sizeof text);
-  scree_code_u32(&header, &version);
-  scree_code_u32(&header, &mark);
-  scree_code_u64(&header, &length);
-  scree_code_u64(&header, &sum.high);
-  scree_code_u64(&header, &sum.low);
-  return header;
-}
-
-static scree_status write_file(levels *l, const char *path, bool overwrite) {
-  scree_output output;
-  SCREE_TRY(scree_output_open(path, overwrite, &output, l->pack.error));
-  scree_codec header = header_of(l->pack.out.bytes, l->pack.out.count);
-  if (header.out_of_memory) {
-    scree_output_discard(&output);
-    scree_free(header.bytes);
-    return scree_fail_memory(l->pack.error, HEADER_BYTES, "a header");
-  }
-  fwrite(header.bytes, 1, header.count, output.stream);
-  fwrite(l->pack.out.bytes, 1, l->pack.out.count, output.stream);
-  scree_free(header.bytes);
-  return scree_output_commit(&output, l->pack.error);
-}
-
 scree_status scree_levels_write(const scree_curve *curve, const scree_choice *choice,
                                 size_t byte_limit, const char *path, bool overwrite,
                                 scree_error *error) {
-  levels l = {.curve = curve, .pack = {.error = error}};
-  scree_mesh scan;
+  SCREE_CLEANUP(free_levels) levels l = {.curve = curve, .pack = {.error = error}};
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh scan = {0};
   SCREE_TRY(scree_curve_mesh(curve, 0, &scan, error));
-  scree_status status = pack(&l, &scan, choice, byte_limit);
-  scree_mesh_free(&scan);
-  if (status == SCREE_OK) status = write_file(&l, path, overwrite);
-  scree_free(l.pack.out.bytes);
-  return status;
+  scree_seal_begin(&l.pack.out);
+  SCREE_TRY(pack(&l, &scan, choice, byte_limit));
+  SCREE_TRY(scree_seal_end(&l.pack.out, &seal, error));
+  return scree_seal_write(l.pack.out.bytes, l.pack.out.count, path, overwrite, error);
 }
 
 scree_status scree_levels_check(const char *bytes, size_t byte_count, const char *name,
                                 scree_error *error) {
   scree_codec in = {.source = (const unsigned char *)bytes, .count = byte_count, .loading = true};
-  char text[8];
-  uint32_t version = 0, mark = 0;
-  uint64_t length = 0;
-  scree_checksum sum = {0, 0};
-  scree_code_bytes(&in, text, sizeof text);
-  scree_code_u32(&in, &version);
-  scree_code_u32(&in, &mark);
-  scree_code_u64(&in, &length);
-  scree_code_u64(&in, &sum.high);
-  scree_code_u64(&in, &sum.low);
-  if (in.failed || memcmp(text, magic, sizeof text) != 0 || mark != BYTE_ORDER_MARK)
-    return scree_fail(error, SCREE_BAD_FILE, "%s: is no file of levels of scree's", name);
-  if (version != VERSION)
-    return scree_fail(error, SCREE_BAD_FILE, "%s: version %u; this scree reads %d", name,
-                      (unsigned)version, VERSION);
-  size_t left = byte_count - HEADER_BYTES;
-  scree_checksum found = scree_checksum_of(bytes + HEADER_BYTES, left);
-  if (length != left || found.high != sum.high || found.low != sum.low)
-    return scree_fail(error, SCREE_BAD_FILE, "%s: is damaged: %zu bytes after the header", name,
-                      left);
-  return SCREE_OK;
+  return scree_seal_check(&in, &seal, name, error);
 }
 
 static void skip(scree_codec *in, size_t count) {
@@ -311,7 +228,7 @@ static void skip_packed(scree_codec *in, int buffer_count) {
 size_t scree_levels_drop_scan(char *bytes, size_t byte_count) {
   enum { GRID = 32, ROW = 40, MEASURE = 88, MESH_COUNTS = 8, NO_MESH = 16 };
   scree_codec in = {.source = (const unsigned char *)bytes, .count = byte_count, .loading = true};
-  skip(&in, HEADER_BYTES + GRID + sizeof(uint32_t));
+  skip(&in, SCREE_SEAL_BYTES + GRID + sizeof(uint32_t));
   skip(&in, (size_t)read_u32(&in) * ROW);
   skip(&in, (size_t)read_u32(&in) * MEASURE);
   skip(&in, MESH_COUNTS);
@@ -321,9 +238,7 @@ size_t scree_levels_drop_scan(char *bytes, size_t byte_count) {
   size_t start = in.position;
   if (in.failed || byte_count - start < NO_MESH) return byte_count;
   memset(bytes + start, 0, NO_MESH); /* no vertices, no triangles, nothing packed of either */
-  size_t left = start + NO_MESH;
-  scree_codec header = header_of(bytes + HEADER_BYTES, left - HEADER_BYTES);
-  if (scree_codec_good(&header)) memcpy(bytes, header.bytes, HEADER_BYTES);
-  scree_free(header.bytes);
-  return left;
+  scree_codec left = {.bytes = (unsigned char *)bytes, .count = start + NO_MESH};
+  (void)scree_seal_end(&left, &seal, NULL);
+  return left.count;
 }

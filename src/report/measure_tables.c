@@ -151,9 +151,7 @@ scree_status scree_measure_json_write(const scree_measure_entry *entries, size_t
   scree_output output;
   SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   scree_json json = scree_json_start(output.stream);
-  scree_json_array(&json, NULL);
-  for (size_t i = 0; i < entry_count; i++) json_entry(&json, &entries[i], command_line);
-  scree_json_end(&json);
+  SCREE_JSON_LIST (&json, NULL, i, entry_count) json_entry(&json, &entries[i], command_line);
   return scree_output_commit(&output, error);
 }
 
@@ -171,8 +169,7 @@ scree_status scree_distance_json_write(const scree_distance_entry *entry, const 
   SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   scree_json json = scree_json_start(output.stream);
   scree_json_object(&json, NULL);
-  scree_json_array(&json, "files");
-  for (int i = 0; i < 2; i++) {
+  SCREE_JSON_LIST (&json, "files", i, 2) {
     char checksum[SCREE_CHECKSUM_TEXT];
     scree_json_row_object(&json, NULL);
     scree_json_text(&json, "file", entry->file[i]);
@@ -180,7 +177,6 @@ scree_status scree_distance_json_write(const scree_distance_entry *entry, const 
     scree_json_number(&json, "unit_m", entry->unit_m[i]);
     scree_json_end(&json);
   }
-  scree_json_end(&json);
   json_deviation(&json, "forward", &entry->distance.forward);
   if (!entry->options.one_way) json_deviation(&json, "backward", &entry->distance.backward);
   SCREE_JSON_MEMBERS(&json, &entry->distance, hausdorff, hausdorff_bound);
@@ -219,9 +215,8 @@ scree_status scree_curve_json_write(const scree_curve_entry *entry, const char *
   SCREE_JSON_MEMBERS(&json, &entry->facts, closed, shell_count, boundary_edge_count,
                      locked_vertex_count);
   scree_json_count(&json, "floor_triangle_count", entry->facts.floor_count);
-  scree_json_array(&json, "levels");
-  for (size_t i = 0; i < entry->row_count; i++) json_row(&json, &entry->rows[i], entry->distances);
-  scree_json_end(&json);
+  SCREE_JSON_LIST (&json, "levels", i, entry->row_count)
+    json_row(&json, &entry->rows[i], entry->distances);
   scree_json_maker(&json, command_line);
   scree_json_end(&json);
   return scree_output_commit(&output, error);

@@ -16,6 +16,12 @@ void scree_pack_stretch(const double *p, double low[3], double high[3]) {
   }
 }
 
+void scree_pack_box(const scree_mesh *mesh, double low[3], double high[3]) {
+  for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+  for (size_t v = 0; v < mesh->vertex_count; v++)
+    scree_pack_stretch(mesh->positions + 3 * v, low, high);
+}
+
 void scree_pack_grid(scree_packing *p, const double low[3], const double high[3]) {
   memcpy(p->low, low, sizeof p->low);
   p->step = fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2])) / 65535;
@@ -54,10 +60,8 @@ scree_status scree_pack_vertices(scree_packing *p, const void *vertices, size_t 
                                  size_t size) {
   pthread_once(&versions, set_versions);
   size_t bound = meshopt_encodeVertexBufferBound(count, size);
-  unsigned char *bytes = scree_alloc(bound, 1);
-  if (!bytes) return scree_fail_memory(p->error, bound, "packed vertices");
+  SCREE_SCRATCH(unsigned char, bytes, bound, p->error);
   put_buffer(p, bytes, meshopt_encodeVertexBuffer(bytes, bound, vertices, count, size));
-  scree_free(bytes);
   return SCREE_OK;
 }
 
@@ -65,21 +69,16 @@ static scree_status put_indices(scree_packing *p, const uint32_t *indices, size_
                                 size_t vertex_count) {
   pthread_once(&versions, set_versions);
   size_t bound = meshopt_encodeIndexBufferBound(count, vertex_count);
-  unsigned char *bytes = scree_alloc(bound, 1);
-  if (!bytes) return scree_fail_memory(p->error, bound, "packed triangles");
+  SCREE_SCRATCH(unsigned char, bytes, bound, p->error);
   put_buffer(p, bytes, meshopt_encodeIndexBuffer(bytes, bound, indices, count));
-  scree_free(bytes);
   return SCREE_OK;
 }
 
 scree_status scree_pack_mesh(scree_packing *p, const scree_mesh *mesh, uint32_t *place) {
   size_t corner_count = 3 * mesh->triangle_count, vertex_count = mesh->vertex_count;
-  uint32_t *order = NULL, *corners = NULL;
-  scree_grid_point *points = NULL;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(order, vertex_count, p->error, done);
-  SCREE_ALLOC_OR(corners, corner_count, p->error, done);
-  SCREE_ALLOC_OR(points, vertex_count, p->error, done);
+  SCREE_SCRATCH(uint32_t, order, vertex_count, p->error);
+  SCREE_SCRATCH(uint32_t, corners, corner_count, p->error);
+  SCREE_SCRATCH(scree_grid_point, points, vertex_count, p->error);
   if (p->keeps_order)
     memcpy(corners, mesh->triangles, corner_count * sizeof *corners);
   else
@@ -91,11 +90,6 @@ scree_status scree_pack_mesh(scree_packing *p, const scree_mesh *mesh, uint32_t 
   if (place) memcpy(place, order, vertex_count * sizeof *place);
   scree_pack_u32(p, used);
   scree_pack_u32(p, mesh->triangle_count);
-  status = scree_pack_vertices(p, points, used, sizeof *points);
-  if (status == SCREE_OK) status = put_indices(p, corners, corner_count, used);
-done:
-  scree_free(order);
-  scree_free(corners);
-  scree_free(points);
-  return status;
+  SCREE_TRY(scree_pack_vertices(p, points, used, sizeof *points));
+  return put_indices(p, corners, corner_count, used);
 }

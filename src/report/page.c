@@ -6,9 +6,11 @@
  * texts as text only. web/ holds the page's sources; page.inc and page_script.inc are what
  * web/build.mjs makes of them.
  */
-#include "base/alloc.h"
 #include "base/array.h"
+#include "base/ending.h"
 #include "base/file.h"
+#include "base/owned.h"
+#include "base/path.h"
 #include "base/platform.h"
 #include "report/json.h"
 #include "report/json_check.h"
@@ -79,21 +81,8 @@ static void put_json(FILE *stream, const char *text) {
 
 /* ---- a folder's files ---- */
 
-/* Reads folder/name, whose path is left in `path`; *bytes is NULL where there is none. */
-static scree_status read_part(const char *folder, const char *name, char path[PATH_BYTES],
-                              char **bytes, size_t *size, scree_error *error) {
-  int length = snprintf(path, PATH_BYTES, "%s/%s", folder, name);
-  if (length < 0 || length >= PATH_BYTES)
-    return scree_fail(error, SCREE_LIMIT, "%.200s: the path is too long", folder);
-  *bytes = NULL;
-  if (!scree_path_exists(path)) return SCREE_OK;
-  return scree_file_read(path, MOST_RESULT_BYTES, bytes, size, error);
-}
-
 static bool has_file(const char *folder, const char *name) {
-  char path[PATH_BYTES];
-  int length = snprintf(path, sizeof path, "%s/%s", folder, name);
-  return length < PATH_BYTES && scree_path_exists(path);
+  return scree_path_exists(SCREE_PATH_IN(folder, name));
 }
 
 /* Whether the folder has that result. */
@@ -102,26 +91,28 @@ static bool is_there(const char *folder, size_t result) {
   return has_file(folder, results[result].file);
 }
 
+/* folder/name; *bytes is NULL where there is none. */
+static scree_status read_part(page *p, const char *folder, const char *name, char **bytes,
+                              size_t *size) {
+  const char *path = SCREE_PATH_IN(folder, name);
+  *bytes = NULL;
+  if (!scree_path_exists(path)) return SCREE_OK;
+  SCREE_TRY(scree_file_read(path, MOST_RESULT_BYTES, bytes, size, p->error));
+  p->result_bytes += *size;
+  return SCREE_OK;
+}
+
 /* One JSON file as a member of the page's data. *text gets its content, to be freed, or NULL where
- * there is none; text may be NULL. */
+ * there is none. */
 static scree_status put_member(page *p, const char *folder, const char *name, const char *key,
                                char **text) {
-  char *bytes, path[PATH_BYTES];
   size_t size;
-  if (text) *text = NULL;
-  scree_status status = read_part(folder, name, path, &bytes, &size, p->error);
-  if (status != SCREE_OK || !bytes) return status;
-  p->result_bytes += size;
-  status = scree_json_check(bytes, size, path, p->error);
-  if (status == SCREE_OK) {
-    fprintf(p->stream, ",\n\"%s\": ", key);
-    put_json(p->stream, bytes);
-  }
-  if (text && status == SCREE_OK)
-    *text = bytes;
-  else
-    scree_free(bytes);
-  return status;
+  SCREE_TRY(read_part(p, folder, name, text, &size));
+  if (!*text) return SCREE_OK;
+  SCREE_TRY(scree_json_check(*text, size, SCREE_PATH_IN(folder, name), p->error));
+  fprintf(p->stream, ",\n\"%s\": ", key);
+  put_json(p->stream, *text);
+  return SCREE_OK;
 }
 
 /* ---- parts ---- */
@@ -148,28 +139,20 @@ static int by_name(const void *a, const void *b) {
   return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* The names in a folder that do not begin with a point, sorted; none where there is no folder. */
-static scree_status list_names(const char *folder, name_list *names, scree_error *error) {
-  scree_folder *directory = scree_folder_open(folder);
-  *names = (name_list){0};
-  if (!directory) return SCREE_OK;
-  scree_status status = SCREE_OK;
-  for (const char *name; status == SCREE_OK && (name = scree_folder_next(directory));) {
-    if (name[0] == '.') continue;
-    char *copy = scree_strdup(name);
-    if (!copy || !SCREE_PUSH(names, copy)) {
-      scree_free(copy);
-      status = scree_fail_memory(error, 256, "a name");
-    }
-  }
-  scree_folder_close(directory);
-  if (names->count > 1) qsort(names->items, names->count, sizeof *names->items, by_name);
-  return status;
+static scree_status add_name(name_list *names, const char *name, scree_error *error) {
+  char *copy = scree_strdup(name);
+  if (copy && SCREE_PUSH(names, copy)) return SCREE_OK;
+  scree_free(copy);
+  return scree_fail_memory(error, strlen(name), "a name");
 }
 
-static bool is_levels(const char *name) {
-  size_t length = strlen(name);
-  return length >= sizeof ending && !strcmp(name + length - (sizeof ending - 1), ending);
+/* The names in a folder that do not begin with a point, sorted; none where there is no folder. */
+static scree_status list_names(const char *folder, name_list *names, scree_error *error) {
+  SCREE_CLEANUP(scree_folder_close_at) scree_folder *directory = scree_folder_open(folder);
+  for (const char *name; directory && (name = scree_folder_next(directory));)
+    if (name[0] != '.') SCREE_TRY(add_name(names, name, error));
+  if (names->count > 1) qsort(names->items, names->count, sizeof *names->items, by_name);
+  return SCREE_OK;
 }
 
 /* Whether the JSON text holds the name as a string: what an earlier choice left is no part. */
@@ -187,26 +170,23 @@ static bool holds_string(const char *json, const char *name) {
 
 /* What the page calls each file of levels: [name, id]. */
 static scree_status put_levels(page *p, const char *folder, const char *choice) {
-  name_list names;
-  char path[PATH_BYTES];
-  snprintf(path, sizeof path, "%.4000s/levels", folder);
-  scree_status status = list_names(path, &names, p->error);
+  SCREE_CLEANUP(free_names) name_list names = {0};
+  SCREE_TRY(list_names(SCREE_PATH_IN(folder, "levels"), &names, p->error));
   fputs(",\n\"levels\": ", p->stream);
   scree_json json = scree_json_start(p->stream);
   scree_json_array(&json, NULL);
-  for (size_t i = 0; i < names.count && status == SCREE_OK; i++) {
+  for (size_t i = 0; i < names.count; i++) {
     const char *id;
     char *name = names.items[i], file[PATH_BYTES];
-    if (!is_levels(name)) continue;
+    if (!scree_ends_with(name, ending)) continue;
     snprintf(file, sizeof file, "levels/%s", name);
     name[strlen(name) - (sizeof ending - 1)] = 0;
-    if (!holds_string(choice, name)) continue;
-    status = scree_page_part_add(&p->parts, SCREE_PART_LEVELS, folder, file, &id, p->error);
+    if (!*name || !holds_string(choice, name)) continue;
+    SCREE_TRY(scree_page_part_add(&p->parts, SCREE_PART_LEVELS, folder, file, &id, p->error));
     if (id) put_row(&json, name, id);
   }
   scree_json_end(&json);
-  free_names(&names);
-  return status;
+  return SCREE_OK;
 }
 
 /* The next run that a study's points name as the pile to look at; NULL: no more. */
@@ -227,58 +207,62 @@ static const char *next_pile(const char *json, char key[64]) {
 static scree_status put_pile(page *p, const char *folder, const char *file, const char *name,
                              scree_json *json) {
   const char *id;
-  scree_status status =
-      scree_page_part_add(&p->parts, SCREE_PART_PILE, folder, file, &id, p->error);
+  SCREE_TRY(scree_page_part_add(&p->parts, SCREE_PART_PILE, folder, file, &id, p->error));
   if (id) put_row(json, name, id);
-  return status;
+  return SCREE_OK;
 }
 
 /* Piles to look at: [run, id] of a study's points; [key, id] of a scene. */
 static scree_status put_piles(page *p, const char *folder, char *const *found) {
   const char *study = found[STUDY];
-  const bool scene = found[SCENE];
   char key[64], run[PATH_BYTES];
-  scree_status status = SCREE_OK;
   fputs(",\n\"piles\": ", p->stream);
   scree_json json = scree_json_start(p->stream);
   scree_json_array(&json, NULL);
-  while (status == SCREE_OK && study && (study = next_pile(study, key))) {
+  while (study && (study = next_pile(study, key))) {
     snprintf(run, sizeof run, "%.4000s/runs/%s", folder, key);
-    status = put_pile(p, run, "last.scree", key, &json);
+    SCREE_TRY(put_pile(p, run, "last.scree", key, &json));
   }
-  if (status == SCREE_OK && scene)
-    status = put_pile(p, folder, "checkpoint.scree", results[SCENE].key, &json);
+  if (found[SCENE]) SCREE_TRY(put_pile(p, folder, "checkpoint.scree", results[SCENE].key, &json));
   scree_json_end(&json);
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status put_picture(page *p, const char *folder, int result) {
   const char *id;
-  scree_status status = scree_page_part_add(&p->parts, SCREE_PART_PICTURE, folder,
-                                            results[result].picture, &id, p->error);
+  SCREE_TRY(scree_page_part_add(&p->parts, SCREE_PART_PICTURE, folder, results[result].picture, &id,
+                                p->error));
   if (id) fprintf(p->stream, ",\n\"%s_picture\": \"%s\"", results[result].key, id);
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- the page ---- */
 
+/* Texts of the results, and of the provenance behind them. */
+typedef struct folder_texts {
+  char *found[RESULT_COUNT + 1];
+} folder_texts;
+
+static void free_texts(folder_texts *texts) {
+  for (size_t i = 0; i <= RESULT_COUNT; i++) scree_free(texts->found[i]);
+}
+
 static scree_status put_folder(page *p, const char *folder) {
-  char *found[RESULT_COUNT] = {NULL};
+  SCREE_CLEANUP(free_texts) folder_texts texts = {.found = {NULL}};
+  char **found = texts.found;
   fputs("{\n\"folder\": ", p->stream);
   scree_json json = scree_json_start(p->stream);
   scree_json_text(&json, NULL, p->name ? p->name : folder);
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < RESULT_COUNT && status == SCREE_OK; i++)
+  for (size_t i = 0; i < RESULT_COUNT; i++)
     if (is_there(folder, i))
-      status = put_member(p, folder, results[i].file, results[i].key, &found[i]);
-  if (status == SCREE_OK) status = put_member(p, folder, "provenance.json", "provenance", NULL);
-  if (status == SCREE_OK && found[CHOICE]) status = put_levels(p, folder, found[CHOICE]);
-  if (status == SCREE_OK && (found[STUDY] || found[SCENE])) status = put_piles(p, folder, found);
-  for (int i = SCENE; i < RESULT_COUNT && status == SCREE_OK; i++)
-    if (found[i]) status = put_picture(p, folder, i);
+      SCREE_TRY(put_member(p, folder, results[i].file, results[i].key, &found[i]));
+  SCREE_TRY(put_member(p, folder, "provenance.json", "provenance", &found[RESULT_COUNT]));
+  if (found[CHOICE]) SCREE_TRY(put_levels(p, folder, found[CHOICE]));
+  if (found[STUDY] || found[SCENE]) SCREE_TRY(put_piles(p, folder, found));
+  for (int i = SCENE; i < RESULT_COUNT; i++)
+    if (found[i]) SCREE_TRY(put_picture(p, folder, i));
   fputs("}", p->stream);
-  for (size_t i = 0; i < RESULT_COUNT; i++) scree_free(found[i]);
-  return status;
+  return SCREE_OK;
 }
 
 static bool has_results(const char *folder) {
@@ -287,53 +271,40 @@ static bool has_results(const char *folder) {
   return false;
 }
 
-static scree_status add_name(page *p, name_list *folders, const char *path) {
-  char *copy = scree_strdup(path);
-  if (copy && SCREE_PUSH(folders, copy)) return SCREE_OK;
-  scree_free(copy);
-  return scree_fail_memory(p->error, strlen(path), "a path");
-}
-
 /* The folder itself, or those in it that have results: heaps at several levels. */
-static scree_status find_results(page *p, const char *folder, name_list *found) {
+static scree_status find_results(const char *folder, name_list *found, scree_error *error) {
   scree_path_info info;
-  name_list names;
+  SCREE_CLEANUP(free_names) name_list names = {0};
   size_t before = found->count;
   if (!scree_path_look(folder, &info) || info.kind != SCREE_PATH_FOLDER)
-    return scree_fail(p->error, SCREE_IO,
+    return scree_fail(error, SCREE_IO,
                       "%s: is no folder: a report is of what `-o DIR` of choose, clump, drop, "
                       "repose, run or study wrote",
                       folder);
-  if (has_results(folder)) return add_name(p, found, folder);
-  scree_status status = list_names(folder, &names, p->error);
-  for (size_t i = 0; i < names.count && status == SCREE_OK; i++) {
-    char path[PATH_BYTES];
-    int length = snprintf(path, sizeof path, "%s/%s", folder, names.items[i]);
-    if (length < PATH_BYTES && has_results(path)) status = add_name(p, found, path);
+  if (has_results(folder)) return add_name(found, folder, error);
+  SCREE_TRY(list_names(folder, &names, error));
+  for (size_t i = 0; i < names.count; i++) {
+    const char *path = SCREE_PATH_IN(folder, names.items[i]);
+    if (has_results(path)) SCREE_TRY(add_name(found, path, error));
   }
-  free_names(&names);
-  if (status == SCREE_OK && found->count == before)
-    status =
-        scree_fail(p->error, SCREE_BAD_FILE,
-                   "%s: holds no results: no choice.json (scree choose), result.json with "
-                   "scene.yaml (run, repose, drop), study.json, clump.json or calibration.json",
-                   folder);
-  return status;
+  if (found->count > before) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_FILE,
+                    "%s: holds no results: no choice.json (scree choose), result.json with "
+                    "scene.yaml (run, repose, drop), study.json, clump.json or calibration.json",
+                    folder);
 }
 
 /* What a reader without JavaScript sees. */
 static scree_status put_summaries(page *p, const name_list *folders) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < RESULT_COUNT * folders->count && status == SCREE_OK; i++) {
-    const char *name = results[i % RESULT_COUNT].text;
-    char *text, path[PATH_BYTES];
+  for (size_t i = 0; i < RESULT_COUNT * folders->count; i++) {
+    const char *name = results[i % RESULT_COUNT].text, *folder = folders->items[i / RESULT_COUNT];
+    SCREE_CLEANUP(scree_free_at) char *text = NULL;
     size_t size;
-    if (!name || !is_there(folders->items[i / RESULT_COUNT], i % RESULT_COUNT)) continue;
-    status = read_part(folders->items[i / RESULT_COUNT], name, path, &text, &size, p->error);
-    if (status == SCREE_OK && text) put_html(p->stream, text), p->result_bytes += size;
-    if (status == SCREE_OK) scree_free(text);
+    if (!name || !is_there(folder, i % RESULT_COUNT)) continue;
+    SCREE_TRY(read_part(p, folder, name, &text, &size));
+    if (text) put_html(p->stream, text);
   }
-  return status;
+  return SCREE_OK;
 }
 
 static void put_colors(FILE *stream) {
@@ -367,25 +338,21 @@ static scree_status put_page(page *p, const name_list *folders) {
   return SCREE_OK;
 }
 
+static void free_page(page *p) {
+  scree_page_parts_free(&p->parts);
+}
+
 static scree_status write_page(const char *const *folders, size_t folder_count, const char *name,
                                const char *path, bool overwrite, scree_error *error) {
-  page p = {.name = name, .error = error};
-  name_list found = {0};
+  SCREE_CLEANUP(free_page) page p = {.name = name, .error = error};
+  SCREE_CLEANUP(free_names) name_list found = {0};
   scree_output output;
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < folder_count && status == SCREE_OK; i++)
-    status = find_results(&p, folders[i], &found);
-  if (status == SCREE_OK) status = scree_output_open(path, overwrite, &output, error);
-  if (status == SCREE_OK) {
-    p.stream = output.stream;
-    status = put_page(&p, &found);
-    if (status == SCREE_OK)
-      status = scree_output_commit(&output, error);
-    else
-      scree_output_discard(&output);
-  }
-  scree_page_parts_free(&p.parts);
-  free_names(&found);
+  for (size_t i = 0; i < folder_count; i++) SCREE_TRY(find_results(folders[i], &found, error));
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
+  p.stream = output.stream;
+  scree_status status = put_page(&p, &found);
+  if (status == SCREE_OK) return scree_output_commit(&output, error);
+  scree_output_discard(&output);
   return status;
 }
 

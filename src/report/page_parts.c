@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/array.h"
 #include "base/file.h"
+#include "base/path.h"
 #include "base/platform.h"
 #include "report/levels.h"
 #include "report/pile_pack.h"
@@ -11,22 +12,20 @@ enum {
   MOST_PART_BYTES = 64 << 20,
   MOST_PICTURE_BYTES = 1300000,
   LEAST_PILE_BYTES = 300000, /* kept for each, as far as half the room goes */
-  PATH_BYTES = 4096
 };
 
 scree_status scree_page_part_add(scree_page_parts *parts, scree_part_kind kind, const char *folder,
                                  const char *name, const char **id, scree_error *error) {
-  char path[PATH_BYTES];
+  const char *path = SCREE_PATH_IN(folder, name);
   scree_path_info info;
   *id = NULL;
-  int length = snprintf(path, sizeof path, "%s/%s", folder, name);
-  if (length >= PATH_BYTES || !scree_path_look(path, &info)) return SCREE_OK;
+  if (!scree_path_look(path, &info)) return SCREE_OK;
   if (kind == SCREE_PART_PICTURE && info.byte_count > MOST_PICTURE_BYTES) return SCREE_OK;
   scree_page_part made = {.kind = kind, .path = scree_strdup(path)};
   snprintf(made.id, sizeof made.id, "part-%zu", parts->count);
   if (!made.path || !SCREE_PUSH(parts, made)) {
     scree_free(made.path);
-    return scree_fail_memory(error, PATH_BYTES, "the parts of a page");
+    return scree_fail_memory(error, strlen(path), "the parts of a page");
   }
   *id = parts->items[parts->count - 1].id;
   return SCREE_OK;
@@ -112,32 +111,31 @@ static size_t fit_levels(scree_page_parts *parts, size_t total, size_t room) {
 
 /* ---- pictures and piles ---- */
 
+/* Where there is room. */
+static void put_fitting(const scree_page_part *it, FILE *stream, const void *bytes, size_t size,
+                        size_t *room) {
+  if (size > *room) return;
+  put_part(stream, it, bytes, size);
+  *room -= size;
+}
+
 static scree_status put_picture(const scree_page_part *it, FILE *stream, size_t *room,
                                 scree_error *error) {
-  char *bytes;
+  SCREE_CLEANUP(scree_free_at) char *bytes = NULL;
   size_t size;
   SCREE_TRY(scree_file_read(it->path, MOST_PART_BYTES, &bytes, &size, error));
-  if (size <= *room) {
-    put_part(stream, it, bytes, size);
-    *room -= size;
-  }
-  scree_free(bytes);
+  put_fitting(it, stream, bytes, size, room);
   return SCREE_OK;
 }
 
 static scree_status put_pile(const scree_page_part *it, FILE *stream, size_t share, size_t *room,
                              scree_error *error) {
-  unsigned char *bytes = NULL;
+  SCREE_CLEANUP(scree_free_at) unsigned char *bytes = NULL;
   size_t size = 0;
-  scree_status status = scree_pile_pack(it->path, share, &bytes, &size, error);
-  if (status == SCREE_OK && !bytes)
-    status = scree_fail(error, SCREE_IO, "%s: is no longer there", it->path);
-  if (status == SCREE_OK && size <= *room) {
-    put_part(stream, it, bytes, size);
-    *room -= size;
-  }
-  scree_free(bytes);
-  return status;
+  SCREE_TRY(scree_pile_pack(it->path, share, &bytes, &size, error));
+  if (!bytes) return scree_fail(error, SCREE_IO, "%s: is no longer there", it->path);
+  put_fitting(it, stream, bytes, size, room);
+  return SCREE_OK;
 }
 
 /* Each may take its share of what those before it left. */

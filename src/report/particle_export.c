@@ -116,28 +116,23 @@ static scree_status prepare(const scree_mesh *mesh, const scree_export_options *
   SCREE_TRY(scree_mesh_copy(mesh, placed, error));
   place(options, &given, p);
   move(placed, p);
-  scree_status status = scree_mesh_measure(placed, &p->measures, error);
-  if (status == SCREE_OK) weigh(placed, options->density, p);
-  if (status != SCREE_OK) scree_mesh_free(placed);
-  return status;
+  SCREE_TRY(scree_mesh_measure(placed, &p->measures, error));
+  weigh(placed, options->density, p);
+  return SCREE_OK;
 }
 
 scree_status scree_particle_export(const scree_mesh *mesh, const scree_export_options *options,
                                    const char *mesh_path, const char *json_path,
                                    scree_exported *exported, scree_error *error) {
   scree_export_options used = options ? *options : scree_default_export_options();
-  scree_mesh placed;
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh placed = {0};
   scree_exported p;
-  scree_status status = scree_export_check(&used, error);
-  if (status == SCREE_OK) status = scree_output_check(mesh_path, used.overwrite, error);
-  if (status == SCREE_OK && json_path)
-    status = scree_output_check(json_path, used.overwrite, error);
-  if (status == SCREE_OK) status = prepare(mesh, &used, &placed, &p, error);
-  if (status != SCREE_OK) return status;
-  status = write_mesh(&used, &placed, mesh_path, error);
-  if (status == SCREE_OK && json_path)
-    status = write_json(&used, &placed, &p, mesh_path, json_path, error);
-  scree_mesh_free(&placed);
-  if (status == SCREE_OK && exported) *exported = p;
-  return status;
+  SCREE_TRY(scree_export_check(&used, error));
+  SCREE_TRY(scree_output_check(mesh_path, used.overwrite, error));
+  if (json_path) SCREE_TRY(scree_output_check(json_path, used.overwrite, error));
+  SCREE_TRY(prepare(mesh, &used, &placed, &p, error));
+  SCREE_TRY(write_mesh(&used, &placed, mesh_path, error));
+  if (json_path) SCREE_TRY(write_json(&used, &placed, &p, mesh_path, json_path, error));
+  if (exported) *exported = p;
+  return SCREE_OK;
 }

@@ -4,7 +4,7 @@
  * many triangles as it can take. */
 #include "report/pile_pack.h"
 
-#include "base/alloc.h"
+#include "base/owned.h"
 #include "base/platform.h"
 #include "report/pack.h"
 #include "report/shapes.h"
@@ -38,32 +38,33 @@ typedef struct moment {
 
 /* ---- what is on disk ---- */
 
+static void put_pose(float *pose, const double position[3], const double turn[4]) {
+  for (int k = 0; k < 7; k++) pose[k] = (float)(k < 3 ? position[k] : turn[k - 3]);
+}
+
 /* The last frame alone. */
 static scree_status still(pile *p) {
   const scree_world *world = p->world;
   size_t bodies = scree_world_body_count(world), all = p->wall_count + bodies;
   scree_motion *m = &p->motion;
   *m = (scree_motion){.frame_count = 1, .body_count = all};
-  m->time = scree_alloc(1, sizeof *m->time);
-  m->poses = scree_alloc(all, 7 * sizeof *m->poses);
-  if (!m->time || !m->poses)
-    return scree_fail_memory(p->pack.error, all * 7 * sizeof *m->poses, "a pile");
+  SCREE_TRY_ALLOC(m->time, 1, p->pack.error);
+  SCREE_TRY_ALLOC(m->poses, 7 * all, p->pack.error);
   m->time[0] = scree_world_time(world);
   for (size_t w = 0; w < p->wall_count; w++) {
     scree_wall wall;
     double turn[4];
     scree_world_get_wall(world, w, &wall);
     scree_world_wall_orientation(world, w, turn);
-    for (int k = 0; k < 7; k++)
-      m->poses[7 * w + (size_t)k] = (float)(k < 3 ? wall.position[k] : turn[k - 3]);
+    put_pose(m->poses + 7 * w, wall.position, turn);
   }
   for (size_t b = 0; b < bodies; b++) {
+    static const double gone[4] = {NAN, NAN, NAN, NAN};
     scree_body body;
     scree_world_get_body(world, b, &body);
     bool there = !scree_world_body_removed(world, b);
-    for (int k = 0; k < 7; k++)
-      m->poses[7 * (p->wall_count + b) + (size_t)k] =
-          there ? (float)(k < 3 ? body.position[k] : body.orientation[k - 3]) : NAN;
+    put_pose(m->poses + 7 * (p->wall_count + b), there ? body.position : gone,
+             there ? body.orientation : gone);
   }
   return SCREE_OK;
 }
@@ -89,15 +90,14 @@ static bool ends_with(const pile *p) {
 static scree_status load(pile *p, const char *path) {
   const char *slash = strrchr(path, '/');
   char beside[PATH_BYTES];
-  scree_status status = scree_scene_load(path, &p->scene, p->pack.error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_load(path, &p->scene, p->pack.error));
   p->world = scree_scene_view(p->scene);
   p->wall_count = scree_world_wall_count(p->world);
   int length = snprintf(beside, sizeof beside, "%.*smotion.scree",
                         (int)(slash ? slash + 1 - path : 0), path);
   if (length < PATH_BYTES && scree_path_exists(beside)) {
-    status = scree_motion_read(beside, &p->motion, p->pack.error);
-    if (status != SCREE_OK || ends_with(p)) return status;
+    SCREE_TRY(scree_motion_read(beside, &p->motion, p->pack.error));
+    if (ends_with(p)) return SCREE_OK;
     scree_motion_free(&p->motion);
   }
   return still(p);
@@ -117,13 +117,10 @@ static scree_status drawn_surface(pile *p, scree_particle *particle, size_t targ
   const scree_mesh *own = scree_particle_mesh(particle);
   if (own->triangle_count <= target) return scree_mesh_copy(own, mesh, p->pack.error);
   scree_simplify_options options = scree_default_simplify_options();
-  scree_curve *curve = NULL;
+  SCREE_OWNED(scree_curve, curve);
   options.stop_count = target;
-  scree_status status = scree_curve_build(own, &options, NULL, &curve, p->pack.error);
-  if (status == SCREE_OK)
-    status = scree_curve_mesh(curve, scree_curve_find(curve, target), mesh, p->pack.error);
-  scree_curve_free(curve);
-  return status;
+  SCREE_TRY(scree_curve_build(own, &options, NULL, &curve, p->pack.error));
+  return scree_curve_mesh(curve, scree_curve_find(curve, target), mesh, p->pack.error);
 }
 
 static void put_name(scree_packing *p, const char *name) {
@@ -141,9 +138,8 @@ static void put_grid(scree_packing *p) {
 /* A surface with the grid that its vertices lie on. */
 static scree_status put_surface(pile *p, const char *name, size_t triangle_count,
                                 const scree_mesh *mesh) {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (size_t v = 0; v < mesh->vertex_count; v++)
-    scree_pack_stretch(mesh->positions + 3 * v, low, high);
+  double low[3], high[3];
+  scree_pack_box(mesh, low, high);
   scree_pack_grid(&p->pack, low, high);
   put_name(&p->pack, name);
   scree_pack_u32(&p->pack, triangle_count);
@@ -162,8 +158,8 @@ static scree_status put_map(pile *p, size_t wall, scree_wall_map map, double *va
     if (isnan(values[t])) return SCREE_OK;
     low = fmin(low, values[t]), high = fmax(high, values[t]);
   }
-  uint16_t(*steps)[2] = scree_alloc_zero(triangles, sizeof *steps); /* the codec wants 4 bytes */
-  if (!steps) return scree_fail_memory(p->pack.error, triangles * sizeof *steps, "a wall's map");
+  typedef uint16_t pair[2]; /* the codec wants 4 bytes */
+  SCREE_SCRATCH_ZERO(pair, steps, triangles, p->pack.error);
   for (size_t t = 0; high > low && t < triangles; t++)
     steps[t][0] =
         (uint16_t)lrint(65535 * (values[cells == triangles ? t : 0] - low) / (high - low));
@@ -171,25 +167,20 @@ static scree_status put_map(pile *p, size_t wall, scree_wall_map map, double *va
   put_name(&p->pack, scree_wall_map_unit(map));
   scree_code_real(&p->pack.out, &low);
   scree_code_real(&p->pack.out, &high);
-  scree_status status = scree_pack_vertices(&p->pack, steps, triangles, sizeof *steps);
-  scree_free(steps);
   (*count)++;
-  return status;
+  return scree_pack_vertices(&p->pack, steps, triangles, sizeof *steps);
 }
 
 /* Their number stands before them. */
 static scree_status put_maps(pile *p, size_t wall, size_t triangles) {
   const size_t at = p->pack.out.count, cells = scree_scene_wall_cells(p->scene, wall);
   size_t count = 0;
-  scree_status status = SCREE_OK;
-  double *values = scree_alloc(cells, sizeof *values);
-  if (!values) return scree_fail_memory(p->pack.error, cells * sizeof *values, "a wall's map");
+  SCREE_SCRATCH(double, values, cells, p->pack.error);
   scree_pack_u32(&p->pack, 0);
-  for (int m = 0; status == SCREE_OK && m < SCREE_MAP_COUNT; m++)
-    status = put_map(p, wall, (scree_wall_map)m, values, triangles, &count);
+  for (int m = 0; m < SCREE_MAP_COUNT; m++)
+    SCREE_TRY(put_map(p, wall, (scree_wall_map)m, values, triangles, &count));
   if (scree_codec_good(&p->pack.out)) p->pack.out.bytes[at] = (unsigned char)count;
-  scree_free(values);
-  return status;
+  return SCREE_OK;
 }
 
 /* What of a cylinder stands above all bodies ever is not drawn: it may be very long. */
@@ -207,25 +198,23 @@ static void cut_off(const pile *p, const scree_wall *wall, scree_mesh *mesh) {
 /* The walls: those that are drawn smaller than the whole, then planes, are told apart by
  * whether they count where the view is fitted. */
 static scree_status put_walls(pile *p) {
-  scree_status status = SCREE_OK;
   scree_pack_u32(&p->pack, p->wall_count);
-  for (size_t w = 0; status == SCREE_OK && w < p->wall_count; w++) {
+  for (size_t w = 0; w < p->wall_count; w++) {
     scree_wall wall;
-    scree_mesh mesh = {0};
+    SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
     scree_world_get_wall(p->world, w, &wall);
     bool endless = wall.kind == SCREE_WALL_PLANE || wall.kind == SCREE_WALL_DISC ||
                    (wall.kind == SCREE_WALL_CYLINDER && !(wall.length > 0));
     const char *name = scree_scene_geometry_name(p->scene, scree_scene_wall_geometry(p->scene, w));
     scree_pack_u32(&p->pack, endless);
-    status = scree_wall_mesh(p->world, w, &mesh, p->pack.error);
-    if (wall.kind == SCREE_WALL_CYLINDER && status == SCREE_OK) cut_off(p, &wall, &mesh);
+    SCREE_TRY(scree_wall_mesh(p->world, w, &mesh, p->pack.error));
+    if (wall.kind == SCREE_WALL_CYLINDER) cut_off(p, &wall, &mesh);
     p->pack.keeps_order = true;
-    if (status == SCREE_OK) status = put_surface(p, name, mesh.triangle_count, &mesh);
-    if (status == SCREE_OK) status = put_maps(p, w, mesh.triangle_count);
+    SCREE_TRY(put_surface(p, name, mesh.triangle_count, &mesh));
+    SCREE_TRY(put_maps(p, w, mesh.triangle_count));
     p->pack.keeps_order = false;
-    scree_mesh_free(&mesh);
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status put_shapes(pile *p) {
@@ -234,29 +223,23 @@ static scree_status put_shapes(pile *p) {
   target = target < LEAST_SHAPE ? LEAST_SHAPE : target > MOST_SHAPE ? MOST_SHAPE : target;
   while (scree_scene_shape_name(p->scene, shapes)) shapes++;
   scree_pack_u32(&p->pack, shapes);
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < shapes; i++) {
+  for (size_t i = 0; i < shapes; i++) {
     scree_particle *particle = scree_scene_shape_particle(p->scene, i);
     scree_particle_measures m;
-    scree_mesh mesh = {0};
+    SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
     scree_particle_measure(particle, &m);
-    status = drawn_surface(p, particle, target, &mesh);
-    if (status == SCREE_OK)
-      status = put_surface(p, scree_scene_shape_name(p->scene, i), m.triangle_count, &mesh);
-    scree_mesh_free(&mesh);
+    SCREE_TRY(drawn_surface(p, particle, target, &mesh));
+    SCREE_TRY(put_surface(p, scree_scene_shape_name(p->scene, i), m.triangle_count, &mesh));
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status put_bodies(pile *p) {
   size_t bodies = p->motion.body_count - p->wall_count;
-  uint32_t *shape = scree_alloc(bodies, sizeof *shape);
-  if (!shape) return scree_fail_memory(p->pack.error, bodies * sizeof *shape, "a pile");
+  SCREE_SCRATCH(uint32_t, shape, bodies, p->pack.error);
   for (size_t b = 0; b < bodies; b++) shape[b] = (uint32_t)scree_scene_body_shape(p->scene, b);
   scree_pack_u32(&p->pack, bodies);
-  scree_status status = scree_pack_vertices(&p->pack, shape, bodies, sizeof *shape);
-  scree_free(shape);
-  return status;
+  return scree_pack_vertices(&p->pack, shape, bodies, sizeof *shape);
 }
 
 /* ---- motion ---- */
@@ -319,12 +302,9 @@ static scree_status put_motion(pile *p, size_t stride) {
         scree_code_real(&p->pack.out, &value);
       }
   size_t bodies = m->body_count - p->wall_count;
-  moment *tracks = scree_alloc(count * bodies, sizeof *tracks);
-  if (!tracks) return scree_fail_memory(p->pack.error, count * bodies * sizeof *tracks, "a motion");
+  SCREE_SCRATCH(moment, tracks, count * bodies, p->pack.error);
   for (size_t b = 0; b < bodies; b++) fill_track(p, b, stride, count, tracks + b * count);
-  scree_status status = scree_pack_vertices(&p->pack, tracks, count * bodies, sizeof *tracks);
-  scree_free(tracks);
-  return status;
+  return scree_pack_vertices(&p->pack, tracks, count * bodies, sizeof *tracks);
 }
 
 static scree_status pack(pile *p, size_t byte_limit) {
@@ -344,22 +324,21 @@ static scree_status pack(pile *p, size_t byte_limit) {
   return SCREE_OK;
 }
 
+static void free_pile(pile *p) {
+  scree_motion_free(&p->motion);
+  scree_scene_free(p->scene);
+  scree_free(p->pack.out.bytes);
+}
+
 scree_status scree_pile_pack(const char *path, size_t byte_limit, unsigned char **bytes,
                              size_t *byte_count, scree_error *error) {
-  pile p = {.pack = {.error = error}};
-  if (!scree_path_exists(path)) {
-    *bytes = NULL;
-    return SCREE_OK;
-  }
-  scree_status status = load(&p, path);
-  if (status == SCREE_OK) status = pack(&p, byte_limit);
-  scree_motion_free(&p.motion);
-  scree_scene_free(p.scene);
-  if (status == SCREE_OK) {
-    *bytes = p.pack.out.bytes;
-    *byte_count = p.pack.out.count;
-  } else {
-    scree_free(p.pack.out.bytes);
-  }
-  return status;
+  SCREE_CLEANUP(free_pile) pile p = {.pack = {.error = error}};
+  *bytes = NULL;
+  if (!scree_path_exists(path)) return SCREE_OK;
+  SCREE_TRY(load(&p, path));
+  SCREE_TRY(pack(&p, byte_limit));
+  *bytes = p.pack.out.bytes;
+  *byte_count = p.pack.out.count;
+  p.pack.out.bytes = NULL;
+  return SCREE_OK;
 }

@@ -126,11 +126,15 @@ static void star(cairo_t *cr, double x, double y, double radius) {
   cairo_close_path(cr);
 }
 
+static void line(cairo_t *cr, double x0, double y0, double x1, double y1) {
+  cairo_move_to(cr, x0, y0);
+  cairo_line_to(cr, x1, y1);
+}
+
 static void strokes(cairo_t *cr, double x, double y, double r, double turn) {
   for (int i = 0; i < 2; i++) {
     double angle = turn + acos(-1) / 2 * i;
-    cairo_move_to(cr, x - r * sin(angle), y + r * cos(angle));
-    cairo_line_to(cr, x + r * sin(angle), y - r * cos(angle));
+    line(cr, x - r * sin(angle), y + r * cos(angle), x + r * sin(angle), y - r * cos(angle));
   }
 }
 
@@ -252,12 +256,9 @@ static void draw_bars(cairo_t *cr, const frame *f, const scree_series *series) {
     if (!drawable(f, series->x[i], series->high[i]) || !isfinite(series->low[i])) continue;
     double x = frame_x(f, series->x[i]), top = frame_y(f, series->high[i]),
            bottom = floor_y(f, series->low[i]);
-    cairo_move_to(cr, x, top);
-    cairo_line_to(cr, x, bottom);
-    cairo_move_to(cr, x - MARKER, top);
-    cairo_line_to(cr, x + MARKER, top);
-    cairo_move_to(cr, x - MARKER, bottom);
-    cairo_line_to(cr, x + MARKER, bottom);
+    line(cr, x, top, x, bottom);
+    line(cr, x - MARKER, top, x + MARKER, top);
+    line(cr, x - MARKER, bottom, x + MARKER, bottom);
   }
   cairo_stroke(cr);
 }
@@ -292,42 +293,35 @@ static void draw_series(cairo_t *cr, const frame *f, const scree_panel *panel) {
 static void draw_grid(cairo_t *cr, const frame *f, const scree_ticks *x, const scree_ticks *y) {
   cairo_set_source_rgb(cr, 0.91, 0.91, 0.91);
   cairo_set_line_width(cr, 0.5);
-  for (size_t i = 0; i < x->count; i++)
-    if (x->label[i][0]) {
-      cairo_move_to(cr, frame_x(f, x->value[i]), f->y);
-      cairo_line_to(cr, frame_x(f, x->value[i]), f->y + f->height);
-    }
-  for (size_t i = 0; i < y->count; i++)
-    if (y->label[i][0]) {
-      cairo_move_to(cr, f->x, frame_y(f, y->value[i]));
-      cairo_line_to(cr, f->x + f->width, frame_y(f, y->value[i]));
-    }
+  for (size_t i = 0; i < x->count; i++) {
+    double at = frame_x(f, x->value[i]);
+    if (x->label[i][0]) line(cr, at, f->y, at, f->y + f->height);
+  }
+  for (size_t i = 0; i < y->count; i++) {
+    double at = frame_y(f, y->value[i]);
+    if (y->label[i][0]) line(cr, f->x, at, f->x + f->width, at);
+  }
   cairo_stroke(cr);
 }
 
-static void draw_x_ticks(cairo_t *cr, const frame *f, const scree_ticks *ticks) {
+static void draw_ticks(cairo_t *cr, const frame *f, const scree_ticks *ticks, bool is_y) {
+  double right = f->x + f->width, bottom = f->y + f->height;
   for (size_t i = 0; i < ticks->count; i++) {
-    double x = frame_x(f, ticks->value[i]), length = ticks->label[i][0] ? MAJOR_TICK : MINOR_TICK;
-    double bottom = f->y + f->height;
-    cairo_move_to(cr, x, bottom);
-    cairo_line_to(cr, x, bottom - length);
-    cairo_move_to(cr, x, f->y);
-    cairo_line_to(cr, x, f->y + length);
+    const char *label = ticks->label[i];
+    double length = *label ? MAJOR_TICK : MINOR_TICK, at = ticks->value[i];
+    at = is_y ? frame_y(f, at) : frame_x(f, at);
+    if (is_y) {
+      line(cr, f->x, at, f->x + length, at);
+      line(cr, right, at, right - length, at);
+    } else {
+      line(cr, at, bottom, at, bottom - length);
+      line(cr, at, f->y, at, f->y + length);
+    }
     cairo_stroke(cr);
-    if (ticks->label[i][0]) scree_text_draw(cr, ticks->label[i], SMALL_FONT, x, bottom + 13, 0.5);
-  }
-}
-
-static void draw_y_ticks(cairo_t *cr, const frame *f, const scree_ticks *ticks) {
-  for (size_t i = 0; i < ticks->count; i++) {
-    double y = frame_y(f, ticks->value[i]), length = ticks->label[i][0] ? MAJOR_TICK : MINOR_TICK;
-    cairo_move_to(cr, f->x, y);
-    cairo_line_to(cr, f->x + length, y);
-    cairo_move_to(cr, f->x + f->width, y);
-    cairo_line_to(cr, f->x + f->width - length, y);
-    cairo_stroke(cr);
-    if (ticks->label[i][0])
-      scree_text_draw(cr, ticks->label[i], SMALL_FONT, f->x - 5, y + 0.35 * SMALL_FONT, 1);
+    if (*label && is_y)
+      scree_text_draw(cr, label, SMALL_FONT, f->x - 5, at + 0.35 * SMALL_FONT, 1);
+    else if (*label)
+      scree_text_draw(cr, label, SMALL_FONT, at, bottom + 13, 0.5);
   }
 }
 
@@ -356,8 +350,7 @@ static void draw_guides(cairo_t *cr, const frame *f, const scree_panel *panel) {
     cairo_set_dash(cr, dashes, 2, 0);
     double x = guide->across ? f->x : frame_x(f, guide->value);
     double y = guide->across ? frame_y(f, guide->value) : f->y;
-    cairo_move_to(cr, x, y);
-    cairo_line_to(cr, guide->across ? f->x + f->width : x, guide->across ? y : f->y + f->height);
+    line(cr, x, y, guide->across ? f->x + f->width : x, guide->across ? y : f->y + f->height);
     cairo_stroke(cr);
     cairo_set_dash(cr, NULL, 0, 0);
     /* above the frame, where no data is, and clear of the title; a line across carries its word
@@ -391,8 +384,8 @@ static void draw_panel(cairo_t *cr, const scree_panel *panel, const double cell[
   cairo_set_line_width(cr, 0.8);
   cairo_rectangle(cr, f.x, f.y, f.width, f.height);
   cairo_stroke(cr);
-  draw_x_ticks(cr, &f, &x_ticks);
-  draw_y_ticks(cr, &f, &y_ticks);
+  draw_ticks(cr, &f, &x_ticks, false);
+  draw_ticks(cr, &f, &y_ticks, true);
   draw_labels(cr, &f, panel);
 }
 
@@ -417,8 +410,7 @@ static void draw_entry(cairo_t *cr, const scree_series *series, double x, double
   }
   if (series->draw & SCREE_DRAW_LINE) {
     set_line(cr, series);
-    cairo_move_to(cr, x, middle);
-    cairo_line_to(cr, x + LEGEND_SAMPLE - 6, middle);
+    line(cr, x, middle, x + LEGEND_SAMPLE - 6, middle);
     cairo_stroke(cr);
     cairo_set_dash(cr, NULL, 0, 0);
   }

@@ -103,8 +103,7 @@ static void frame_bodies(view *v) {
 
 static scree_status add_item(view *v, const scree_render_item *item, scree_error *error) {
   size_t count = item->mesh->vertex_count;
-  float *positions = scree_alloc(3 * count, sizeof *positions);
-  if (!positions) return scree_fail_memory(error, 12 * count, "a picture's vertices");
+  SCREE_SCRATCH(float, positions, 3 * count, error);
   mat3 rotation = quat_to_mat3(item_rotation(item));
   for (size_t j = 0; j < count; j++) {
     vec3 p = vec3_scale(vec3_sub(item_point(item, &rotation, j), v->centre), v->scale);
@@ -112,10 +111,8 @@ static scree_status add_item(view *v, const scree_render_item *item, scree_error
     positions[3 * j + 1] = (float)p.y;
     positions[3 * j + 2] = (float)p.z;
   }
-  scree_status status = scree_ray_scene_add(v->scene, positions, count, item->mesh->triangles,
-                                            item->mesh->triangle_count, error);
-  scree_free(positions);
-  return status;
+  return scree_ray_scene_add(v->scene, positions, count, item->mesh->triangles,
+                             item->mesh->triangle_count, error);
 }
 
 static scree_status add_ground(view *v, scree_error *error) {
@@ -127,13 +124,12 @@ static scree_status add_ground(view *v, scree_error *error) {
 }
 
 static scree_status build_scene(view *v, scree_error *error) {
-  scree_status status = scree_ray_scene_create(&v->scene, error);
-  for (size_t i = 0; status == SCREE_OK && i < v->cell->item_count; i++)
-    status = add_item(v, &v->cell->items[i], error);
+  SCREE_TRY(scree_ray_scene_create(&v->scene, error));
+  for (size_t i = 0; i < v->cell->item_count; i++)
+    SCREE_TRY(add_item(v, &v->cell->items[i], error));
   v->ground_item = SIZE_MAX;
-  if (status == SCREE_OK && v->options->ground && !v->options->wire) status = add_ground(v, error);
-  if (status == SCREE_OK) status = scree_ray_scene_commit(v->scene, error);
-  return status;
+  if (v->options->ground && !v->options->wire) SCREE_TRY(add_ground(v, error));
+  return scree_ray_scene_commit(v->scene, error);
 }
 
 static const double degree = 0.017453292519943295;
@@ -365,17 +361,16 @@ scree_status scree_render(const scree_render_cell *cells, size_t cell_count,
                           scree_image *image, scree_error *error) {
   const scree_render_options defaults = scree_default_render_options();
   if (!options) options = &defaults;
-  scree_status status = check_options(options, cell_count, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(check_options(options, cell_count, error));
   size_t bytes = 3 * options->width * options->height;
-  scree_image made = {options->width, options->height, scree_alloc(bytes, 1)};
-  if (!made.pixels) return scree_fail_memory(error, bytes, "a picture");
+  SCREE_CLEANUP(scree_image_free) scree_image made = {options->width, options->height, NULL};
+  SCREE_TRY_ALLOC(made.pixels, bytes, error);
   memset(made.pixels, 255, bytes);
   size_t columns = options->columns ? options->columns : choose_columns(cell_count, options);
   size_t rows = (cell_count + columns - 1) / columns;
   scree_ticker ticker = {.progress = progress};
   size_t pitch_x = options->width / columns, pitch_y = options->height / rows;
-  for (size_t i = 0; status == SCREE_OK && i < cell_count; i++) {
+  for (size_t i = 0; i < cell_count; i++) {
     view v = {.cell = &cells[i], .options = options, .image = &made, .seed = 1};
     size_t below = cells[i].caption ? CAPTION_PX : 0;
     size_t gap = cell_count > 1 ? GAP_PX : 0;
@@ -383,17 +378,14 @@ scree_status scree_render(const scree_render_cell *cells, size_t cell_count,
     v.y = i / columns * pitch_y;
     v.width = pitch_x - gap;
     v.height = pitch_y > below + gap + 8 ? pitch_y - below - gap : 8;
-    status =
-        render_cell(&v, &ticker, (double)i / (double)cell_count, 1 / (double)cell_count, error);
-    if (status == SCREE_OK && cells[i].caption)
-      status =
-          scree_image_caption(&made, cells[i].caption, v.x, v.y + v.height, v.width, below, error);
+    SCREE_TRY(
+        render_cell(&v, &ticker, (double)i / (double)cell_count, 1 / (double)cell_count, error));
+    if (cells[i].caption)
+      SCREE_TRY(
+          scree_image_caption(&made, cells[i].caption, v.x, v.y + v.height, v.width, below, error));
   }
-  if (status == SCREE_OK && options->value_label)
-    status = scree_image_scale_bar(&made, options, error);
-  if (status == SCREE_OK)
-    *image = made;
-  else
-    scree_image_free(&made);
-  return status;
+  if (options->value_label) SCREE_TRY(scree_image_scale_bar(&made, options, error));
+  *image = made;
+  made.pixels = NULL;
+  return SCREE_OK;
 }

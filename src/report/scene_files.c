@@ -20,12 +20,10 @@ static void json_book(scree_json *json, const scree_scene *scene) {
 
 static void json_changes(scree_json *json, const scree_scene *scene) {
   size_t count = scree_scene_change_count(scene);
-  scree_json_array(json, "changes");
-  for (size_t i = 0; i < count; i++) {
+  SCREE_JSON_LIST (json, "changes", i, count) {
     scree_scene_change_entry c = scree_scene_change_at(scene, i);
     SCREE_JSON_ROW(json, NULL, &c, time, field, was, is);
   }
-  scree_json_end(json);
 }
 
 static void json_pile(scree_json *json, const char *name, const scree_pile_settings *settings,
@@ -62,17 +60,13 @@ static scree_status json_residences(scree_json *json, const scree_scene *scene,
     scree_json_object(json, NULL);
     scree_json_text(json, "name", scree_scene_residence_name(scene, i));
     SCREE_JSON_MEMBERS(json, &r, from, until);
-    scree_json_array(json, "classes");
-    for (size_t c = 0; c < r.class_count; c++) {
+    SCREE_JSON_LIST (json, "classes", c, r.class_count) {
       scree_json_row_object(json, NULL);
       scree_json_text(json, "name", scree_scene_residence_class(scene, i, c));
-      scree_json_row_array(json, "counts");
-      for (size_t b = 0; b < r.bin_count; b++)
+      SCREE_JSON_ROW_LIST (json, "counts", b, r.bin_count)
         scree_json_number(json, NULL, r.counts[c * r.bin_count + b]);
       scree_json_end(json);
-      scree_json_end(json);
     }
-    scree_json_end(json);
     scree_json_end(json);
     scree_residence_free(&r);
   }
@@ -137,20 +131,17 @@ static void json_parts(scree_json *json, const scree_scene *scene) {
 static void json_columns(scree_json *json, const scree_scene *scene, const double *last) {
   size_t rows, columns = scree_scene_column_count(scene);
   const double *series = scree_scene_series(scene, &rows);
-  scree_json_array(json, "columns");
-  for (size_t k = 0; k < columns; k++) {
+  SCREE_JSON_LIST (json, "columns", k, columns) {
     scree_scene_summary s = scree_scene_summarise(scene, k, NAN, NAN);
     scree_json_object(json, NULL);
     scree_json_text(json, "name", scree_scene_column_name(scene, k));
     scree_json_text(json, "unit", scree_scene_column_unit(scene, k));
     scree_json_number(json, "last", rows ? s.last : last[k]);
     SCREE_JSON_MEMBERS(json, &s, mean, sd, least, greatest, from, until);
-    scree_json_row_array(json, "values");
-    for (size_t i = 0; i < rows; i++) scree_json_number(json, NULL, series[i * columns + k]);
-    scree_json_end(json);
+    SCREE_JSON_ROW_LIST (json, "values", i, rows)
+      scree_json_number(json, NULL, series[i * columns + k]);
     scree_json_end(json);
   }
-  scree_json_end(json);
 }
 
 static scree_status write_scene(FILE *stream, const scree_scene_entry *entry, const double *last,
@@ -180,35 +171,20 @@ static scree_status write_scene(FILE *stream, const scree_scene_entry *entry, co
   return status;
 }
 
-static scree_status measure_piles(const scree_scene_entry *entry, scree_pile **piles,
-                                  scree_error *error) {
-  size_t count = 0;
-  while (scree_scene_pile_name(entry->scene, count)) count++;
-  *piles = scree_alloc_zero(count, sizeof **piles);
-  if (!*piles) return scree_fail_memory(error, count * sizeof **piles, "a scene's piles");
-  for (size_t i = 0; i < count; i++)
-    SCREE_TRY(scree_scene_measure_pile(entry->scene, i, entry->measure, &(*piles)[i], error));
-  return SCREE_OK;
-}
-
 scree_status scree_scene_json_write(const scree_scene_entry *entry, const char *path,
                                     bool overwrite, scree_error *error) {
-  double *last = scree_alloc(scree_scene_column_count(entry->scene), sizeof *last);
-  scree_pile *piles = NULL;
+  size_t pile_count = 0;
+  while (scree_scene_pile_name(entry->scene, pile_count)) pile_count++;
+  SCREE_SCRATCH(double, last, scree_scene_column_count(entry->scene), error);
+  SCREE_SCRATCH_ZERO(scree_pile, piles, pile_count, error);
+  SCREE_TRY(scree_scene_measure(entry->scene, last, error));
+  for (size_t i = 0; i < pile_count; i++)
+    SCREE_TRY(scree_scene_measure_pile(entry->scene, i, entry->measure, &piles[i], error));
   scree_output output;
-  scree_status status = last ? scree_scene_measure(entry->scene, last, error)
-                             : scree_fail_memory(error, 0, "a scene's numbers");
-  if (status == SCREE_OK) status = measure_piles(entry, &piles, error);
-  if (status == SCREE_OK) status = scree_output_open(path, overwrite, &output, error);
-  if (status == SCREE_OK) {
-    status = write_scene(output.stream, entry, last, piles, error);
-    if (status == SCREE_OK)
-      status = scree_output_commit(&output, error);
-    else
-      scree_output_discard(&output);
-  }
-  scree_free(piles);
-  scree_free(last);
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
+  scree_status status = write_scene(output.stream, entry, last, piles, error);
+  if (status == SCREE_OK) return scree_output_commit(&output, error);
+  scree_output_discard(&output);
   return status;
 }
 

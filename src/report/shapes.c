@@ -47,17 +47,11 @@ static size_t slot_of(const scree_particle *particle, size_t mask) {
 
 scree_status scree_shapes_find(const scree_world *world, scree_shapes *shapes, scree_error *error) {
   size_t bodies = scree_world_body_count(world), mask = 15;
-  scree_shapes found = {0};
-  size_t *slots = NULL; /* 1 + shape; 0: free */
+  SCREE_CLEANUP(scree_shapes_free) scree_shapes found = {0};
   while (mask < 2 * bodies) mask = 2 * mask + 1;
-  slots = scree_alloc_zero(mask + 1, sizeof *slots);
-  found.particles = scree_alloc(bodies, sizeof(scree_particle *));
-  found.of_body = scree_alloc(bodies, sizeof *found.of_body);
-  if (!slots || !found.particles || !found.of_body) {
-    scree_free(slots);
-    scree_shapes_free(&found);
-    return scree_fail_memory(error, bodies * sizeof *slots, "the shapes of a world");
-  }
+  SCREE_SCRATCH_ZERO(size_t, slots, mask + 1, error); /* 1 + shape; 0: free */
+  SCREE_TRY_ALLOC(found.particles, bodies, error);
+  SCREE_TRY_ALLOC(found.of_body, bodies, error);
   for (size_t i = 0; i < bodies; i++) {
     scree_particle *particle = scree_world_body_particle(world, i);
     size_t slot = slot_of(particle, mask);
@@ -68,17 +62,22 @@ scree_status scree_shapes_find(const scree_world *world, scree_shapes *shapes, s
     }
     found.of_body[i] = slots[slot] - 1;
   }
-  scree_free(slots);
   *shapes = found;
+  found = (scree_shapes){0};
   return SCREE_OK;
 }
 
 scree_particle *scree_world_shape(const scree_world *world, size_t shape) {
-  scree_shapes shapes;
+  SCREE_CLEANUP(scree_shapes_free) scree_shapes shapes = {0};
   if (scree_shapes_find(world, &shapes, NULL) != SCREE_OK) return NULL;
-  scree_particle *particle = shape < shapes.count ? shapes.particles[shape] : NULL;
-  scree_shapes_free(&shapes);
-  return particle;
+  return shape < shapes.count ? shapes.particles[shape] : NULL;
+}
+
+size_t scree_world_live_count(const scree_world *world) {
+  size_t count = 0;
+  for (size_t i = 0; i < scree_world_body_count(world); i++)
+    count += !scree_world_body_removed(world, i);
+  return count;
 }
 
 /* ---- spheres as meshes ---- */
@@ -88,12 +87,10 @@ static scree_status mesh_of_spheres(const scree_particle *particle, size_t spher
                                     const scree_mesh *unit, scree_mesh *mesh, scree_error *error) {
   size_t vertices = sphere_count * unit->vertex_count,
          triangles = sphere_count * unit->triangle_count;
-  scree_mesh made = {scree_alloc(3 * vertices, sizeof *made.positions),
-                     scree_alloc(3 * triangles, sizeof *made.triangles), vertices, triangles};
-  if (!made.positions || !made.triangles) {
-    scree_mesh_free(&made);
-    return scree_fail_memory(error, 24 * vertices, "the spheres of a picture");
-  }
+  SCREE_CLEANUP(scree_mesh_free)
+  scree_mesh made = {.vertex_count = vertices, .triangle_count = triangles};
+  SCREE_TRY_ALLOC(made.positions, 3 * vertices, error);
+  SCREE_TRY_ALLOC(made.triangles, 3 * triangles, error);
   for (size_t k = 0; k < sphere_count; k++) {
     double centre[3], radius;
     scree_particle_point(particle, k, centre, &radius);
@@ -107,18 +104,17 @@ static scree_status mesh_of_spheres(const scree_particle *particle, size_t spher
           unit->triangles[i] + (uint32_t)(k * unit->vertex_count);
   }
   *mesh = made;
+  made = (scree_mesh){0};
   return SCREE_OK;
 }
 
 scree_status scree_spheres_mesh(const scree_particle *particle, int level, scree_mesh *mesh,
                                 scree_error *error) {
-  scree_mesh unit = {0};
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh unit = {0};
   scree_particle_measures m;
   char name[16];
   snprintf(name, sizeof name, "icosphere-%d", level);
   scree_particle_measure(particle, &m);
-  scree_status status = scree_sample_make(name, NULL, NULL, &unit, error);
-  if (status == SCREE_OK) status = mesh_of_spheres(particle, m.point_count, &unit, mesh, error);
-  scree_mesh_free(&unit);
-  return status;
+  SCREE_TRY(scree_sample_make(name, NULL, NULL, &unit, error));
+  return mesh_of_spheres(particle, m.point_count, &unit, mesh, error);
 }

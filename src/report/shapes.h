@@ -12,6 +12,9 @@ typedef struct scree_shapes {
 scree_status scree_shapes_find(const scree_world *world, scree_shapes *shapes, scree_error *error);
 void scree_shapes_free(scree_shapes *shapes);
 
+/* Bodies that are in the world. */
+size_t scree_world_live_count(const scree_world *world);
+
 /* Shapes told apart by colour, in pictures and on the page: shape k has colour k modulo their
  * number. */
 enum { SCREE_SHAPE_COLORS = 9 };

@@ -125,17 +125,11 @@ static void put_result(scree_json *json, const void *result) {
   scree_json_object(json, "units");
   for (size_t k = 0; k < r->answer_count; k++) scree_json_text(json, r->answers[k], r->units[k]);
   scree_json_end(json);
-  scree_json_array(json, "points");
-  for (size_t i = 0; i < r->point_count; i++) put_point(json, r, &r->points[i]);
-  scree_json_end(json);
-  scree_json_array(json, "families");
-  for (size_t i = 0; i < r->family_count; i++) put_family(json, r, &r->families[i]);
-  scree_json_end(json);
-  scree_json_array(json, "failures");
-  for (size_t i = 0; i < r->failure_count; i++) {
+  SCREE_JSON_LIST (json, "points", i, r->point_count) put_point(json, r, &r->points[i]);
+  SCREE_JSON_LIST (json, "families", i, r->family_count) put_family(json, r, &r->families[i]);
+  SCREE_JSON_LIST (json, "failures", i, r->failure_count) {
     SCREE_JSON_ROW(json, NULL, &r->failures[i], label, replicate, reason);
   }
-  scree_json_end(json);
   scree_json_end(json);
 }
 
@@ -155,10 +149,7 @@ static bool any_has(const scree_study_result *r, size_t which) {
 
 static void csv_summary(FILE *stream, const scree_summary *s) {
   const double values[] = {s->mean, s->mean_low, s->mean_high, s->sd, s->sd_low, s->sd_high, s->cv};
-  for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
-    putc(',', stream);
-    scree_csv_number(stream, values[i]);
-  }
+  scree_csv_numbers(stream, values, sizeof values / sizeof *values);
 }
 
 /* Factors that have no column of their own. */

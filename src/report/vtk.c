@@ -1,5 +1,6 @@
 /* VTK XML PolyData with raw appended data: each array is a 64-bit byte count followed by its bytes,
  * at the offset that its element names. The byte order is stated, so nothing is swapped. */
+#include "report/vtk.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "report/json.h"
@@ -21,23 +22,14 @@ typedef struct writer {
 } writer;
 
 static void write_escaped(FILE *stream, const char *text) {
+  static const char *const entities[] = {
+      ['&'] = "&amp;", ['<'] = "&lt;", ['>'] = "&gt;", ['"'] = "&quot;"};
   for (; *text; text++) {
-    switch (*text) {
-    case '&':
-      fputs("&amp;", stream);
-      break;
-    case '<':
-      fputs("&lt;", stream);
-      break;
-    case '>':
-      fputs("&gt;", stream);
-      break;
-    case '"':
-      fputs("&quot;", stream);
-      break;
-    default:
-      if ((unsigned char)*text >= 32) fputc(*text, stream);
-    }
+    size_t c = (unsigned char)*text;
+    if (c < sizeof entities / sizeof *entities && entities[c])
+      fputs(entities[c], stream);
+    else if (c >= 32)
+      fputc(*text, stream);
   }
 }
 
@@ -50,12 +42,23 @@ static void declare(writer *w, const char *name, scree_vtk_type type, size_t com
   w->offset += 8 + (uint64_t)types[type].size * components * count;
 }
 
-static void declare_all(writer *w, const char *element, const scree_vtk_array *arrays,
-                        size_t array_count, size_t count) {
-  fprintf(w->stream, "      <%s>\n", element);
-  for (size_t i = 0; i < array_count; i++)
-    declare(w, arrays[i].name, arrays[i].type, arrays[i].component_count, count);
-  fprintf(w->stream, "      </%s>\n", element);
+/* What stands over the points, or over the cells: arrays, and columns of rows where they do. */
+typedef struct fields {
+  const char *element;
+  const scree_vtk_array *arrays;
+  size_t array_count, count;
+  const scree_vtk_rows *rows; /* NULL: none */
+} fields;
+
+static void declare_all(writer *w, const fields *f) {
+  fprintf(w->stream, "      <%s>\n", f->element);
+  for (size_t i = 0; i < f->array_count; i++)
+    declare(w, f->arrays[i].name, f->arrays[i].type, f->arrays[i].component_count, f->count);
+  for (size_t i = 0; f->rows && i < f->rows->member_count; i++) {
+    const scree_vtk_member *m = &f->rows->members[i];
+    declare(w, m->name, m->type, m->component_count, f->count);
+  }
+  fprintf(w->stream, "      </%s>\n", f->element);
 }
 
 static void append(writer *w, const void *values, uint64_t byte_count) {
@@ -63,32 +66,31 @@ static void append(writer *w, const void *values, uint64_t byte_count) {
   fwrite(values, 1, byte_count, w->stream);
 }
 
-static void append_all(writer *w, const scree_vtk_array *arrays, size_t array_count, size_t count) {
-  for (size_t i = 0; i < array_count; i++)
-    append(w, arrays[i].values,
-           (uint64_t)types[arrays[i].type].size * arrays[i].component_count * count);
-}
-
-/* The corners of the cells as 64-bit indices; NULL corners stand for 0, 1, 2, ... */
-static void append_connectivity(writer *w, const uint32_t *corners, size_t count) {
-  uint64_t byte_count = 8 * (uint64_t)count;
-  int64_t chunk[CHUNK];
-  fwrite(&byte_count, sizeof byte_count, 1, w->stream);
-  for (size_t begin = 0; begin < count; begin += CHUNK) {
-    size_t n = count - begin < CHUNK ? count - begin : CHUNK;
-    for (size_t i = 0; i < n; i++) chunk[i] = corners ? corners[begin + i] : (int64_t)(begin + i);
-    fwrite(chunk, sizeof *chunk, n, w->stream);
+static void append_all(writer *w, const fields *f) {
+  for (size_t i = 0; i < f->array_count; i++)
+    append(w, f->arrays[i].values,
+           (uint64_t)types[f->arrays[i].type].size * f->arrays[i].component_count * f->count);
+  for (size_t i = 0; f->rows && i < f->rows->member_count; i++) {
+    const scree_vtk_member *m = &f->rows->members[i];
+    const char *at = (const char *)f->rows->rows + m->offset;
+    size_t size = types[m->type].size * m->component_count;
+    uint64_t byte_count = (uint64_t)size * f->count;
+    fwrite(&byte_count, sizeof byte_count, 1, w->stream);
+    for (size_t k = 0; k < f->count; k++, at += f->rows->row_bytes) fwrite(at, size, 1, w->stream);
   }
 }
 
-/* Where each cell ends: step, 2 step, 3 step, ... */
-static void append_offsets(writer *w, size_t count, size_t step) {
+/* 64-bit indices of points: the corners of cells, or 1, 2, 3, ... times a step, less what is to be
+ * taken off: where each cell ends; or, of step 1 less 1, the points themselves. */
+static void append_indices(writer *w, const uint32_t *corners, size_t count, int64_t step,
+                           int64_t less) {
   uint64_t byte_count = 8 * (uint64_t)count;
   int64_t chunk[CHUNK];
   fwrite(&byte_count, sizeof byte_count, 1, w->stream);
   for (size_t begin = 0; begin < count; begin += CHUNK) {
     size_t n = count - begin < CHUNK ? count - begin : CHUNK;
-    for (size_t i = 0; i < n; i++) chunk[i] = (int64_t)((begin + i + 1) * step);
+    for (size_t i = 0; i < n; i++)
+      chunk[i] = corners ? (int64_t)corners[begin + i] : (int64_t)(begin + i + 1) * step - less;
     fwrite(chunk, sizeof *chunk, n, w->stream);
   }
 }
@@ -105,7 +107,8 @@ static cells cells_of(const scree_vtk_data *data) {
   return (cells){"Verts", NULL, data->bare ? 0 : data->point_count, 1};
 }
 
-static void write_header(writer *w, const scree_vtk_data *data, const cells *c) {
+static void write_header(writer *w, const scree_vtk_data *data, const cells *c,
+                         const fields both[2]) {
   const uint16_t one = 1;
   bool little = *(const uint8_t *)&one == 1;
   fprintf(w->stream,
@@ -126,8 +129,7 @@ static void write_header(writer *w, const scree_vtk_data *data, const cells *c) 
     fprintf(w->stream, " NumberOf%s=\"%zu\"", kinds[i],
             strcmp(kinds[i], c->element) ? 0 : c->count);
   fputs(">\n", w->stream);
-  declare_all(w, "PointData", data->point_arrays, data->point_array_count, data->point_count);
-  declare_all(w, "CellData", data->cell_arrays, data->cell_array_count, c->count);
+  for (int i = 0; i < 2; i++) declare_all(w, &both[i]);
   fputs("      <Points>\n", w->stream);
   declare(w, "Points", data->points_single ? SCREE_VTK_FLOAT32 : SCREE_VTK_FLOAT64, 3,
           data->point_count);
@@ -138,25 +140,34 @@ static void write_header(writer *w, const scree_vtk_data *data, const cells *c) 
           c->element);
 }
 
-scree_status scree_vtp_write(const scree_vtk_data *data, const char *path, bool overwrite,
-                             scree_error *error) {
+scree_status scree_vtp_write_rows(const scree_vtk_data *data, const scree_vtk_rows *rows,
+                                  const char *path, bool overwrite, scree_error *error) {
   scree_output output;
   if (isinf(data->time))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: the time is infinite", path);
   SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   writer w = {output.stream, 0};
   cells c = cells_of(data);
-  write_header(&w, data, &c);
-  append_all(&w, data->point_arrays, data->point_array_count, data->point_count);
-  append_all(&w, data->cell_arrays, data->cell_array_count, c.count);
+  bool of_points = rows && rows->of_points;
+  const fields both[2] = {
+      {"PointData", data->point_arrays, data->point_array_count, data->point_count,
+       of_points ? rows : NULL},
+      {"CellData", data->cell_arrays, data->cell_array_count, c.count, of_points ? NULL : rows}};
+  write_header(&w, data, &c, both);
+  for (int i = 0; i < 2; i++) append_all(&w, &both[i]);
   if (data->points_single)
     append(&w, data->points_single, 12 * (uint64_t)data->point_count);
   else
     append(&w, data->points, 24 * (uint64_t)data->point_count);
-  append_connectivity(&w, c.corners, c.size * c.count);
-  append_offsets(&w, c.count, c.size);
+  append_indices(&w, c.corners, c.size * c.count, 1, 1);
+  append_indices(&w, NULL, c.count, (int64_t)c.size, 0);
   fputs("\n  </AppendedData>\n</VTKFile>\n", w.stream);
   return scree_output_commit(&output, error);
+}
+
+scree_status scree_vtp_write(const scree_vtk_data *data, const char *path, bool overwrite,
+                             scree_error *error) {
+  return scree_vtp_write_rows(data, NULL, path, overwrite, error);
 }
 
 /* ParaView's file series 1.0: names and times as JSON. */
@@ -165,14 +176,12 @@ static void write_series(FILE *stream, const char *const *files, const double *t
   scree_json json = scree_json_start(stream);
   scree_json_object(&json, NULL);
   scree_json_text(&json, "file-series-version", "1.0");
-  scree_json_array(&json, "files");
-  for (size_t i = 0; i < file_count; i++) {
+  SCREE_JSON_LIST (&json, "files", i, file_count) {
     scree_json_row_object(&json, NULL);
     scree_json_text(&json, "name", files[i]);
     scree_json_number(&json, "time", times[i]);
     scree_json_end(&json);
   }
-  scree_json_end(&json);
   scree_json_end(&json);
 }
 

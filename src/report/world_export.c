@@ -13,7 +13,7 @@ typedef struct exporter {
   const scree_world *world;
   const scree_export_options *options;
   const char *folder;
-  scree_shapes shapes;
+  const scree_shapes *shapes;
 } exporter;
 
 static scree_status join(const exporter *e, const char *name, char path[PATH_BYTES],
@@ -39,8 +39,7 @@ static void wall_name(size_t index, char name[64]) {
 }
 
 static void json_spheres(scree_json *json, const scree_particle *particle, size_t count) {
-  scree_json_array(json, "spheres");
-  for (size_t k = 0; k < count; k++) {
+  SCREE_JSON_LIST (json, "spheres", k, count) {
     double centre[3], radius;
     scree_particle_point(particle, k, centre, &radius);
     scree_json_row_object(json, NULL);
@@ -48,12 +47,11 @@ static void json_spheres(scree_json *json, const scree_particle *particle, size_
     scree_json_number(json, "radius", radius);
     scree_json_end(json);
   }
-  scree_json_end(json);
 }
 
 static void json_shape(scree_json *json, const exporter *e, size_t index) {
   static const char *const kinds[] = {"mesh", "sphere", "clump"};
-  const scree_particle *particle = e->shapes.particles[index];
+  const scree_particle *particle = e->shapes->particles[index];
   scree_particle_measures m;
   char name[64];
   scree_particle_measure(particle, &m);
@@ -75,7 +73,7 @@ static void json_body(scree_json *json, const exporter *e, size_t index) {
   scree_world_get_body(e->world, index, &b);
   scree_json_row_object(json, NULL);
   scree_json_count(json, "body", index);
-  scree_json_count(json, "shape", e->shapes.of_body[index]);
+  scree_json_count(json, "shape", e->shapes->of_body[index]);
   scree_json_count(json, "material", scree_world_body_material(e->world, index));
   scree_json_number(json, "mass", scree_world_body_mass(e->world, index));
   scree_json_numbers(json, "position", b.position, 3);
@@ -115,16 +113,10 @@ static void print_json(const exporter *e, FILE *stream) {
   scree_json_number(&json, "time", scree_world_time(e->world));
   scree_json_numbers(&json, "gravity", world.gravity, 3);
   scree_json_number(&json, "unit_m", e->options->unit_m);
-  scree_json_array(&json, "shapes");
-  for (size_t i = 0; i < e->shapes.count; i++) json_shape(&json, e, i);
-  scree_json_end(&json);
-  scree_json_array(&json, "bodies");
-  for (size_t i = 0; i < scree_world_body_count(e->world); i++)
+  SCREE_JSON_LIST (&json, "shapes", i, e->shapes->count) json_shape(&json, e, i);
+  SCREE_JSON_LIST (&json, "bodies", i, scree_world_body_count(e->world))
     if (!scree_world_body_removed(e->world, i)) json_body(&json, e, i);
-  scree_json_end(&json);
-  scree_json_array(&json, "walls");
-  for (size_t i = 0; i < scree_world_wall_count(e->world); i++) json_wall(&json, e, i);
-  scree_json_end(&json);
+  SCREE_JSON_LIST (&json, "walls", i, scree_world_wall_count(e->world)) json_wall(&json, e, i);
   scree_export_json_provenance(&json, e->options);
   scree_json_end(&json);
 }
@@ -140,11 +132,9 @@ static void print_csv(const exporter *e, FILE *stream) {
     memcpy(values + 4, b.orientation, sizeof b.orientation);
     memcpy(values + 8, b.velocity, sizeof b.velocity);
     memcpy(values + 11, b.angular_velocity, sizeof b.angular_velocity);
-    fprintf(stream, "%zu,%zu,%zu", i, e->shapes.of_body[i], scree_world_body_material(e->world, i));
-    for (int k = 0; k < 14; k++) {
-      putc(',', stream);
-      scree_csv_number(stream, values[k]);
-    }
+    fprintf(stream, "%zu,%zu,%zu", i, e->shapes->of_body[i],
+            scree_world_body_material(e->world, i));
+    scree_csv_numbers(stream, values, 14);
     putc('\n', stream);
   }
 }
@@ -153,9 +143,8 @@ static scree_status write_text(const exporter *e, const char *name,
                                void (*print)(const exporter *, FILE *), scree_error *error) {
   char path[PATH_BYTES];
   scree_output output;
-  scree_status status = join(e, name, path, error);
-  if (status == SCREE_OK) status = scree_output_open(path, e->options->overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(join(e, name, path, error));
+  SCREE_TRY(scree_output_open(path, e->options->overwrite, &output, error));
   print(e, output.stream);
   return scree_output_commit(&output, error);
 }
@@ -173,10 +162,10 @@ static scree_status write_mesh(const exporter *e, const scree_mesh *mesh, const 
 
 static scree_status write_meshes(const exporter *e, scree_error *error) {
   char name[64];
-  for (size_t i = 0; i < e->shapes.count; i++) {
+  for (size_t i = 0; i < e->shapes->count; i++) {
     shape_name(i, name);
-    if (has_mesh(e->shapes.particles[i]))
-      SCREE_TRY(write_mesh(e, scree_particle_mesh(e->shapes.particles[i]), name, error));
+    if (has_mesh(e->shapes->particles[i]))
+      SCREE_TRY(write_mesh(e, scree_particle_mesh(e->shapes->particles[i]), name, error));
   }
   for (size_t i = 0; i < scree_world_wall_count(e->world); i++) {
     scree_wall wall;
@@ -191,15 +180,15 @@ scree_status scree_world_export(const scree_world *world, const scree_export_opt
                                 const char *folder, scree_error *error) {
   scree_export_options used = options ? *options : scree_default_export_options();
   exporter e = {.world = world, .options = &used, .folder = folder};
+  SCREE_CLEANUP(scree_shapes_free) scree_shapes shapes = {0};
   char path[PATH_BYTES];
-  scree_status status = scree_export_check(&used, error);
-  if (status == SCREE_OK) status = join(&e, "pile.json", path, error);
-  if (status == SCREE_OK) status = scree_folder_create(folder, error);
-  if (status == SCREE_OK) status = scree_output_check(path, used.overwrite, error);
-  if (status == SCREE_OK) status = scree_shapes_find(world, &e.shapes, error);
-  if (status == SCREE_OK) status = write_meshes(&e, error);
-  if (status == SCREE_OK) status = write_text(&e, "bodies.csv", print_csv, error);
-  if (status == SCREE_OK) status = write_text(&e, "pile.json", print_json, error);
-  scree_shapes_free(&e.shapes);
-  return status;
+  SCREE_TRY(scree_export_check(&used, error));
+  SCREE_TRY(join(&e, "pile.json", path, error));
+  SCREE_TRY(scree_folder_create(folder, error));
+  SCREE_TRY(scree_output_check(path, used.overwrite, error));
+  SCREE_TRY(scree_shapes_find(world, &shapes, error));
+  e.shapes = &shapes;
+  SCREE_TRY(write_meshes(&e, error));
+  SCREE_TRY(write_text(&e, "bodies.csv", print_csv, error));
+  return write_text(&e, "pile.json", print_json, error);
 }

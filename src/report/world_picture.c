@@ -15,13 +15,17 @@ enum { SPHERE_LEVEL = 3 };
 typedef struct drawing {
   scree_shapes shapes;
   scree_mesh *meshes; /* own, of shapes made of spheres; else empty */
+  size_t wall_count;
+  scree_mesh *walls;
   scree_render_item *items;
   size_t item_count;
 } drawing;
 
-static void free_scene(drawing *s) {
+static void free_drawing(drawing *s) {
   for (size_t i = 0; s->meshes && i < s->shapes.count; i++) scree_mesh_free(&s->meshes[i]);
+  for (size_t w = 0; s->walls && w < s->wall_count; w++) scree_mesh_free(&s->walls[w]);
   scree_free(s->meshes);
+  scree_free(s->walls);
   scree_free(s->items);
   scree_shapes_free(&s->shapes);
 }
@@ -54,36 +58,7 @@ static void add_bodies(const scree_world *world, const scree_scene *of, drawing 
   }
 }
 
-static scree_status draw(const scree_world *world, const scree_scene *scene,
-                         const scree_render_options *options, const scree_progress *progress,
-                         scree_image *image, scree_error *error) {
-  size_t bodies = scree_world_body_count(world);
-  drawing s = {0};
-  scree_status status = scree_shapes_find(world, &s.shapes, error);
-  if (status != SCREE_OK) return status;
-  s.meshes = scree_alloc_zero(s.shapes.count, sizeof *s.meshes);
-  s.items = scree_alloc_zero(bodies, sizeof *s.items);
-  if (!s.meshes || !s.items) {
-    status = scree_fail_memory(error, bodies * sizeof *s.items, "a picture's bodies");
-    goto done;
-  }
-  status = make_spheres(&s, error);
-  if (status != SCREE_OK) goto done;
-  add_bodies(world, scene, &s);
-  scree_render_cell cell = {s.items, s.item_count, NULL};
-  status = scree_render(&cell, 1, options, progress, image, error);
-done:
-  free_scene(&s);
-  return status;
-}
-
-scree_status scree_world_picture(const scree_world *world, const scree_render_options *options,
-                                 const scree_progress *progress, scree_image *image,
-                                 scree_error *error) {
-  return draw(world, NULL, options, progress, image, error);
-}
-
-/* ---- scenes ---- */
+/* ---- walls ---- */
 
 static const float wall_color[3] = {0.32f, 0.36f, 0.42f};
 static const double steep = 0.7; /* of a normal's length along z: what is flatter is a floor */
@@ -138,16 +113,16 @@ typedef struct crowd {
 /* For rays in the mesh's own frame. */
 static scree_status make_rays(const scree_mesh *mesh, scree_ray_scene **rays, scree_error *error) {
   size_t count = 3 * mesh->vertex_count;
-  float *positions = scree_alloc(count, sizeof *positions);
-  if (!positions) return scree_fail_memory(error, count * sizeof *positions, "a wall's vertices");
+  SCREE_SCRATCH(float, positions, count, error);
   for (size_t i = 0; i < count; i++) positions[i] = (float)mesh->positions[i];
-  scree_status status = scree_ray_scene_create(rays, error);
-  if (status == SCREE_OK)
-    status = scree_ray_scene_add(*rays, positions, mesh->vertex_count, mesh->triangles,
-                                 mesh->triangle_count, error);
-  if (status == SCREE_OK) status = scree_ray_scene_commit(*rays, error);
-  scree_free(positions);
-  return status;
+  SCREE_TRY(scree_ray_scene_create(rays, error));
+  SCREE_TRY(scree_ray_scene_add(*rays, positions, mesh->vertex_count, mesh->triangles,
+                                mesh->triangle_count, error));
+  return scree_ray_scene_commit(*rays, error);
+}
+
+static void free_rays(scree_ray_scene **rays) {
+  scree_ray_scene_free(*rays);
 }
 
 /* Whether the wall stands before more than a few of the bodies, of which many are asked. */
@@ -162,9 +137,9 @@ static scree_status find_hiding(const scree_mesh *mesh, const scree_render_item 
   const float direction[3] = {(float)along.x, (float)along.y, (float)along.z};
   size_t bodies = scree_world_body_count(world), stride = bodies / ASKED + 1;
   size_t asked = 0, hidden = 0;
-  scree_ray_scene *rays = NULL;
-  scree_status status = make_rays(mesh, &rays, error);
-  for (size_t i = 0; status == SCREE_OK && i < bodies; i += stride) {
+  SCREE_CLEANUP(free_rays) scree_ray_scene *rays = NULL;
+  SCREE_TRY(make_rays(mesh, &rays, error));
+  for (size_t i = 0; i < bodies; i += stride) {
     scree_body body;
     if (scree_world_body_removed(world, i)) continue;
     scree_world_get_body(world, i, &body);
@@ -173,9 +148,8 @@ static scree_status find_hiding(const scree_mesh *mesh, const scree_render_item 
                                 direction, INFINITY);
     asked++;
   }
-  scree_ray_scene_free(rays);
   *hides = (double)hidden > few * (double)asked;
-  return status;
+  return SCREE_OK;
 }
 
 /* Cuts away what stands between the viewer and the middle, but not what lies below all bodies, nor
@@ -190,12 +164,9 @@ static scree_status cut_open(scree_mesh *mesh, const scree_render_item *item, co
                  vec3_dot(vec3_sub(vec3_load(all->middle), position), viewer)};
   half above = {mat3_tmul_vec(&turn, (vec3){0, 0, 1}), all->low - position.z};
   size_t most = MOST_PIECES * mesh->triangle_count;
-  scree_mesh open = {.positions = scree_alloc(most, 9 * sizeof *open.positions),
-                     .triangles = scree_alloc(most, 3 * sizeof *open.triangles)};
-  if (!open.positions || !open.triangles) {
-    scree_mesh_free(&open);
-    return scree_fail_memory(error, most, "a wall's triangles");
-  }
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh open = {0};
+  SCREE_TRY_ALLOC(open.positions, 9 * most, error);
+  SCREE_TRY_ALLOC(open.triangles, 3 * most, error);
   for (size_t t = 0; t < mesh->triangle_count; t++) {
     piece whole = {.count = 3};
     for (size_t k = 0; k < 3; k++)
@@ -212,31 +183,30 @@ static scree_status cut_open(scree_mesh *mesh, const scree_render_item *item, co
     add_piece(&behind, &open);
     add_piece(&below, &open);
   }
-  scree_mesh_free(mesh);
+  const scree_mesh before_cut = *mesh;
   *mesh = open;
+  open = before_cut; /* to be freed */
   return SCREE_OK;
 }
 
 static scree_status add_walls(const scree_world *world, const scree_render_options *o,
-                              const crowd *all, drawing *s, scree_mesh *meshes,
-                              scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t w = 0; status == SCREE_OK && w < scree_world_wall_count(world); w++) {
+                              const crowd *all, drawing *s, scree_error *error) {
+  for (size_t w = 0; w < s->wall_count; w++) {
     scree_wall wall;
     scree_render_item *item = &s->items[s->item_count];
     scree_world_get_wall(world, w, &wall);
     if (wall.kind == SCREE_WALL_PLANE) continue; /* the picture has a ground */
-    status = scree_wall_mesh(world, w, &meshes[w], error);
-    *item = (scree_render_item){.mesh = &meshes[w]};
+    SCREE_TRY(scree_wall_mesh(world, w, &s->walls[w], error));
+    *item = (scree_render_item){.mesh = &s->walls[w]};
     memcpy(item->position, wall.position, sizeof item->position);
     scree_world_wall_orientation(world, w, item->quaternion);
     memcpy(item->color, wall_color, sizeof item->color);
     bool hides = false;
-    if (status == SCREE_OK) status = find_hiding(&meshes[w], item, world, o, &hides, error);
-    if (status == SCREE_OK && hides) status = cut_open(&meshes[w], item, all, o, error);
-    s->item_count += status == SCREE_OK && meshes[w].triangle_count > 0;
+    SCREE_TRY(find_hiding(&s->walls[w], item, world, o, &hides, error));
+    if (hides) SCREE_TRY(cut_open(&s->walls[w], item, all, o, error));
+    s->item_count += s->walls[w].triangle_count > 0;
   }
-  return status;
+  return SCREE_OK;
 }
 
 static crowd find_crowd(const scree_world *world) {
@@ -255,37 +225,38 @@ static crowd find_crowd(const scree_world *world) {
   return all;
 }
 
+/* ---- pictures ---- */
+
+/* of: see add_bodies. */
+static scree_status draw(const scree_world *world, const scree_scene *of, bool walls,
+                         const scree_render_options *options, const scree_progress *progress,
+                         scree_image *image, scree_error *error) {
+  SCREE_CLEANUP(free_drawing)
+  drawing s = {.wall_count = walls ? scree_world_wall_count(world) : 0};
+  scree_render_options o = options ? *options : scree_default_render_options();
+  SCREE_TRY(scree_shapes_find(world, &s.shapes, error));
+  SCREE_TRY_ALLOC_ZERO(s.meshes, s.shapes.count, error);
+  SCREE_TRY_ALLOC_ZERO(s.walls, s.wall_count, error);
+  SCREE_TRY_ALLOC_ZERO(s.items, scree_world_body_count(world) + s.wall_count, error);
+  SCREE_TRY(make_spheres(&s, error));
+  add_bodies(world, of, &s);
+  const crowd all = find_crowd(world);
+  SCREE_TRY(add_walls(world, &o, &all, &s, error));
+  const scree_render_cell cell = {s.items, s.item_count, NULL};
+  return scree_render(&cell, 1, &o, progress, image, error);
+}
+
+scree_status scree_world_picture(const scree_world *world, const scree_render_options *options,
+                                 const scree_progress *progress, scree_image *image,
+                                 scree_error *error) {
+  return draw(world, NULL, false, options, progress, image, error);
+}
+
 scree_status scree_scene_picture(const scree_scene *scene, const scree_render_options *options,
                                  const scree_progress *progress, scree_image *image,
                                  scree_error *error) {
-  const scree_world *world = scree_scene_view(scene);
-  scree_render_options o = options ? *options : scree_default_render_options();
-  size_t bodies = scree_world_body_count(world), walls = scree_world_wall_count(world);
-  drawing s = {0};
-  const crowd all = find_crowd(world);
-  scree_status status = scree_shapes_find(world, &s.shapes, error);
-  if (status != SCREE_OK) return status;
-  scree_mesh *meshes = scree_alloc_zero(walls, sizeof *meshes);
-  s.meshes = scree_alloc_zero(s.shapes.count, sizeof *s.meshes);
-  s.items = scree_alloc_zero(bodies + walls, sizeof *s.items);
-  if (!meshes || !s.meshes || !s.items)
-    status = scree_fail_memory(error, bodies * sizeof *s.items, "a picture's bodies");
-  if (status == SCREE_OK) status = make_spheres(&s, error);
-  if (status == SCREE_OK) {
-    add_bodies(world, scene, &s);
-    status = add_walls(world, &o, &all, &s, meshes, error);
-  }
-  if (status == SCREE_OK) {
-    scree_render_cell cell = {s.items, s.item_count, NULL};
-    status = scree_render(&cell, 1, &o, progress, image, error);
-  }
-  for (size_t w = 0; meshes && w < walls; w++) scree_mesh_free(&meshes[w]);
-  scree_free(meshes);
-  free_scene(&s);
-  return status;
+  return draw(scree_scene_view(scene), scene, true, options, progress, image, error);
 }
-
-/* ---- heaps ---- */
 
 /* The heap in the middle: as wide as its base, or as most of the bodies lie where there is none. */
 static void focus_on(const scree_repose *r, scree_render_options *o) {
@@ -308,5 +279,5 @@ scree_status scree_scene_pile_picture(const scree_scene *scene, const scree_rend
     SCREE_TRY(scree_scene_measure_pile(scene, 0, NULL, &pile, error));
     focus_on(&pile.repose, &o);
   }
-  return draw(scree_scene_view(scene), scene, &o, progress, image, error);
+  return draw(scree_scene_view(scene), scene, false, &o, progress, image, error);
 }

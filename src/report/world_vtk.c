@@ -1,46 +1,37 @@
 /* A world as VTK files: what each view holds is said in scree/report.h. A view is counted
- * first, then filled into one block per array, then written. */
+ * first, then filled into points, cells and a row over each of them, then written. */
 #include "base/array.h"
 #include "base/vec.h"
 #include "report/program.h"
 #include "report/shapes.h"
+#include "report/vtk.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { SPHERE_LEVEL = 2, ROUND_SIDES = 96, ARRAYS_MAX = 9 };
+enum { SPHERE_LEVEL = 2, ROUND_SIDES = 96 };
 
-/* Points, cells and the arrays over them, growing together. */
+/* Points and triangles, growing together. */
 typedef struct sheet {
   double *points;
   uint32_t *triangles;
   size_t point_count, triangle_count;
-  size_t cell_count; /* that the arrays have room for */
-  scree_vtk_array arrays[ARRAYS_MAX];
-  size_t array_count;
-  char names[SCREE_MAP_COUNT][32]; /* of maps, with units */
 } sheet;
 
 static void free_sheet(sheet *s) {
   scree_free(s->points);
   scree_free(s->triangles);
-  for (size_t i = 0; i < s->array_count; i++) scree_free((void *)(uintptr_t)s->arrays[i].values);
-  *s = (sheet){0};
 }
 
-/* A cleared array of the type for every cell; NULL where memory is out. */
-static void *add_array(sheet *s, const char *name, scree_vtk_type type, size_t components) {
-  size_t size = type == SCREE_VTK_FLOAT32 ? 4 : type == SCREE_VTK_UINT8 ? 1 : 8;
-  void *values = scree_alloc_zero(s->cell_count, size * components);
-  if (values) s->arrays[s->array_count++] = (scree_vtk_array){name, type, components, values};
-  return values;
-}
-
-static bool make_room(sheet *s, size_t point_count, size_t triangle_count, size_t cell_count) {
-  s->points = scree_alloc(point_count, 3 * sizeof *s->points);
-  s->triangles = scree_alloc(triangle_count, 3 * sizeof *s->triangles);
-  s->cell_count = cell_count;
-  return s->points && s->triangles;
+static scree_status make_room(sheet *s, size_t point_count, size_t triangle_count,
+                              scree_error *error) {
+  if (point_count > UINT32_MAX)
+    return scree_fail(error, SCREE_LIMIT,
+                      "world: %zu points do not fit into one file; at most 4294967295",
+                      point_count);
+  SCREE_TRY_ALLOC(s->points, 3 * point_count, error);
+  SCREE_TRY_ALLOC(s->triangles, 3 * triangle_count, error);
+  return SCREE_OK;
 }
 
 /* The mesh scaled, turned and moved, appended. */
@@ -55,11 +46,6 @@ static void add_mesh(sheet *s, const scree_mesh *mesh, double scale, const mat3 
   s->triangle_count += mesh->triangle_count;
 }
 
-static scree_status too_many(scree_error *error, size_t point_count) {
-  return scree_fail(error, SCREE_LIMIT,
-                    "world: %zu points do not fit into one file; at most 4294967295", point_count);
-}
-
 static mat3 turn_of(const double orientation[4]) {
   return quat_to_mat3((quat){orientation[0], orientation[1], orientation[2], orientation[3]});
 }
@@ -67,6 +53,11 @@ static mat3 turn_of(const double orientation[4]) {
 static double norm_of(const double v[3]) {
   return vec3_norm(vec3_load(v));
 }
+
+typedef struct output_name {
+  const char *path;
+  bool overwrite;
+} output_name;
 
 /* ---- Bodies ---- */
 
@@ -111,127 +102,140 @@ static void add_body(sheet *s, const scree_particle *particle, const scree_body 
   }
 }
 
-/* What a body's triangles or its point carry. */
-typedef struct body_arrays {
-  int64_t *body, *shape, *material;
-  float *speed, *angular_speed;
-} body_arrays;
+/* What a triangle of a body carries. */
+typedef struct surface_row {
+  int64_t body, shape, material;
+  float speed, angular_speed;
+} surface_row;
 
-static bool add_surface_arrays(sheet *s, body_arrays *a) {
-  a->body = add_array(s, "body", SCREE_VTK_INT64, 1);
-  a->shape = add_array(s, "shape", SCREE_VTK_INT64, 1);
-  a->material = add_array(s, "material", SCREE_VTK_INT64, 1);
-  a->speed = add_array(s, "speed", SCREE_VTK_FLOAT32, 1);
-  a->angular_speed = add_array(s, "angular_speed", SCREE_VTK_FLOAT32, 1);
-  return s->array_count == 5;
-}
+static const scree_vtk_member surface_members[] = {
+    SCREE_VTK_MEMBER(surface_row, body, "body", SCREE_VTK_INT64, 1),
+    SCREE_VTK_MEMBER(surface_row, shape, "shape", SCREE_VTK_INT64, 1),
+    SCREE_VTK_MEMBER(surface_row, material, "material", SCREE_VTK_INT64, 1),
+    SCREE_VTK_MEMBER(surface_row, speed, "speed", SCREE_VTK_FLOAT32, 1),
+    SCREE_VTK_MEMBER(surface_row, angular_speed, "angular_speed", SCREE_VTK_FLOAT32, 1),
+};
 
 static void fill_surfaces(const scree_world *world, const scree_shapes *shapes,
-                          const scree_mesh *sphere, sheet *s, const body_arrays *a) {
+                          const scree_mesh *sphere, sheet *s, surface_row *rows) {
   for (size_t i = 0; i < scree_world_body_count(world); i++) {
     scree_body state;
     size_t begin = s->triangle_count;
     if (scree_world_body_removed(world, i)) continue;
     scree_world_get_body(world, i, &state);
     add_body(s, shapes->particles[shapes->of_body[i]], &state, sphere);
-    for (size_t t = begin; t < s->triangle_count; t++) {
-      a->body[t] = (int64_t)i;
-      a->shape[t] = (int64_t)shapes->of_body[i];
-      a->material[t] = (int64_t)scree_world_body_material(world, i);
-      a->speed[t] = (float)norm_of(state.velocity);
-      a->angular_speed[t] = (float)norm_of(state.angular_velocity);
-    }
+    for (size_t t = begin; t < s->triangle_count; t++)
+      rows[t] = (surface_row){
+          (int64_t)i, (int64_t)shapes->of_body[i], (int64_t)scree_world_body_material(world, i),
+          (float)norm_of(state.velocity), (float)norm_of(state.angular_velocity)};
   }
 }
 
-static scree_status make_surfaces(const scree_world *world, sheet *s, scree_error *error) {
-  scree_shapes shapes = {0};
-  scree_mesh sphere = {0};
-  body_arrays arrays;
+/* Writes rows over the points, or over the triangles or lines. */
+static scree_status write(const scree_world *world, scree_vtk_data data, scree_vtk_rows rows,
+                          const output_name *to, scree_error *error) {
+  data.time = scree_world_time(world);
+  return scree_vtp_write_rows(&data, &rows, to->path, to->overwrite, error);
+}
+#define ROWS(rows, of_points, members)                                                             \
+  (scree_vtk_rows) {                                                                               \
+    rows, sizeof *(rows), of_points, members, sizeof(members) / sizeof *(members)                  \
+  }
+
+static scree_vtk_data triangles_of(const sheet *s) {
+  return (scree_vtk_data){.points = s->points,
+                          .point_count = s->point_count,
+                          .triangles = s->triangles,
+                          .cell_count = s->triangle_count};
+}
+
+static scree_status write_surfaces(const scree_world *world, const output_name *to,
+                                   scree_error *error) {
+  SCREE_CLEANUP(scree_shapes_free) scree_shapes shapes = {0};
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh sphere = {0};
+  SCREE_CLEANUP(free_sheet) sheet s = {0};
   size_t points = 0, triangles = 0;
-  scree_status status = unit_sphere(&sphere, error);
-  if (status == SCREE_OK) status = scree_shapes_find(world, &shapes, error);
-  for (size_t i = 0; status == SCREE_OK && i < scree_world_body_count(world); i++)
+  SCREE_TRY(unit_sphere(&sphere, error));
+  SCREE_TRY(scree_shapes_find(world, &shapes, error));
+  for (size_t i = 0; i < scree_world_body_count(world); i++)
     if (!scree_world_body_removed(world, i))
       count_body(shapes.particles[shapes.of_body[i]], &sphere, &points, &triangles);
-  if (status == SCREE_OK && points > UINT32_MAX) status = too_many(error, points);
-  if (status == SCREE_OK &&
-      (!make_room(s, points, triangles, triangles) || !add_surface_arrays(s, &arrays)))
-    status = scree_fail_memory(error, 24 * points + 44 * triangles, "the triangles of a world");
-  if (status == SCREE_OK) fill_surfaces(world, &shapes, &sphere, s, &arrays);
-  scree_shapes_free(&shapes);
-  scree_mesh_free(&sphere);
-  return status;
+  SCREE_TRY(make_room(&s, points, triangles, error));
+  SCREE_SCRATCH(surface_row, rows, triangles, error);
+  fill_surfaces(world, &shapes, &sphere, &s, rows);
+  return write(world, triangles_of(&s), ROWS(rows, false, surface_members), to, error);
 }
 
-static size_t live_count(const scree_world *world) {
-  size_t count = 0;
-  for (size_t i = 0; i < scree_world_body_count(world); i++)
-    count += !scree_world_body_removed(world, i);
-  return count;
-}
+typedef struct point_row {
+  int64_t body, shape, material;
+  double orientation[4], velocity[3], angular_velocity[3], mass, size;
+} point_row;
 
-static void fill_points(const scree_world *world, const scree_shapes *shapes, sheet *s,
-                        const body_arrays *ids, double *const reals[5]) {
+static const scree_vtk_member point_members[] = {
+    SCREE_VTK_MEMBER(point_row, body, "body", SCREE_VTK_INT64, 1),
+    SCREE_VTK_MEMBER(point_row, shape, "shape", SCREE_VTK_INT64, 1),
+    SCREE_VTK_MEMBER(point_row, material, "material", SCREE_VTK_INT64, 1),
+    SCREE_VTK_MEMBER(point_row, orientation, "orientation", SCREE_VTK_FLOAT64, 4),
+    SCREE_VTK_MEMBER(point_row, velocity, "velocity", SCREE_VTK_FLOAT64, 3),
+    SCREE_VTK_MEMBER(point_row, angular_velocity, "angular_velocity", SCREE_VTK_FLOAT64, 3),
+    SCREE_VTK_MEMBER(point_row, mass, "mass", SCREE_VTK_FLOAT64, 1),
+    SCREE_VTK_MEMBER(point_row, size, "size", SCREE_VTK_FLOAT64, 1),
+};
+
+static scree_status write_points(const scree_world *world, const output_name *to,
+                                 scree_error *error) {
+  SCREE_CLEANUP(scree_shapes_free) scree_shapes shapes = {0};
+  size_t count = scree_world_live_count(world), at = 0;
+  SCREE_TRY(scree_shapes_find(world, &shapes, error));
+  SCREE_SCRATCH(double, points, 3 * count, error);
+  SCREE_SCRATCH(point_row, rows, count, error);
   for (size_t i = 0; i < scree_world_body_count(world); i++) {
     scree_body state;
     scree_particle_measures m;
-    size_t at = s->point_count;
     if (scree_world_body_removed(world, i)) continue;
     scree_world_get_body(world, i, &state);
-    scree_particle_measure(shapes->particles[shapes->of_body[i]], &m);
-    memcpy(s->points + 3 * at, state.position, sizeof state.position);
-    ids->body[at] = (int64_t)i;
-    ids->shape[at] = (int64_t)shapes->of_body[i];
-    ids->material[at] = (int64_t)scree_world_body_material(world, i);
-    memcpy(reals[0] + 4 * at, state.orientation, sizeof state.orientation);
-    memcpy(reals[1] + 3 * at, state.velocity, sizeof state.velocity);
-    memcpy(reals[2] + 3 * at, state.angular_velocity, sizeof state.angular_velocity);
-    reals[3][at] = scree_world_body_mass(world, i);
-    reals[4][at] = m.size;
-    s->point_count++;
+    scree_particle_measure(shapes.particles[shapes.of_body[i]], &m);
+    point_row *row = &rows[at];
+    *row = (point_row){.body = (int64_t)i,
+                       .shape = (int64_t)shapes.of_body[i],
+                       .material = (int64_t)scree_world_body_material(world, i),
+                       .mass = scree_world_body_mass(world, i),
+                       .size = m.size};
+    memcpy(row->orientation, state.orientation, sizeof state.orientation);
+    memcpy(row->velocity, state.velocity, sizeof state.velocity);
+    memcpy(row->angular_velocity, state.angular_velocity, sizeof state.angular_velocity);
+    memcpy(points + 3 * at++, state.position, sizeof state.position);
   }
-}
-
-static scree_status make_points(const scree_world *world, sheet *s, scree_error *error) {
-  static const char *const names[5] = {"orientation", "velocity", "angular_velocity", "mass",
-                                       "size"};
-  static const size_t components[5] = {4, 3, 3, 1, 1};
-  scree_shapes shapes = {0};
-  body_arrays ids = {0};
-  double *reals[5];
-  size_t count = live_count(world);
-  scree_status status = scree_shapes_find(world, &shapes, error);
-  if (status != SCREE_OK) return status;
-  if (make_room(s, count, 0, count)) {
-    ids.body = add_array(s, "body", SCREE_VTK_INT64, 1);
-    ids.shape = add_array(s, "shape", SCREE_VTK_INT64, 1);
-    ids.material = add_array(s, "material", SCREE_VTK_INT64, 1);
-    for (int k = 0; k < 5; k++) reals[k] = add_array(s, names[k], SCREE_VTK_FLOAT64, components[k]);
-  }
-  if (s->array_count == 8)
-    fill_points(world, &shapes, s, &ids, reals);
-  else
-    status = scree_fail_memory(error, 150 * count, "the points of a world");
-  scree_shapes_free(&shapes);
-  return status;
+  const scree_vtk_data data = {.points = points, .point_count = count};
+  return write(world, data, ROWS(rows, true, point_members), to, error);
 }
 
 /* ---- Contacts ---- */
 
 /* A touching pair with the sums over its features. */
-typedef struct pair_line {
-  size_t body, other;
-  bool wall;
-  int64_t feature_count;
+typedef struct pair_row {
+  int64_t body, other, feature_count;
+  uint8_t wall;
   vec3 force, normal_force, tangential_force;
-  vec3 place;    /* sum of weight times position */
+  vec3 place;    /* the sum of weight times position; then their mean */
   double weight; /* force */
   double overlap;
-} pair_line;
+} pair_row;
+
+static const scree_vtk_member pair_members[] = {
+    SCREE_VTK_MEMBER(pair_row, body, "body", SCREE_VTK_INT64, 1),
+    SCREE_VTK_MEMBER(pair_row, other, "other", SCREE_VTK_INT64, 1),
+    SCREE_VTK_MEMBER(pair_row, wall, "wall", SCREE_VTK_UINT8, 1),
+    SCREE_VTK_MEMBER(pair_row, feature_count, "feature_count", SCREE_VTK_INT64, 1),
+    SCREE_VTK_MEMBER(pair_row, force, "force", SCREE_VTK_FLOAT64, 3),
+    SCREE_VTK_MEMBER(pair_row, normal_force, "normal_force", SCREE_VTK_FLOAT64, 3),
+    SCREE_VTK_MEMBER(pair_row, tangential_force, "tangential_force", SCREE_VTK_FLOAT64, 3),
+    SCREE_VTK_MEMBER(pair_row, place, "place", SCREE_VTK_FLOAT64, 3),
+    SCREE_VTK_MEMBER(pair_row, overlap, "overlap", SCREE_VTK_FLOAT64, 1),
+};
 
 typedef struct pair_list {
-  pair_line *items;
+  pair_row *items;
   size_t count, capacity;
   bool failed; /* memory ran out */
 } pair_list;
@@ -239,9 +243,9 @@ typedef struct pair_list {
 /* The features of a pair follow each other. */
 static bool add_feature(void *context, const scree_contact *c) {
   pair_list *list = context;
-  pair_line *p = list->count ? &list->items[list->count - 1] : NULL;
-  if (!p || p->body != c->body || p->other != c->other || p->wall != c->wall) {
-    const pair_line first = {.body = c->body, .other = c->other, .wall = c->wall};
+  pair_row *p = list->count ? &list->items[list->count - 1] : NULL;
+  const pair_row first = {.body = (int64_t)c->body, .other = (int64_t)c->other, .wall = c->wall};
+  if (!p || p->body != first.body || p->other != first.other || p->wall != first.wall) {
     /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): room was made */
     if (!SCREE_PUSH(list, first)) {
       list->failed = true;
@@ -268,65 +272,30 @@ static vec3 centre_of(const scree_world *world, size_t body) {
   return vec3_load(state.position);
 }
 
-typedef struct line_arrays {
-  int64_t *body, *other, *feature_count;
-  uint8_t *wall;
-  double *force, *normal_force, *tangential_force, *place, *overlap;
-} line_arrays;
-
-static bool add_line_arrays(sheet *s, line_arrays *a) {
-  a->body = add_array(s, "body", SCREE_VTK_INT64, 1);
-  a->other = add_array(s, "other", SCREE_VTK_INT64, 1);
-  a->wall = add_array(s, "wall", SCREE_VTK_UINT8, 1);
-  a->feature_count = add_array(s, "feature_count", SCREE_VTK_INT64, 1);
-  a->force = add_array(s, "force", SCREE_VTK_FLOAT64, 3);
-  a->normal_force = add_array(s, "normal_force", SCREE_VTK_FLOAT64, 3);
-  a->tangential_force = add_array(s, "tangential_force", SCREE_VTK_FLOAT64, 3);
-  a->place = add_array(s, "place", SCREE_VTK_FLOAT64, 3);
-  a->overlap = add_array(s, "overlap", SCREE_VTK_FLOAT64, 1);
-  return s->array_count == 9;
+static void free_pairs(pair_list *pairs) {
+  scree_free(pairs->items);
 }
 
-static void fill_lines(const scree_world *world, const pair_list *pairs, sheet *s,
-                       const line_arrays *a) {
-  for (size_t i = 0; i < pairs->count; i++) {
-    const pair_line *p = &pairs->items[i];
-    vec3 place = vec3_scale(p->place, 1 / p->weight);
-    vec3_store(s->points + 6 * i, centre_of(world, p->body));
-    vec3_store(s->points + 6 * i + 3, p->wall ? place : centre_of(world, p->other));
-    a->body[i] = (int64_t)p->body;
-    a->other[i] = (int64_t)p->other;
-    a->wall[i] = p->wall;
-    a->feature_count[i] = p->feature_count;
-    vec3_store(a->force + 3 * i, p->force);
-    vec3_store(a->normal_force + 3 * i, p->normal_force);
-    vec3_store(a->tangential_force + 3 * i, p->tangential_force);
-    vec3_store(a->place + 3 * i, place);
-    a->overlap[i] = p->overlap;
-  }
-  s->point_count = 2 * pairs->count;
-}
-
-static scree_status make_contacts(const scree_world *world, sheet *s, uint32_t **lines,
-                                  scree_error *error) {
-  pair_list pairs = {0};
-  line_arrays arrays;
-  scree_status status = scree_world_visit_contacts(world, add_feature, &pairs, error);
+static scree_status write_contacts(const scree_world *world, const output_name *to,
+                                   scree_error *error) {
+  SCREE_CLEANUP(free_pairs) pair_list pairs = {0};
+  SCREE_CLEANUP(free_sheet) sheet s = {0};
+  SCREE_TRY(scree_world_visit_contacts(world, add_feature, &pairs, error));
   size_t count = pairs.count;
-  if (status == SCREE_OK && pairs.failed)
-    status = scree_fail_memory(error, count * sizeof *pairs.items, "the contacts of a world");
-  if (status == SCREE_OK && 2 * count > UINT32_MAX) status = too_many(error, 2 * count);
-  if (status == SCREE_OK) {
-    *lines = scree_alloc(count, 2 * sizeof **lines);
-    if (*lines && make_room(s, 2 * count, 0, count) && add_line_arrays(s, &arrays)) {
-      fill_lines(world, &pairs, s, &arrays);
-      for (uint32_t i = 0; i < 2 * count; i++) (*lines)[i] = i;
-    } else {
-      status = scree_fail_memory(error, 200 * count, "the contacts of a world");
-    }
+  if (pairs.failed)
+    return scree_fail_memory(error, count * sizeof *pairs.items, "the contacts of a world");
+  SCREE_TRY(make_room(&s, 2 * count, 0, error));
+  SCREE_SCRATCH(uint32_t, lines, 2 * count, error);
+  for (size_t i = 0; i < count; i++) {
+    pair_row *p = &pairs.items[i];
+    p->place = vec3_scale(p->place, 1 / p->weight);
+    vec3_store(s.points + 6 * i, centre_of(world, (size_t)p->body));
+    vec3_store(s.points + 6 * i + 3, p->wall ? p->place : centre_of(world, (size_t)p->other));
   }
-  scree_free(pairs.items);
-  return status;
+  for (uint32_t i = 0; i < 2 * count; i++) lines[i] = i;
+  const scree_vtk_data data = {
+      .points = s.points, .point_count = 2 * count, .lines = lines, .cell_count = count};
+  return write(world, data, ROWS(pairs.items, false, pair_members), to, error);
 }
 
 /* ---- Walls ---- */
@@ -442,18 +411,15 @@ static void add_wall(sheet *s, const scree_world *world, size_t index, const ext
 
 scree_status scree_wall_mesh(const scree_world *world, size_t index, scree_mesh *mesh,
                              scree_error *error) {
-  sheet s = {0};
+  SCREE_CLEANUP(free_sheet) sheet s = {0};
   scree_wall wall;
   double orientation[4];
   extent e = extent_of(world);
   scree_world_get_wall(world, index, &wall);
   scree_world_wall_orientation(world, index, orientation);
   bool triangles = wall.kind == SCREE_WALL_MESH;
-  if (!make_room(&s, triangles ? wall.mesh->vertex_count : 2 * ROUND_SIDES + 1,
-                 triangles ? wall.mesh->triangle_count : 2 * ROUND_SIDES, 0)) {
-    free_sheet(&s);
-    return scree_fail_memory(error, 0, "a wall's triangles");
-  }
+  SCREE_TRY(make_room(&s, triangles ? wall.mesh->vertex_count : 2 * ROUND_SIDES + 1,
+                      triangles ? wall.mesh->triangle_count : 2 * ROUND_SIDES, error));
   add_wall(&s, world, index, &e);
   mat3 turn = turn_of(orientation);
   for (size_t v = 0; v < s.point_count; v++) {
@@ -461,27 +427,32 @@ scree_status scree_wall_mesh(const scree_world *world, size_t index, scree_mesh 
     vec3_store(s.points + 3 * v, mat3_tmul_vec(&turn, p));
   }
   *mesh = (scree_mesh){s.points, s.triangles, s.point_count, s.triangle_count};
+  s = (sheet){0};
   return SCREE_OK;
 }
 
-/* The maps of a scene's walls, a row of cells for each; NaN where no sensor looks. */
-static scree_status fill_maps(const scree_scene *scene, size_t wall, size_t begin, sheet *s,
-                              double *const maps[SCREE_MAP_COUNT], scree_error *error) {
+typedef struct wall_row {
+  int64_t wall, kind;
+  double maps[SCREE_MAP_COUNT]; /* NaN where no sensor looks */
+} wall_row;
+
+/* The maps of a scene's walls, over the triangles from `begin` on. */
+static scree_status fill_maps(const scree_scene *scene, size_t wall, size_t begin, const sheet *s,
+                              wall_row *rows, scree_error *error) {
   size_t cells = scree_scene_wall_cells(scene, wall), triangles = s->triangle_count - begin;
-  double *values = scree_alloc(cells, sizeof *values);
-  if (!values) return scree_fail_memory(error, cells * sizeof *values, "a wall's map");
+  SCREE_SCRATCH(double, values, cells, error);
   for (size_t m = 0; m < SCREE_MAP_COUNT; m++) {
     bool known = scree_scene_wall_map(scene, wall, (scree_wall_map)m, values);
     for (size_t t = 0; t < triangles; t++)
-      maps[m][begin + t] = known ? values[cells == triangles ? t : 0] : NAN;
+      rows[begin + t].maps[m] = known ? values[cells == triangles ? t : 0] : NAN;
   }
-  scree_free(values);
   return SCREE_OK;
 }
 
 /* scene: whose maps it has; NULL: none. */
-static scree_status make_walls(const scree_world *world, const scree_scene *scene, sheet *s,
-                               scree_error *error) {
+static scree_status write_walls(const scree_world *world, const scree_scene *scene,
+                                const output_name *to, scree_error *error) {
+  SCREE_CLEANUP(free_sheet) sheet s = {0};
   size_t count = scree_world_wall_count(world), points = 0, triangles = 0;
   extent e = extent_of(world);
   for (size_t i = 0; i < count; i++) {
@@ -491,34 +462,30 @@ static scree_status make_walls(const scree_world *world, const scree_scene *scen
     points += mesh ? wall.mesh->vertex_count : 2 * ROUND_SIDES;
     triangles += mesh ? wall.mesh->triangle_count : 2 * ROUND_SIDES;
   }
-  if (points > UINT32_MAX) return too_many(error, points);
-  int64_t *number = NULL, *kind = NULL;
-  double *maps[SCREE_MAP_COUNT] = {NULL};
-  bool good = make_room(s, points, triangles, triangles);
-  if (good) {
-    number = add_array(s, "wall", SCREE_VTK_INT64, 1);
-    kind = add_array(s, "kind", SCREE_VTK_INT64, 1);
-    good = number && kind;
-  }
-  for (size_t m = 0; good && scene && m < SCREE_MAP_COUNT; m++) {
-    snprintf(s->names[m], sizeof s->names[m], "%s [%s]", scree_wall_map_name((scree_wall_map)m),
-             scree_wall_map_unit((scree_wall_map)m));
-    maps[m] = add_array(s, s->names[m], SCREE_VTK_FLOAT64, 1);
-    good = maps[m];
-  }
-  if (!good) return scree_fail_memory(error, 64 * triangles, "the walls of a world");
+  SCREE_TRY(make_room(&s, points, triangles, error));
+  SCREE_SCRATCH(wall_row, rows, triangles, error);
   for (size_t i = 0; i < count; i++) {
     scree_wall wall;
-    size_t begin = s->triangle_count;
+    size_t begin = s.triangle_count;
     scree_world_get_wall(world, i, &wall);
-    add_wall(s, world, i, &e);
-    for (size_t t = begin; t < s->triangle_count; t++) {
-      number[t] = (int64_t)i;
-      kind[t] = wall.kind;
-    }
-    if (scene) SCREE_TRY(fill_maps(scene, i, begin, s, maps, error));
+    add_wall(&s, world, i, &e);
+    for (size_t t = begin; t < s.triangle_count; t++)
+      rows[t] = (wall_row){.wall = (int64_t)i, .kind = wall.kind};
+    if (scene) SCREE_TRY(fill_maps(scene, i, begin, &s, rows, error));
   }
-  return SCREE_OK;
+  char names[SCREE_MAP_COUNT][32];
+  scree_vtk_member members[2 + SCREE_MAP_COUNT] = {
+      SCREE_VTK_MEMBER(wall_row, wall, "wall", SCREE_VTK_INT64, 1),
+      SCREE_VTK_MEMBER(wall_row, kind, "kind", SCREE_VTK_INT64, 1)};
+  for (size_t m = 0; m < SCREE_MAP_COUNT; m++) {
+    snprintf(names[m], sizeof names[m], "%s [%s]", scree_wall_map_name((scree_wall_map)m),
+             scree_wall_map_unit((scree_wall_map)m));
+    members[2 + m] = (scree_vtk_member){names[m], SCREE_VTK_FLOAT64, 1,
+                                        offsetof(wall_row, maps) + m * sizeof(double)};
+  }
+  const scree_vtk_rows table = {rows, sizeof *rows, false, members,
+                                scene ? 2 + SCREE_MAP_COUNT : 2};
+  return write(world, triangles_of(&s), table, to, error);
 }
 
 /* ---- One file ---- */
@@ -528,48 +495,26 @@ const char *scree_world_view_name(scree_world_view view) {
   return (int)view >= 0 && view < SCREE_VIEW_COUNT ? names[view] : NULL;
 }
 
-static scree_status write_view(const scree_world *world, const scree_scene *scene,
-                               scree_world_view view, const char *path, bool overwrite,
-                               scree_error *error) {
-  sheet s = {0};
-  uint32_t *lines = NULL;
-  scree_status status;
-  if (view == SCREE_VIEW_SURFACES)
-    status = make_surfaces(world, &s, error);
-  else if (view == SCREE_VIEW_POINTS)
-    status = make_points(world, &s, error);
-  else if (view == SCREE_VIEW_CONTACTS)
-    status = make_contacts(world, &s, &lines, error);
-  else if (view == SCREE_VIEW_WALLS)
-    status = make_walls(world, scene, &s, error);
-  else
-    status = scree_fail(error, SCREE_BAD_ARGUMENT, "world: view %d is none of 0 to %d", (int)view,
-                        SCREE_VIEW_COUNT - 1);
-  if (status == SCREE_OK) {
-    bool points = view == SCREE_VIEW_POINTS, on_lines = view == SCREE_VIEW_CONTACTS;
-    scree_vtk_data data = {.points = s.points,
-                           .point_count = s.point_count,
-                           .triangles = points || on_lines ? NULL : s.triangles,
-                           .lines = lines,
-                           .cell_count = on_lines ? s.point_count / 2 : s.triangle_count,
-                           .time = scree_world_time(world)};
-    if (points)
-      data.point_arrays = s.arrays, data.point_array_count = s.array_count;
-    else
-      data.cell_arrays = s.arrays, data.cell_array_count = s.array_count;
-    status = scree_vtp_write(&data, path, overwrite, error);
-  }
-  free_sheet(&s);
-  scree_free(lines);
-  return status;
-}
-
 scree_status scree_world_vtp_write(const scree_world *world, scree_world_view view,
                                    const char *path, bool overwrite, scree_error *error) {
-  return write_view(world, NULL, view, path, overwrite, error);
+  const output_name to = {path, overwrite};
+  switch (view) {
+  case SCREE_VIEW_SURFACES:
+    return write_surfaces(world, &to, error);
+  case SCREE_VIEW_POINTS:
+    return write_points(world, &to, error);
+  case SCREE_VIEW_CONTACTS:
+    return write_contacts(world, &to, error);
+  case SCREE_VIEW_WALLS:
+    return write_walls(world, NULL, &to, error);
+  default:
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "world: view %d is none of 0 to %d", (int)view,
+                      SCREE_VIEW_COUNT - 1);
+  }
 }
 
 scree_status scree_scene_walls_vtp_write(const scree_scene *scene, const char *path, bool overwrite,
                                          scree_error *error) {
-  return write_view(scree_scene_view(scene), scene, SCREE_VIEW_WALLS, path, overwrite, error);
+  const output_name to = {path, overwrite};
+  return write_walls(scree_scene_view(scene), scene, &to, error);
 }

@@ -1,0 +1,24 @@
+/* Files for ParaView of tables: a row a point or a cell, whose members become the arrays. */
+#pragma once
+
+#include "base/error.h"
+
+typedef struct scree_vtk_member {
+  const char *name;
+  scree_vtk_type type;
+  size_t component_count, offset; /* in a row */
+} scree_vtk_member;
+#define SCREE_VTK_MEMBER(row, member, name, type, count)                                           \
+  { name, type, count, offsetof(row, member) }
+
+typedef struct scree_vtk_rows {
+  const void *rows; /* one a point, or one a cell */
+  size_t row_bytes;
+  bool of_points;
+  const scree_vtk_member *members;
+  size_t member_count;
+} scree_vtk_rows;
+
+/* scree_vtp_write with these arrays behind those of `data`. */
+scree_status scree_vtp_write_rows(const scree_vtk_data *data, const scree_vtk_rows *rows,
+                                  const char *path, bool overwrite, scree_error *error);
