@@ -102,7 +102,7 @@ class Table:
         self.done = {self.key(row.values()) for row in self.rows}
 
     def key(self, values):
-        return tuple(map(str, values))[:self.key_count]
+        return tuple(map(cell, values))[:self.key_count]
 
     def add(self, *values):
         with open(self.path, "a") as out:
