@@ -119,6 +119,8 @@ turning() {
   heaps turning 40:3,20:1 liggghts-no-dashpot
   heaps turning 40:3 liggghts-no-sliding
   compared "$results/turning.csv" "$results/turning-compared.csv" "$here/codes/turning.py" compare
+  # made by a scree built with rolling_damping_ratio 0 (src/world/constants.h)
+  compared "$results/turning-bare.csv" "$results/turning-bare-compared.csv" "$here/codes/turning.py" compare
 }
 
 hits() { [ -s "$results/hits.csv" ] || table "$results/hits.csv" "$here/hits/hits.py"; }
