@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The scripts of bench/evidence on inputs whose answers are known: statistics against counting and random samples, a table
-that was broken off, a drawn picture, a camera over one sphere, a cube dropped on a slope of three sheets, and rates by Beverloo's law.
+that was broken off, a drawn picture, a camera over one sphere, hits, a cube dropped on a slope of three sheets, and rates by Beverloo's law.
 usage: check.py ROOT, with SCREE_LIBRARY and PYTHONPATH"""
 import contextlib
 import io
@@ -16,7 +16,7 @@ from types import SimpleNamespace
 ROOT, SCRATCH = pathlib.Path(sys.argv[1]), tempfile.TemporaryDirectory()
 HOME = pathlib.Path(SCRATCH.name)
 os.environ["SCREE_EVIDENCE_DIR"], os.environ["SCREE_EVIDENCE_WORK"] = str(HOME), str(HOME / "work")
-for folder in ("", "boulders", "bulk", "codes", "drum", "orifice", "paper"):
+for folder in ("", "boulders", "bulk", "codes", "drum", "hits", "orifice", "paper"):
     sys.path.insert(0, str(ROOT / "bench" / "evidence" / folder))
 import boulders  # noqa: E402
 import bulk  # noqa: E402
@@ -25,6 +25,7 @@ import clumps  # noqa: E402
 import common  # noqa: E402
 import drum  # noqa: E402
 import heaps  # noqa: E402
+import hits  # noqa: E402
 import orifice  # noqa: E402
 import polyhedra  # noqa: E402
 import turning  # noqa: E402
@@ -62,6 +63,9 @@ def table():
     check(again.done == {("x",)}, "a row that was broken off counts as done")
     again.add("y", 0.25)
     check([tuple(row.values()) for row in common.read(path)] == [("x", "0.5"), ("y", "0.25")], "a table that goes on")
+    common.Table(HOME / "times.csv", ["a", "b"], 1).add(2.0, 1)
+    again = common.Table(HOME / "times.csv", ["a", "b"], 1)
+    check(again.key((2.0,)) in again.done, "a row of a whole number is not found again")
 
 
 def profiles():
@@ -232,6 +236,12 @@ def slopes():
     check("10,liggghts,2,35.00,1.00,4.00,1.41" in told.getvalue().splitlines(), f"slopes beside each other: {told.getvalue()}")
 
 
+def equations():
+    check(abs(hits.integrated(0.0)[0] - 1) < 1e-3, "an elastic hit keeps its speed")
+    check(abs(hits.integrated(hits.dashpot(0.5))[0] - 0.5) < 1e-3, "a dashpot for a restitution")
+    check(abs(hits.share(hits.SLIDING, 1e4, 1) - 1) < 1e-3, "a fast slip gives the whole impulse")
+
+
 def intervals():
     rng, held = random.Random(5), 0
     for _ in range(400):
@@ -240,7 +250,7 @@ def intervals():
     check(335 < held < 385, f"{held} of 400 intervals of 90 % hold the difference")
 
 
-for part in (statistics, table, profiles, turns, quarry, speed, holes, processes, bodies, slopes, intervals):
+for part in (statistics, table, profiles, turns, quarry, speed, holes, processes, bodies, slopes, equations, intervals):
     part()
 print("\n".join(wrong) or "the scripts of bench/evidence give what is known")
 sys.exit(bool(wrong))
