@@ -24,15 +24,15 @@ size_t scree_columns_split(const char *begin, const char *end, char separator,
                            scree_token cells[SCREE_MOST_COLUMNS]) {
   size_t count = 0;
   if (separator) {
-    for (const char *p = begin;; p++) {
+    scree_token cell = {begin, 0};
+    for (const char *p = begin; p <= end; p++) {
       if (p < end && *p != separator) continue;
-      if (count < SCREE_MOST_COLUMNS) cells[count] = trim(begin, p);
+      cell = trim(begin, p);
+      if (count < SCREE_MOST_COLUMNS) cells[count] = cell;
       count++;
       begin = p + 1;
-      if (p == end) break;
     }
-    if (count > 1 && trim(cells[count - 1].begin, end).length == 0) count--; /* a last separator */
-    return count;
+    return count > 1 && cell.length == 0 ? count - 1 : count; /* a last separator */
   }
   while (begin < end) {
     const char *p = begin;

@@ -274,6 +274,8 @@ static void columns_go_by_their_names(void **state) {
   }
 }
 
+#define COMMAS_20 ",,,,,,,,,,,,,,,,,,,,"
+#define COMMAS_80 COMMAS_20 COMMAS_20 COMMAS_20 COMMAS_20
 static void what_is_no_table_is_told(void **state) {
   (void)state;
   static const struct {
@@ -286,6 +288,7 @@ static void what_is_no_table_is_told(void **state) {
                 {"1 2 3\n", "line 1: must be x, y, z, radius"},
                 {"5 1 2 3 4\n9 1 2 3 4\n", "other columns are named in a first line"},
                 {"a b c\n", "must be x, y, z, radius"},
+                {"x,y,z,r" COMMAS_80 "\n1,2,3,4" COMMAS_80 "\n", "more than 64 columns"},
                 {"x,y,z,r\n1,2,3,-4\n", "the radius is"},
                 {"clump template create pebbles 2 1 0 0 0", "pebble 2 of 2"},
                 {"clump template create", "no pebbles"}};
