@@ -122,7 +122,8 @@ SCREE_API scree_status scree_outline_of_field(const scree_height_field *field, d
                                               scree_outline *outline, scree_error *error);
 /* scree_repose_measure of the solid that each side of the outline makes when turned about the
  * heap's axis: four sectors, two of each side, and one silhouette, the outline itself. Heights
- * below 0 are 0. cell: m, 0 for a 400th of the width. Of the options the counts are not used. */
+ * below 0 are 0. cell: m, 0 for a 400th of the width. Of the options the counts are not used.
+ * SCREE_BAD_FILE where an end is so high that a flank is missing. */
 SCREE_API scree_status scree_outline_measure(const scree_outline *outline, double cell,
                                              const scree_repose_options *options,
                                              scree_repose *repose, scree_error *error);

@@ -21,12 +21,12 @@ static const char *next_number(const char *at, const char *end, double *value) {
   return scree_number_parse(at, end, value);
 }
 
-/* What stands in brackets, one after the other. */
+/* What stands in brackets of either kind, one after the other. */
 static void read_units(const char *line, const char *end, scree_curve_file *c) {
   for (int k = 0; k < 2; k++) {
-    const char *open = memchr(line, '[', (size_t)(end - line));
-    const char *shut = open ? memchr(open, ']', (size_t)(end - open)) : NULL;
-    if (!shut) return;
+    const char *open = line + strcspn(line, "[(\r\n");
+    const char *shut = open + strcspn(open, "])\r\n");
+    if (shut >= end) return;
     snprintf(c->units[k], sizeof c->units[k], "%.*s", (int)(shut - open) - 1, open + 1);
     line = shut + 1;
   }
@@ -44,6 +44,10 @@ static scree_status read_line(const char *line, const char *end, size_t number, 
     read_units(line, end, c);
     return SCREE_OK;
   }
+  double more;
+  if (next_number(at, end, &more))
+    return scree_fail(error, SCREE_BAD_FILE, "%s, line %zu: has more than two numbers", path,
+                      number);
   double x = c->x[c->count], y = c->y[c->count];
   if (!isfinite(x) || !isfinite(y))
     return scree_fail(error, SCREE_BAD_FILE, "%s, line %zu: a number that is not finite", path,

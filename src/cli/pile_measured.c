@@ -60,7 +60,9 @@ static scree_status find(const cli_call *call, const cli_measured_pile *what, fo
   SCREE_TRY(what->kind == CLI_PILE_PICTURE
                 ? measure_picture(call, what, f, error)
                 : scree_outline_read(call->inputs[0], what->unit, &f->outline, error));
-  return scree_outline_measure(&f->outline, what->cell, &what->how, &f->repose, error);
+  scree_status status =
+      scree_outline_measure(&f->outline, what->cell, &what->how, &f->repose, error);
+  return status == SCREE_BAD_FILE ? cli_name_in_error(call->inputs[0], error) : status;
 }
 
 static void print_outline(const scree_outline *o) {

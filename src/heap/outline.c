@@ -10,6 +10,7 @@
 enum { CELLS_ACROSS = 400, SIDES = 4, GREYS = 256 };
 static const double least_parted = 0.8; /* of the variance of greys, between dark and bright */
 static const double edge_share = 0.05;  /* of a picture's columns, at either side: the ground */
+static const double floor_share = 0.1;  /* of the height: how uneven the floor may be */
 static const double most_slope = 0.5;   /* of that ground: what is steeper is a flank */
 
 void scree_outline_free(scree_outline *outline) {
@@ -80,6 +81,19 @@ static double height_at(const scree_outline *o, double x) {
   return fmax(0, o->z[low] + part * (o->z[high] - o->z[low]));
 }
 
+/* A flank is measured from a share of the height on: both ends of the outline lie below it. */
+static scree_status check_ends(const scree_outline *o, double share, scree_error *error) {
+  double peak = 0;
+  for (size_t i = 0; i < o->count; i++) peak = fmax(peak, o->z[i]);
+  for (size_t i = 0; i < o->count; i += o->count - 1)
+    if (o->z[i] > share * peak)
+      return scree_fail(error, SCREE_BAD_FILE,
+                        "the outline ends %.4g m high at x = %.4g m, and flanks are measured from "
+                        "%.4g m on: it has to reach the floor, z = 0, on both sides",
+                        o->z[i], o->x[i], share * peak);
+  return SCREE_OK;
+}
+
 scree_status scree_outline_measure(const scree_outline *outline, double cell,
                                    const scree_repose_options *options, scree_repose *repose,
                                    scree_error *error) {
@@ -88,6 +102,7 @@ scree_status scree_outline_measure(const scree_outline *outline, double cell,
   double axis = axis_of(outline),
          half = fmax(axis - outline->x[0], outline->x[outline->count - 1] - axis);
   if (cell == 0) cell = 2 * half / CELLS_ACROSS;
+  SCREE_TRY(check_ends(outline, fmax(used.band_low, floor_share), error));
   SCREE_TRY(scree_height_field_create(axis, 0, half + cell, cell, &field, error));
   for (size_t j = 0; j < field.rows; j++)
     for (size_t i = 0; i < field.columns; i++) {

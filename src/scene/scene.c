@@ -8,6 +8,7 @@
 #include "base/platform.h"
 #include "base/progress.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <string.h>
 
@@ -259,9 +260,29 @@ scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_er
   return status;
 }
 
+/* The walls' files are there: to be known before shapes are made, which may take minutes. */
+static scree_status look_for_walls(const scree_scene *scene, const char *folder,
+                                   scree_error *error) {
+  for (size_t i = 0; i < scene->plan.geometry.count; i++) {
+    const scree_plan_geometry *g = &scene->plan.geometry.items[i];
+    for (size_t k = 0; k < g->file.count; k++) {
+      char *path = scree_scene_path(folder, g->file.items[k]);
+      if (!path) return scree_fail_memory(error, 0, "a path");
+      scree_path_info info;
+      scree_error why;
+      scree_status status = SCREE_OK;
+      if (!scree_path_look(path, &info))
+        status = scree_fail(&why, SCREE_IO, "%s: cannot open: %s", path, strerror(errno));
+      scree_free(path);
+      SCREE_TRY(scree_scene_blame(scene, &g->place, status, &why, error));
+    }
+  }
+  return SCREE_OK;
+}
+
 static scree_status make_particles(scree_scene *scene, const char *folder, scree_shape_store *store,
                                    const scree_progress *progress, scree_error *error) {
-  scree_status status = SCREE_OK;
+  scree_status status = look_for_walls(scene, folder, error);
   scree_shape_made made = {0};
   const scree_scene_making making = {store, progress, &made};
   for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(scene); i++) {

@@ -143,8 +143,9 @@ static scree_status read_text(const char *text, scree_outline *outline, scree_er
 static void outlines_have_units_and_two_flanks(void **state) {
   (void)state;
   static const char *const texts[] = {"x [cm], z [mm]\n-20,0\n0,100\r\n25,0\n",
-                                      "# a comment\n-200 0\n0 100\n\n250 0\n"};
-  for (int i = 0; i < 2; i++) {
+                                      "# a comment\n-200 0\n0 100\n\n250 0\n",
+                                      "place (cm);height (mm)\n-20;0\n0;100\n25;0\n"};
+  for (int i = 0; i < 3; i++) {
     scree_outline outline;
     scree_error error;
     scree_repose r;
@@ -173,6 +174,7 @@ static void outlines_that_are_none_are_told_by_their_line(void **state) {
              {"0,1\n1,2\n2\n", "line 3: needs two numbers"},
              {"x [s], z [mm]\n0,1\n1,2\n2,0\n", "the unit 's' of column 1 is none of m"},
              {"0,1\n1,1e999\n2,0\n", "line 2: a number that is not finite"},
+             {"x [mm],y [mm],z [mm]\n0,0,1\n1,0,2\n2,0,0\n", "line 2: has more than two numbers"},
              {"", "needs three points, not 0"}};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     scree_outline outline = {0};
@@ -180,6 +182,23 @@ static void outlines_that_are_none_are_told_by_their_line(void **state) {
     assert_int_equal(read_text(bad[i].text, &outline, &error), SCREE_BAD_FILE);
     if (!strstr(error.message, bad[i].told)) fail_msg("%s: %s", bad[i].text, error.message);
     assert_null(outline.x);
+  }
+}
+
+/* One of which a flank was not recorded, and one whose heights are above another place than the
+ * floor, have no angle; noise of the floor is none. */
+static void cut_outlines_are_told(void **state) {
+  (void)state;
+  scree_rng rng = {3, 1, 0};
+  for (int i = 0; i < 200; i++) {
+    double foot = 0.4 * scree_rng_uniform(&rng), x[5] = {-2, -1, 0, 1, 2},
+           z[5] = {foot, 0.5 * scree_rng_uniform(&rng), 1, 0.5 * scree_rng_uniform(&rng), 0};
+    scree_outline outline = {5, x, z};
+    scree_error error;
+    scree_repose r;
+    scree_status status = scree_outline_measure(&outline, 0, NULL, &r, &error);
+    assert_int_equal(status == SCREE_BAD_FILE, foot > 0.2);
+    if (foot > 0.2) assert_non_null(strstr(error.message, "high at x = -2 m, and flanks"));
   }
 }
 
@@ -377,6 +396,7 @@ int main(void) {
       cmocka_unit_test(a_scan_without_a_floor_is_told),
       cmocka_unit_test(outlines_have_units_and_two_flanks),
       cmocka_unit_test(outlines_that_are_none_are_told_by_their_line),
+      cmocka_unit_test(cut_outlines_are_told),
       cmocka_unit_test(silhouettes_give_the_angle_at_any_tilt),
       cmocka_unit_test(pictures_that_are_no_silhouette_are_told),
       cmocka_unit_test(files_that_are_no_png_are_told),

@@ -336,6 +336,22 @@ static void scenes_that_cannot_be(void **state) {
   }
 }
 
+/* A wall's file that is not there is told before shapes are made, which may take minutes. */
+static void walls_are_looked_for_first(void **state) {
+  (void)state;
+  char text[4000];
+  scree_error error;
+  scree_scene *scene = NULL;
+  replace("box: [0.1, 0.1, 0.01], at", "file: nowhere.stl, at", text, sizeof text);
+  scree_scene_file *file = parse(text);
+  CHECK_OK(scree_scene_file_set(file, "shapes.ball", "{file: none.stl, material: grain}", &error),
+           error);
+  assert_int_not_equal(scree_scene_create(file, NULL, &scene, &error), SCREE_OK);
+  if (!strstr(error.message, "geometry.deck: nowhere.stl: cannot open"))
+    fail_msg("%s", error.message);
+  scree_scene_file_free(file);
+}
+
 /* What is probably a slip is told before the first step, and nothing else is. */
 static void remarks(void **state) {
   (void)state;
@@ -402,6 +418,7 @@ int main(void) {
       cmocka_unit_test(remarks),
       cmocka_unit_test(scenes_that_cannot_be),
       cmocka_unit_test(the_rest_is_foretold),
+      cmocka_unit_test(walls_are_looked_for_first),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
