@@ -64,13 +64,25 @@ def side(claim, found, sign, count):
     print(f"{claim},{difference:.3g},{low:.3g},{high:.3g},{'above' if sign > 0 else 'below'} 0,{verdict},{needed}")
 
 
-def slope(rows):
-    """Of the logarithm of processor time over that of Rp from 1e-4 on."""
-    points = [(math.log(float(rp)), math.log(s)) for rp in LEVELS[2:] for s in values(rows, rp, "processor_seconds")]
+def line(points):
+    """Least squares: the fit, its slope's standard error, degrees of freedom."""
     fit = statistics.linear_regression(*zip(*points))
     x = mean([p[0] for p in points])
     rest = sum((y - fit.slope * a - fit.intercept) ** 2 for a, y in points) / (len(points) - 2)
     return fit.slope, math.sqrt(rest / sum((a - x) ** 2 for a, _ in points)), len(points) - 2
+
+
+def slope(rows):
+    """Of the logarithm of processor time over that of Rp from 1e-4 on."""
+    return line([(math.log(float(rp)), math.log(s)) for rp in LEVELS[2:] for s in values(rows, rp, "processor_seconds")])
+
+
+def trend(rows):
+    """The rise of the angle over the logarithm of the triangles from 1e-4 to 2e-3."""
+    counts = {rp: math.log(values(rows, rp, "triangle_count")[0]) for rp in (*LEVELS[2:], "recommended", "2*recommended")}
+    rise, error, free = line([(x, angle) for rp, x in counts.items() for angle in values(rows, rp, "sector_deg")])
+    span = counts[LEVELS[-1]] - counts[LEVELS[2]]
+    return rise * span, error * span, free
 
 
 def by_volume():
@@ -106,6 +118,8 @@ def claims():
     for rp in ("1e-4", "3e-4", "1e-3"):
         equal(f"angle at {rp} less that at 2e-3 (deg)", apart(heaps(rp), heaps("2e-3")), 3, 10, "deg")
     equal("angle at the recommended level less that at 2e-3 (deg)", apart(heaps("recommended"), heaps("2e-3")), 3, len(heaps("recommended")), "deg")
+    rise = trend(rows + recommended)
+    equal("rise of the angle from 1e-4 to 2e-3 by all levels (deg)", rise, 3, 10, "deg")
     side("angle at 1e-5 less that at 1e-4 (deg)", apart(heaps("1e-5"), heaps("1e-4")), -1, 9)
     side("ln of SD at 1e-3 and 2e-3 over 1e-5 and 3e-5", spread(rows, False), -1, 10)
     side("ln of CV at 1e-3 and 2e-3 over 1e-5 and 3e-5", spread(rows, True), -1, 10)
