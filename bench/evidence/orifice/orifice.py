@@ -4,7 +4,7 @@
   orifice.py run FILE.csv HOLE:SEEDS,... CODE...
                                   from the same places, seed by seed; adds to the table what it lacks. HOLE is in diameters.
                                   CODE is scree, liggghts, or liggghts-no-dashpot: its tangential dashpot acts in every
-                                  contact, scree's in those that last
+                                  contact, scree's in those that last; yade, which has none
   orifice.py compare FILE.csv     as CSV: each hole's rates, their relative difference, and the fits of
                                   W = C rho sqrt(g) (D - k d)^n, with half of their intervals of 90 %
 
@@ -12,12 +12,14 @@ A rate scatters from seed to seed by s / sqrt(count); s is of all holes and code
 seeds. Intervals of fits are those of rates drawn anew with their scatter.
 
 A bin is 2 holes wide, its bed 2 holes high at the start. The rate is taken from when a fifth has left until half has: the
-bed is then still a hole high. rho is what lies, meanwhile, in a box in the bed. Environment: LIGGGHTS (the program)."""
+bed is then still a hole high. rho is what lies, meanwhile, in a box in the bed. Environment: LIGGGHTS, YADE (the programs)."""
+import json
 import math
 import os
 import pathlib
 import random
 import shutil
+import subprocess
 import sys
 import time
 
@@ -27,7 +29,7 @@ from common import WORK, Table, deviation, library, liggghts, main, mean, needs,
 
 D, G, EVERY = 0.006, 9.81, 0.009
 FIRST, LAST, WIDE = 0.2, 0.5, 2
-CODES = "scree", "liggghts", "liggghts-no-dashpot"
+CODES = "scree", "liggghts", "liggghts-no-dashpot", "yade"
 COLUMNS = ["hole", "seed", "code", "spheres", "from_s", "until_s", "count", "rate", "solid", "cpu_s"]
 
 
@@ -46,12 +48,12 @@ def places(hole, seed):
     return found
 
 
-def ring(path, inner, outer):
-    """The floor about a hole of 90 corners, as STL."""
-    def corner(r, k):
-        return r * math.cos(math.pi * k / 45), r * math.sin(math.pi * k / 45), 0
-    quads = [(corner(inner, k), corner(outer, k), corner(outer, k + 1), corner(inner, k + 1)) for k in range(90)]
-    write_stl(path, [three for a, b, c, d in quads for three in ((a, b, c), (a, c, d))])
+def ring(first, second):
+    """Triangles between two rings of 90 corners, each a radius and a height."""
+    def corner(r, z, k):
+        return r * math.cos(math.pi * k / 45), r * math.sin(math.pi * k / 45), z
+    quads = [(corner(*first, k), corner(*second, k), corner(*second, k + 1), corner(*first, k + 1)) for k in range(90)]
+    return [three for a, b, c, d in quads for three in ((a, b, c), (a, c, d))]
 
 
 def box(hole):
@@ -88,11 +90,25 @@ def with_liggghts(spheres, hole, folder, code):
     return rows, os.times().children_user - before
 
 
+def with_yade(spheres, hole, folder):
+    """Its cylinder has 90 sides."""
+    radius = 0.5 * WIDE * hole * D
+    case = {"spheres": spheres, "diameter": D, "facets": ring((0.5 * hole * D, 0), (radius + 0.001, 0)) + ring((radius, 0), (radius, 0.4)),
+            "kn": 1000, "damping": [0.373919, 0.528802], "friction": 0.5, "step": 3.75e-5, "every": round(EVERY / 3.75e-5),
+            "least": round((1 - LAST) * len(spheres)), "box": box(hole)}
+    (folder / "case.json").write_text(json.dumps(case))
+    before = os.times().children_user
+    told = subprocess.run([needs("YADE"), "-n", "-x", "-j1", str(HERE / "orifice_yade.py"), str(folder / "case.json")], cwd=folder,
+                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
+    return [tuple(map(float, line.split()[1:])) for line in told.splitlines() if line.startswith("row ")], os.times().children_user - before
+
+
 def one(hole, seed, code):
     folder, spheres = WORK / "orifice" / f"{hole}-{seed}-{code}", places(hole, seed)
     folder.mkdir(parents=True, exist_ok=True)
-    ring(folder / "ring.stl", 0.5 * hole * D, 0.5 * WIDE * hole * D + 0.001)
-    rows, seconds = with_scree(spheres, hole, folder) if code == "scree" else with_liggghts(spheres, hole, folder, code)
+    write_stl(folder / "ring.stl", ring((0.5 * hole * D, 0), (0.5 * WIDE * hole * D + 0.001, 0)))
+    rows, seconds = with_liggghts(spheres, hole, folder, code) if "liggghts" in code else \
+        {"scree": with_scree, "yade": with_yade}[code](spheres, hole, folder)
     begin = next(row for row in rows if row[1] <= (1 - FIRST) * len(spheres))
     end = next((row for row in rows if row[1] <= (1 - LAST) * len(spheres)), None)
     if not end:
