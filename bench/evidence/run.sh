@@ -2,7 +2,8 @@
 # Evidence: cases beside measurements and other codes, docs/background/evidence.md.
 #   bench/evidence/run.sh [CASE...]     boulders, drum, penetration, orifice, bulk, polyhedra, clumps, turning, hits, paper, estimator; all without a name
 # Each piece goes on where it was broken off; what is done is not done again (delete its table in results/ to repeat it).
-# SCREE_EVIDENCE_SECONDS stops each piece after so long, at a row of its table; the same call goes on with the next.
+# SCREE_EVIDENCE_SECONDS stops each piece after so long, at a row of its table; the same call goes on with the next. A row that takes
+# longer never ends: some take minutes.
 # SCREE_EVIDENCE_DIR names the folder of measurements (default ../shared/evidence); a case without its folder, or the program that it is
 # compared with, is skipped. One process at a time: nice -n 15 bench/evidence/run.sh runs beside other work. Some hours of one core in all.
 set -euo pipefail
@@ -83,6 +84,7 @@ penetration() {
 
 orifice() {
   piece "$here/orifice/orifice.py" run "$results/orifice.csv" 5.5:4,6.25:4,7:4,8:2,9:1 scree liggghts liggghts-no-dashpot
+  piece "$here/orifice/orifice.py" run "$results/orifice.csv" 5.5:4 yade
   compared "$results/orifice.csv" "$results/orifice-compared.csv" "$here/orifice/orifice.py" compare
 }
 

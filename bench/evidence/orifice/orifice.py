@@ -120,7 +120,7 @@ def one(hole, seed, code):
 
 
 def run(path, holes, codes):
-    needs("LIGGGHTS")
+    needs("YADE" if "yade" in codes else "LIGGGHTS")
     table, seeds = Table(path, COLUMNS, 3), {hole: int(count) for hole, _, count in (h.partition(":") for h in holes.split(","))}
     for seed in range(1, max(seeds.values()) + 1):
         for code in codes:
@@ -163,8 +163,6 @@ def compare(path):
     print(f"scatter x sqrt(count),,,{s:.3g},,,")
     for code in CODES:
         holes = sorted(hole for c, hole in groups if c == code and ("scree", hole) in groups)
-        if len(holes) < 3:
-            continue
         rows, differences = [], []
         for hole in holes:
             (rate, sd, count), (ours, ours_sd, _) = (summary(groups[c, hole], s) for c in (code, "scree"))
@@ -173,6 +171,8 @@ def compare(path):
             print(f"rate of {hole:g},{code},{count},{rate:.5g},{student * sd * rate:.2g},{other or ','}")
             solid = mean([row[2] for row in groups[code, hole]])
             rows.append((hole, rate * math.pi / 6 / solid / math.sqrt(G / D), sd))
+        if len(holes) < 3:
+            continue
         if code != "scree":
             half = student * math.sqrt(sum(d[1] for d in differences)) / len(holes)
             print(f"mean of all holes,{code},,,,{mean([d[0] for d in differences]):.4f},{half:.3f}")
