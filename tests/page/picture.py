@@ -19,5 +19,10 @@ with Browser() as browser:
         browser.run("document.querySelector('#sample').click()")
         browser.wait("document.body.dataset.chosen > 0 || document.querySelector('.error')", 300)
         browser.wait("document.querySelector('#panel-0').dataset.busy === 'false'", 300)
+    else:
+        browser.look(1000, 1150)
+        slider = "document.querySelector('input[type=range]')"
+        browser.wait(slider)
+        browser.run(f"const s = {slider}; s.value = 0.78 * s.max; s.dispatchEvent(new Event('input', {{bubbles: true}}))")
     browser.run("window.scrollTo(0, 0)")
     browser.screenshot(picture, whole=False)

@@ -22,10 +22,21 @@ export class CalibrationSection {
     this.drawHistory();
   }
 
+  // What is known, before how it came to be known.
+  answer() {
+    const { calibration: c } = this;
+    const [best] = c.settings ?? [];
+    if (best) return `The best so far: ${c.parameters.map(({ name }, i) => `${name} ${number(best.values[i], 3)}`).join(', ')} with ${c.sought} ${number(best.mean, 4)} (${interval(best.low, best.high)}).`;
+    const told = (p) => (p.identified ? `${p.name} ${number(p.mean, 3)} (${number(p.low, 3)} to ${number(p.high, 3)})`
+      : known(p.at_least) ? `${p.name} at least ${number(p.at_least, 3)}` : known(p.at_most) ? `${p.name} at most ${number(p.at_most, 3)}` : `${p.name} is not told by these measurements`);
+    return `${c.parameters.map(told).join('; ')}. Intervals of ${percent(c.confidence)}.`;
+  }
+
   tell() {
     const { host, calibration: c } = this;
     element('h1', c.title, host);
-    element('p', `${counted(c.done, 'run')} in ${counted(c.rounds, 'round')}${c.failed ? `, ${c.failed} failed` : ''}: ${c.stopped ?? 'not ended yet'}.`, host, { class: 'answer' });
+    if (c.sought ? c.settings?.length : known(c.parameters[0]?.mean)) element('p', this.answer(), host, { class: 'answer' });
+    element('p', `${counted(c.done, 'run')} in ${counted(c.rounds, 'round')}${c.failed ? `, ${c.failed} failed` : ''}: ${c.stopped ?? 'not ended yet'}.`, host, { class: 'soft' });
     for (const { a, b, one_end: one, other_end: other } of c.trades ?? [])
       element('p', `${a} and ${b} trade against each other: ${a} ${number(one[0], 3)} with ${b} ${number(one[1], 3)} gives the same answers as ${a} ${number(other[0], 3)} with ${b} ${number(other[1], 3)}.`, host);
     const best = c.advice?.[0];

@@ -22,12 +22,13 @@ function spark(host, times, values) {
   return made('rect', svg, { y: 0, width: 1, height: sparkHeight, fill: 'var(--accent)' });
 }
 
-// The angle of repose three ways, or why there is none.
+// The angle of repose in all ways, or why there is none.
 function angleText(pile) {
   if (!pile.heap) return `${pile.name}: there is no heap: ${pile.no_heap_because}.`;
-  const ways = [['the sectors', pile.sectors, pile.sectors.sd_deg], ['the cone', pile.cone, null], ['the silhouettes', pile.silhouettes, pile.silhouettes.sd_deg]];
-  const angles = ways.filter(([, way]) => known(way.angle_deg)).map(([name, way, sd]) => `${number(way.angle_deg, 3)}°${known(sd) ? ` ± ${number(sd, 2)}°` : ''} by ${name}`);
-  return `Angle of repose: ${angles.join(', ')}${known(pile.spread_deg) ? `; the three ways differ by ${number(pile.spread_deg, 2)}°` : ''}.`;
+  const ways = [['the sectors', pile.sectors.angle_deg, pile.sectors.sd_deg], ['the cone', pile.cone.angle_deg],
+    ['the silhouettes', pile.silhouettes.angle_deg, pile.silhouettes.sd_deg], ['volume and centroid', pile.volume_deg, pile.volume_se_deg, ' (standard error)']];
+  const angles = ways.filter(([, angle]) => known(angle)).map(([name, angle, spread, kind = '']) => `${number(angle, 3)}°${known(spread) ? ` ± ${number(spread, 2)}°${kind}` : ''} by ${name}`);
+  return `Angle of repose: ${angles.join(', ')}${known(pile.spread_deg) ? `; the first three differ by ${number(pile.spread_deg, 2)}°` : ''}.`;
 }
 
 export class SceneSection extends PlayedSection {
