@@ -10,6 +10,110 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* ---- what is poured ---- */
+
+/* Words of the command line as what is poured: FILE, sample:NAME, sphere:LENGTH, NAME.csv, each in
+ * its share. */
+typedef struct poured_words {
+  scree_poured *shapes;
+  char (*texts)[4300]; /* name and value of each */
+  size_t count;
+} poured_words;
+
+/* A name as scenes have them: without points, and not twice. */
+static void name_shape(const char *word, const poured_words *p, size_t index) {
+  char *name = p->texts[index];
+  cli_distinct_name(word, p->texts[0], sizeof *p->texts, index, 60);
+  for (char *c = name; *c; c++)
+    if (*c == '.' || *c == '*' || (unsigned char)*c < ' ' || *c == 127) *c = '_';
+}
+
+/* The kind of a word; its value, in the scene's terms, into `value`. */
+static const char *kind_of(const char *word, char *value, size_t size) {
+  static const char sphere[] = "sphere:";
+  const char *sample;
+  snprintf(value, size, "%s", word);
+  if (cli_is_sample(word, &sample)) {
+    snprintf(value, size, "%s", sample);
+    return "sample";
+  }
+  if (!strncmp(word, sphere, sizeof sphere - 1)) {
+    double diameter = 0;
+    if (cli_length_from_text(word + sizeof sphere - 1, &diameter))
+      snprintf(value, size, "%.17g", diameter);
+    return "sphere";
+  }
+  return scree_is_clump_table(word) ? "clump" : "file";
+}
+
+static scree_status make_poured(const char *const *words, const double *shares, size_t count,
+                                poured_words *p, scree_error *error) {
+  p->count = count;
+  SCREE_TRY_ALLOC_ZERO(p->shapes, count, error);
+  SCREE_TRY_ALLOC_ZERO(p->texts, count, error);
+  for (size_t i = 0; i < count; i++) {
+    char *value = p->texts[i] + 100;
+    name_shape(words[i], p, i);
+    const char *kind = kind_of(words[i], value, sizeof *p->texts - 100);
+    p->shapes[i] = (scree_poured){p->texts[i], kind, value, shares ? shares[i] : 1};
+  }
+  return SCREE_OK;
+}
+
+static void free_poured(poured_words *p) {
+  scree_free(p->shapes);
+  scree_free(p->texts);
+  *p = (poured_words){0};
+}
+
+static scree_status set_shape(scree_scene_file *file, const scree_poured *shape, const char *field,
+                              const char *value, scree_error *error) {
+  char path[200];
+  snprintf(path, sizeof path, "shapes.%s.%s", shape->name, field);
+  return scree_scene_file_set(file, path, value, error);
+}
+
+static scree_status set_length(scree_scene_file *file, const scree_poured *shape, const char *field,
+                               double value, double usual, scree_error *error) {
+  char text[40];
+  snprintf(text, sizeof text, "%.17g", value);
+  return value == usual ? SCREE_OK : set_shape(file, shape, field, text, error);
+}
+
+static bool is_scan(const scree_poured *shape) {
+  return !strcmp(shape->kind, "file") || !strcmp(shape->kind, "sample");
+}
+
+static scree_status pour_shapes(scree_scene_file *file, const poured_words *p,
+                                const cli_source *source, bool no_repair, scree_error *error) {
+  const cli_source usual = CLI_SOURCE_DEFAULTS;
+  cli_input_options input = cli_source_options(source);
+  SCREE_TRY(scree_scene_file_pour(file, p->shapes, p->count, error));
+  for (size_t i = 0; i < p->count; i++) {
+    const scree_poured *s = &p->shapes[i];
+    bool sample = !strcmp(s->kind, "sample"), read = is_scan(s) || !strcmp(s->kind, "clump");
+    if (read && !sample && input.read.ignore_comment_unit)
+      SCREE_TRY(set_shape(file, s, "unit", cli_unit_name(source->unit), error));
+    if (sample)
+      SCREE_TRY(set_length(file, s, "resolution", source->resolution, usual.resolution, error));
+    if (sample) SCREE_TRY(set_length(file, s, "noise", source->noise, -1, error));
+    if (sample) SCREE_TRY(set_length(file, s, "sample_seed", (double)source->seed, 1, error));
+    if (no_repair && !strcmp(s->kind, "file"))
+      SCREE_TRY(set_shape(file, s, "repair", "false", error));
+  }
+  return SCREE_OK;
+}
+
+/* Sets a field of all shapes that are made from scans. */
+static scree_status set_scans(scree_scene_file *file, const poured_words *p, const char *field,
+                              const char *value, scree_error *error) {
+  for (size_t i = 0; i < p->count; i++)
+    if (is_scan(&p->shapes[i])) SCREE_TRY(set_shape(file, &p->shapes[i], field, value, error));
+  return SCREE_OK;
+}
+
+/* ---- the call ---- */
+
 /* What came of one level. */
 typedef struct level_result {
   scree_pile pile;
@@ -27,7 +131,7 @@ typedef struct cli_pour {
   scree_work_start start;
   scree_scene_file *file;
   scree_shape_store *store;
-  cli_poured poured;
+  poured_words poured;
   double particles;                          /* by the words' counts; 0: they have none */
   char levels[MOST_LEVELS + 1][LEVEL_BYTES]; /* "": as given */
   char names[MOST_LEVELS + 1][LEVEL_BYTES];  /* of folders and in tables */
@@ -38,7 +142,7 @@ typedef struct cli_pour {
 
 static void free_pour(cli_pour *r) {
   scree_shape_store_free(r->store);
-  cli_poured_free(&r->poured);
+  free_poured(&r->poured);
   scree_scene_file_free(r->file);
 }
 
@@ -92,7 +196,7 @@ static scree_status read_words(cli_pour *r, const char **words, size_t word_coun
   if (counted > 0 && counted < word_count)
     return cli_misuse(r->call->verb, "%zu of %zu shapes have =COUNT: all need one, or none",
                       counted, word_count);
-  return cli_make_poured(words, counted ? counts : NULL, word_count, &r->poured, r->error);
+  return make_poured(words, counted ? counts : NULL, word_count, &r->poured, r->error);
 }
 
 /* Those of --samples, then those of the call. */
@@ -207,16 +311,16 @@ static scree_status set_number(cli_pour *r, const char *field, double value, boo
   char text[CLI_NUMBER_BYTES];
   snprintf(text, sizeof text, "%.17g", value);
   if (value == 0) return SCREE_OK;
-  return scans ? cli_set_scans(r->file, &r->poured, field, text, r->error)
+  return scans ? set_scans(r->file, &r->poured, field, text, r->error)
                : scree_scene_file_set(r->file, field, text, r->error);
 }
 
 static scree_status pour_words(cli_pour *r) {
   const cli_pour_arguments *a = r->arguments;
   if (!r->poured.count) return SCREE_OK;
-  SCREE_TRY(cli_pour_shapes(r->file, &r->poured, &a->source, a->no_repair, r->error));
+  SCREE_TRY(pour_shapes(r->file, &r->poured, &a->source, a->no_repair, r->error));
   if (a->method == SCREE_METHOD_QECD)
-    SCREE_TRY(cli_set_scans(r->file, &r->poured, "method", "qecd", r->error));
+    SCREE_TRY(set_scans(r->file, &r->poured, "method", "qecd", r->error));
   SCREE_TRY(set_number(r, "triangles", (double)a->triangles, true));
   SCREE_TRY(set_number(r, "clump", (double)a->clump, true));
   return set_number(r, "particles", r->particles, false);
@@ -226,7 +330,7 @@ static scree_status pour_words(cli_pour *r) {
 static scree_status set_level(cli_pour *r, size_t index) {
   const char *level = r->levels[index];
   if (!*level || !r->poured.count) return SCREE_OK;
-  SCREE_TRY(cli_set_scans(r->file, &r->poured, "rp", level, r->error));
+  SCREE_TRY(set_scans(r->file, &r->poured, "rp", level, r->error));
   for (size_t i = 0; i < r->poured.count; i++) {
     char field[200];
     if (strcmp(r->poured.shapes[i].kind, "clump") != 0) continue;
@@ -370,7 +474,7 @@ static scree_status run_all(cli_pour *r) {
   return scree_page_write(&o->output, 1, SCREE_PATH_IN(o->output, "report.html"), true, r->error);
 }
 
-/* ---- the call ---- */
+/* ---- all of it ---- */
 
 static scree_status check_call(const cli_pour *r) {
   const cli_pour_arguments *a = r->arguments;

@@ -1,6 +1,7 @@
 #include "cli/scene_run.h"
 #include "report/program.h"
 
+#include "base/array.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "base/path.h"
@@ -48,6 +49,48 @@ static const cli_run_files run_files = {file_names, sizeof file_names / sizeof *
 /* A file of the folder, until the end of the block. */
 #define IN_FOLDER(run, name) SCREE_PATH_IN((run)->output, name)
 
+/* ---- frames for ParaView, and when each was ---- */
+
+enum { FRAME_NAME = 64 };
+
+/* "frame-000012-bodies.vtp", of kind "-bodies". */
+static void frame_name(size_t index, const char *kind, char name[FRAME_NAME]) {
+  snprintf(name, FRAME_NAME, "frame-%06zu%.32s.vtp", index, kind);
+}
+
+/* One more, of this moment. */
+static scree_status note_frame(cli_frames *frames, double time, scree_error *error) {
+  return SCREE_PUSH(frames, time) ? SCREE_OK : scree_fail_memory(error, 0, "the times of frames");
+}
+
+/* Those that an earlier piece wrote, one on the first step at or past every interval (s; 0: none),
+ * before where the world is now. Times are summed up as a world does, for the same bits. */
+static scree_status recall_frames(cli_frames *frames, double interval, const scree_world *world,
+                                  scree_error *error) {
+  double now = scree_world_time(world), step = scree_world_time_step(world, NULL), next = 0;
+  for (double time = 0; interval > 0 && time < now - 0.5 * step; time += step) {
+    if (time < next) continue;
+    SCREE_TRY(note_frame(frames, time, error));
+    next = (floor(time / interval) + 1) * interval;
+  }
+  return SCREE_OK;
+}
+
+/* The collection of those of a kind, where there are any; it may replace an earlier one. */
+static scree_status list_frames(const cli_frames *frames, const char *kind, const char *path,
+                                scree_error *error) {
+  typedef char one_name[FRAME_NAME];
+  size_t count = frames->count;
+  if (count == 0) return SCREE_OK;
+  SCREE_SCRATCH(const char *, files, count, error);
+  SCREE_SCRATCH(one_name, names, count, error);
+  for (size_t i = 0; i < count; i++) {
+    frame_name(i, kind, names[i]);
+    files[i] = names[i];
+  }
+  return scree_pvd_write(files, frames->items, count, path, true, error);
+}
+
 /* ---- while it runs ---- */
 
 static bool watch(void *context, const scree_scene_state *state) {
@@ -68,8 +111,8 @@ static scree_status write_view(const cli_scene_run *r, const scree_scene *scene,
                                scree_error *error) {
   static const scree_world_view views[] = {SCREE_VIEW_SURFACES, SCREE_VIEW_POINTS,
                                            SCREE_VIEW_CONTACTS};
-  char name[CLI_FRAME_NAME];
-  cli_frame_name(r->frames.count, kinds[kind], name);
+  char name[FRAME_NAME];
+  frame_name(r->frames.count, kinds[kind], name);
   const char *path = IN_FOLDER(r, name);
   if (1u << kind == CLI_GEOMETRY) return scree_scene_walls_vtp_write(scene, path, true, error);
   if (1u << kind == CLI_BODIES && r->forecast.frames_are_instances)
@@ -81,7 +124,7 @@ static scree_status write_collections(const cli_scene_run *r, scree_error *error
   for (int kind = 0; kind < CLI_FRAME_KINDS; kind++) {
     if (!(r->views & 1u << kind)) continue;
     const char *path = IN_FOLDER(r, collections[kind]);
-    SCREE_TRY(cli_frames_list(&r->frames, kinds[kind], path, error));
+    SCREE_TRY(list_frames(&r->frames, kinds[kind], path, error));
   }
   return SCREE_OK;
 }
@@ -91,7 +134,7 @@ static scree_status on_frame(void *context, scree_scene *scene, size_t index, sc
   for (int kind = 0; kind < CLI_FRAME_KINDS; kind++)
     if (r->views & 1u << kind) SCREE_TRY(write_view(r, scene, kind, error));
   (void)index;
-  SCREE_TRY(cli_frames_note(&r->frames, scree_world_time(scree_scene_view(scene)), error));
+  SCREE_TRY(note_frame(&r->frames, scree_world_time(scree_scene_view(scene)), error));
   return write_collections(r, error);
 }
 
@@ -165,7 +208,7 @@ static scree_status on_begin(void *context, scree_scene *scene, bool resumed, sc
   r->scene = scene;
   if (resumed)
     SCREE_TRY(
-        cli_frames_recall(&r->frames, r->forecast.frame_interval, scree_scene_view(scene), error));
+        recall_frames(&r->frames, r->forecast.frame_interval, scree_scene_view(scene), error));
   if (r->output)
     SCREE_TRY(scree_text_write(scree_scene_text(scene), IN_FOLDER(r, "scene.yaml"), true, error));
   SCREE_TRY(write_shapes(r, scene, error));
@@ -479,97 +522,4 @@ scree_status cli_set_fields(const cli_call *call, scree_scene_file *file, const 
   }
   if (!*first || scree_scene_file_check(file, NULL) == SCREE_OK) return SCREE_OK;
   return cli_misuse(call->verb, "%s", first);
-}
-
-/* ---- what is poured ---- */
-
-/* A name as scenes have them: without points, and not twice. */
-static void name_shape(const char *word, const cli_poured *p, size_t index) {
-  char *name = p->texts[index];
-  cli_distinct_name(word, p->texts[0], sizeof *p->texts, index, 60);
-  for (char *c = name; *c; c++)
-    if (*c == '.' || *c == '*' || (unsigned char)*c < ' ' || *c == 127) *c = '_';
-}
-
-/* The kind of a word; its value, in the scene's terms, into `value`. */
-static const char *kind_of(const char *word, char *value, size_t size) {
-  static const char sphere[] = "sphere:";
-  const char *sample;
-  snprintf(value, size, "%s", word);
-  if (cli_is_sample(word, &sample)) {
-    snprintf(value, size, "%s", sample);
-    return "sample";
-  }
-  if (!strncmp(word, sphere, sizeof sphere - 1)) {
-    double diameter = 0;
-    if (cli_length_from_text(word + sizeof sphere - 1, &diameter))
-      snprintf(value, size, "%.17g", diameter);
-    return "sphere";
-  }
-  return scree_is_clump_table(word) ? "clump" : "file";
-}
-
-scree_status cli_make_poured(const char *const *words, const double *shares, size_t count,
-                             cli_poured *p, scree_error *error) {
-  p->count = count;
-  SCREE_TRY_ALLOC_ZERO(p->shapes, count, error);
-  SCREE_TRY_ALLOC_ZERO(p->texts, count, error);
-  for (size_t i = 0; i < count; i++) {
-    char *value = p->texts[i] + 100;
-    name_shape(words[i], p, i);
-    const char *kind = kind_of(words[i], value, sizeof *p->texts - 100);
-    p->shapes[i] = (scree_poured){p->texts[i], kind, value, shares ? shares[i] : 1};
-  }
-  return SCREE_OK;
-}
-
-void cli_poured_free(cli_poured *p) {
-  scree_free(p->shapes);
-  scree_free(p->texts);
-  *p = (cli_poured){0};
-}
-
-static scree_status set_shape(scree_scene_file *file, const scree_poured *shape, const char *field,
-                              const char *value, scree_error *error) {
-  char path[200];
-  snprintf(path, sizeof path, "shapes.%s.%s", shape->name, field);
-  return scree_scene_file_set(file, path, value, error);
-}
-
-static scree_status set_length(scree_scene_file *file, const scree_poured *shape, const char *field,
-                               double value, double usual, scree_error *error) {
-  char text[40];
-  snprintf(text, sizeof text, "%.17g", value);
-  return value == usual ? SCREE_OK : set_shape(file, shape, field, text, error);
-}
-
-static bool is_scan(const scree_poured *shape) {
-  return !strcmp(shape->kind, "file") || !strcmp(shape->kind, "sample");
-}
-
-scree_status cli_pour_shapes(scree_scene_file *file, const cli_poured *p, const cli_source *source,
-                             bool no_repair, scree_error *error) {
-  const cli_source usual = CLI_SOURCE_DEFAULTS;
-  cli_input_options input = cli_source_options(source);
-  SCREE_TRY(scree_scene_file_pour(file, p->shapes, p->count, error));
-  for (size_t i = 0; i < p->count; i++) {
-    const scree_poured *s = &p->shapes[i];
-    bool sample = !strcmp(s->kind, "sample"), read = is_scan(s) || !strcmp(s->kind, "clump");
-    if (read && !sample && input.read.ignore_comment_unit)
-      SCREE_TRY(set_shape(file, s, "unit", cli_unit_name(source->unit), error));
-    if (sample)
-      SCREE_TRY(set_length(file, s, "resolution", source->resolution, usual.resolution, error));
-    if (sample) SCREE_TRY(set_length(file, s, "noise", source->noise, -1, error));
-    if (sample) SCREE_TRY(set_length(file, s, "sample_seed", (double)source->seed, 1, error));
-    if (no_repair && !strcmp(s->kind, "file"))
-      SCREE_TRY(set_shape(file, s, "repair", "false", error));
-  }
-  return SCREE_OK;
-}
-
-scree_status cli_set_scans(scree_scene_file *file, const cli_poured *p, const char *field,
-                           const char *value, scree_error *error) {
-  for (size_t i = 0; i < p->count; i++)
-    if (is_scan(&p->shapes[i])) SCREE_TRY(set_shape(file, &p->shapes[i], field, value, error));
-  return SCREE_OK;
 }

@@ -1,12 +1,17 @@
 /* Running a scene in a folder: what the verbs run, repose and drop do alike. */
 #pragma once
 
-#include "cli/frames.h"
 #include "cli/input.h"
 #include "report/provenance.h"
 
 /* What of each frame becomes a file for ParaView: bits. */
 enum { CLI_BODIES = 1, CLI_POINTS = 2, CLI_CONTACTS = 4, CLI_GEOMETRY = 8, CLI_FRAME_KINDS = 4 };
+
+/* The frames that were written. */
+typedef struct cli_frames {
+  double *items; /* the times, s */
+  size_t count, capacity;
+} cli_frames;
 
 /* What calls of these verbs ask for. */
 typedef struct cli_scene_options {
@@ -51,20 +56,3 @@ scree_status cli_set_fields(const cli_call *call, scree_scene_file *file, const 
 void cli_print_repose(FILE *stream, const scree_repose *repose);
 /* The same of a pile, with its particles. */
 void cli_print_pile(FILE *stream, const scree_pile *pile);
-
-/* Words of the command line as what is poured: FILE, sample:NAME, sphere:LENGTH, NAME.csv, each in
- * its share. Texts lie in `texts`; both are to be freed. */
-typedef struct cli_poured {
-  scree_poured *shapes;
-  char (*texts)[4300]; /* name and value of each */
-  size_t count;
-} cli_poured;
-scree_status cli_make_poured(const char *const *words, const double *shares, size_t count,
-                             cli_poured *poured, scree_error *error);
-void cli_poured_free(cli_poured *poured);
-/* Puts them into the file, with what the options say of how files and samples are read. */
-scree_status cli_pour_shapes(scree_scene_file *file, const cli_poured *poured,
-                             const cli_source *source, bool no_repair, scree_error *error);
-/* Sets a field of all shapes that are made from scans. */
-scree_status cli_set_scans(scree_scene_file *file, const cli_poured *poured, const char *field,
-                           const char *value, scree_error *error);

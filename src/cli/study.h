@@ -66,3 +66,12 @@ scree_status study_run_crew(const study_crew *crew, bool worker);
 
 /* Number of this process among those that mpirun or srun started together, 0 without these. */
 size_t study_rank(void);
+
+/* The verbs calibrate and optimise, which differ in their words and refuse each other's files. */
+scree_status calibrate_run(const cli_call *call, scree_error *error);
+
+/* All but what a study alone has. */
+#define CALIBRATION                                                                                \
+  .options = study_options, .option_count = STUDY_OPTIONS - 1, .defaults = &study_defaults,        \
+  .options_size = sizeof study_defaults, .input_minimum = 1, .input_maximum = 2,                   \
+  .partners = "tasks:slurm", .exclusive = STUDY_EXCLUSIVE, .run = calibrate_run

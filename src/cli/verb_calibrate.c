@@ -1,6 +1,6 @@
 /* scree calibrate: parameters from measurements. scree optimise differs in its words only. */
 #include "base/owned.h"
-#include "cli/calibrate.h"
+#include "cli/study.h"
 #include "cli/terminal.h"
 #include "report/program.h"
 

@@ -1,5 +1,5 @@
 /* scree optimise: the best settings of a design. */
-#include "cli/calibrate.h"
+#include "cli/study.h"
 
 const cli_verb cli_verb_optimise = {
     .name = "optimise",

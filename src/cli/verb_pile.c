@@ -1,8 +1,8 @@
 /* scree pile: a heap of a scene measured again, or a real one from its scan, outline or picture. */
+#include "base/file.h"
 #include "base/owned.h"
 #include "base/platform.h"
 #include "cli/output.h"
-#include "cli/pile_measured.h"
 #include "cli/scene_run.h"
 #include "report/program.h"
 
@@ -186,46 +186,143 @@ static scree_status check_outputs(const cli_call *call, scree_error *error) {
   return SCREE_OK;
 }
 
-/* A heap that no scene has: what belongs to scenes is refused. */
-static scree_status run_measured(const cli_call *call, cli_pile_kind kind, scree_error *error) {
+/* ---- what users have: a scan of a heap, its outline, a picture of it ---- */
+
+typedef enum pile_kind {
+  SCENE, /* a frame or a checkpoint */
+  SCAN,
+  OUTLINE,
+  PICTURE,
+} pile_kind;
+
+/* By content and name: a PNG is a picture, .csv an outline, scree's own files and stdin a scene. */
+static pile_kind kind_of(const char *path) {
+  char head[8] = {0};
+  scree_stream stream;
+  if (!strcmp(path, "-")) return SCENE;
+  if (cli_is_sample(path, NULL)) return SCAN;
+  if (cli_has_ending(path, ".csv")) return OUTLINE;
+  if (!scree_stream_open(path, &stream)) return SCENE; /* which says why */
+  bool whole = scree_stream_read(&stream, head, sizeof head);
+  scree_stream_close(&stream);
+  if (whole && !memcmp(head, "\x89PNG\r\n\x1a\n", sizeof head)) return PICTURE;
+  return whole && !memcmp(head, "scree", 5) ? SCENE : SCAN;
+}
+
+/* What was found, to be freed but for the numbers. */
+typedef struct found {
+  pile_kind kind;
+  scree_repose_options how;
+  scree_ground ground;
+  scree_repose repose;
+  scree_outline outline;
+} found;
+
+static void free_found(found *f) {
+  scree_outline_free(&f->outline);
+}
+
+static scree_status measure_scan(const cli_call *call, double cell, found *f, scree_error *error) {
   const pile_arguments *a = call->options;
-  bool picture = kind == CLI_PILE_PICTURE, scan = kind == CLI_PILE_SCAN;
-  cli_measured_pile what = {.kind = kind,
-                            .unit = a->unit,
-                            .scale = a->picture_width,
-                            .how = scree_default_repose_options(),
-                            .json = a->json,
-                            .csv = a->csv};
-  scree_pile_settings used = {0, what.how.sector_count, what.how.band_low, what.how.band_high};
-  SCREE_TRY(read_settings(call, &used));
+  const cli_source source = {.unit = a->unit, .resolution = 0.27e-3, .seed = 1};
+  cli_input_options input = cli_source_options(&source);
+  SCREE_CLEANUP(scree_height_field_free) scree_height_field field = {0};
+  SCREE_CLEANUP(scree_scan_free) scree_scan scan = {0};
+  input.remarked = true; /* a heap is larger than a particle */
+  SCREE_TRY(cli_load(call->inputs[0], &input, call->progress, &scan, error));
+  SCREE_TRY(scree_height_field_scan(&scan.mesh, cell, &f->ground, &field, error));
+  SCREE_TRY(scree_repose_measure(&field, &f->how, &f->repose, error));
+  return a->csv ? scree_outline_of_field(&field, f->repose.axis[0], &f->outline, error) : SCREE_OK;
+}
+
+static scree_status measure_picture(const cli_call *call, found *f, scree_error *error) {
+  const pile_arguments *a = call->options;
+  SCREE_CLEANUP(scree_image_free) scree_image image = {0};
+  SCREE_TRY(scree_image_read_png(call->inputs[0], &image, error));
+  return scree_outline_trace(image.pixels, image.width, image.height,
+                             a->picture_width / (double)image.width, &f->outline, error);
+}
+
+static scree_status find(const cli_call *call, double cell, found *f, scree_error *error) {
+  const pile_arguments *a = call->options;
+  if (f->kind == SCAN) return measure_scan(call, cell, f, error);
+  SCREE_TRY(f->kind == PICTURE ? measure_picture(call, f, error)
+                               : scree_outline_read(call->inputs[0], a->unit, &f->outline, error));
+  return scree_outline_measure(&f->outline, cell, &f->how, &f->repose, error);
+}
+
+static void print_outline(const scree_outline *o) {
+  puts("x [m],z [m]");
+  for (size_t i = 0; i < o->count; i++) printf("%.6g,%.6g\n", o->x[i], o->z[i]);
+}
+
+static void print_found(const found *f) {
+  const scree_ground *g = &f->ground;
+  if (f->kind == SCAN) {
+    printf("floor in %.0f %% of the scan, to %.2g mm, turned by %.1f deg", 100 * g->share,
+           1e3 * g->rms, 57.29577951308232 * acos(fmin(1, g->up[2])));
+    if (g->filled > 0) printf("; holes filled: %.1f %% of the heap", 100 * g->filled);
+    putchar('\n');
+  } else {
+    printf("%s, %zu points, %.4g mm across; sectors and silhouettes are its two sides\n",
+           f->kind == PICTURE ? "silhouette" : "outline", f->outline.count,
+           1e3 * (f->outline.x[f->outline.count - 1] - f->outline.x[0]));
+  }
+  cli_print_repose(stdout, &f->repose);
+}
+
+/* What belongs to scenes is refused. */
+static scree_status check_measured(const cli_call *call, pile_kind kind) {
+  const pile_arguments *a = call->options;
+  const char *file = call->inputs[0];
+  bool picture = kind == PICTURE;
   if (a->picture || a->vtp)
     return cli_misuse(call->verb, "--%s draws the heap of a scene; %s is none",
-                      a->picture ? "output" : "vtp", call->inputs[0]);
+                      a->picture ? "output" : "vtp", file);
   if (picture != (a->picture_width > 0))
     return cli_misuse(call->verb,
                       picture ? "%s is a picture: --picture-width says what it shows across"
                               : "--picture-width is of pictures; %s is none",
-                      call->inputs[0]);
-  if (!scan && a->sectors)
-    return cli_misuse(call->verb, "--sectors: %s is an outline, with two sides", call->inputs[0]);
-  what.cell = used.cell;
-  what.how.sector_count = used.sectors;
-  what.how.band_low = used.band_low;
-  what.how.band_high = used.band_high;
-  what.how.particle_size = a->particle_size;
-  return cli_measure_pile(call, &what, error);
+                      file);
+  if (kind != SCAN && a->sectors)
+    return cli_misuse(call->verb, "--sectors: %s is an outline, with two sides", file);
+  return SCREE_OK;
+}
+
+/* A heap that no scene has. */
+static scree_status run_measured(const cli_call *call, pile_kind kind, scree_error *error) {
+  static const char *const kinds[] = {"scene", "scan", "outline", "picture"};
+  const pile_arguments *a = call->options;
+  SCREE_CLEANUP(free_found) found f = {.kind = kind, .how = scree_default_repose_options()};
+  scree_pile_settings used = {0, f.how.sector_count, f.how.band_low, f.how.band_high};
+  SCREE_TRY(read_settings(call, &used));
+  SCREE_TRY(check_measured(call, kind));
+  f.how.sector_count = used.sectors;
+  f.how.band_low = used.band_low;
+  f.how.band_high = used.band_high;
+  f.how.particle_size = a->particle_size;
+  if (find(call, used.cell, &f, error) != SCREE_OK)
+    return cli_name_in_error(call->inputs[0], error);
+  const scree_heap_entry entry = {call->inputs[0], kinds[kind], call->command_line,
+                                  &f.repose,       &f.how,      kind == SCAN ? &f.ground : NULL};
+  if (a->json) return scree_heap_json_write(&entry, "-", true, error);
+  if (a->csv)
+    print_outline(&f.outline);
+  else
+    print_found(&f);
+  return SCREE_OK;
 }
 
 static scree_status run(const cli_call *call, scree_error *error) {
   const pile_arguments *a = call->options;
   scree_render_options render = scree_default_render_options();
   SCREE_OWNED(scree_scene, loaded);
-  cli_pile_kind kind = cli_pile_kind_of(call->inputs[0]);
+  pile_kind kind = kind_of(call->inputs[0]);
   SCREE_TRY(check_apart(call));
   SCREE_TRY(cli_parse_size(call->verb, a->size, &render.width, &render.height));
   if (a->vtp) SCREE_TRY(cli_check_ending(call->verb, a->vtp, CLI_VTP));
   if (a->picture) SCREE_TRY(cli_check_ending(call->verb, a->picture, CLI_PICTURE));
-  if (kind != CLI_PILE_SCENE) return run_measured(call, kind, error);
+  if (kind != SCENE) return run_measured(call, kind, error);
   if (a->particle_size > 0 || (a->picture_width > 0 && !a->picture))
     return cli_misuse(call->verb, "--%s does nothing here: %s",
                       a->particle_size > 0 ? "particle-size" : "picture-width",

@@ -247,8 +247,11 @@ static void put_settings(scree_json *json, const scree_calibration_result *r) {
   }
 }
 
-static void put_result(scree_json *json, const void *result) {
+scree_status scree_calibration_json_write(const void *result, const char *path, bool overwrite,
+                                          scree_error *error) {
   const scree_calibration_result *r = result;
+  scree_json file, *json = &file;
+  SCREE_TRY(scree_json_open(json, path, overwrite, error));
   size_t width = r->is_search ? 2 : 1 + r->parameter_count;
   scree_json_object(json, NULL);
   SCREE_JSON_MEMBERS(json, r, title, version, seed, confidence, stopped);
@@ -269,11 +272,7 @@ static void put_result(scree_json *json, const void *result) {
   SCREE_JSON_LIST (json, "failures", i, r->failure_count)
     scree_json_text(json, NULL, r->failures[i]);
   scree_json_end(json);
-}
-
-scree_status scree_calibration_json_write(const void *result, const char *path, bool overwrite,
-                                          scree_error *error) {
-  return scree_json_file(path, overwrite, put_result, result, error);
+  return scree_json_commit(json, error);
 }
 
 /* ---- CSV ---- */

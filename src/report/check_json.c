@@ -54,9 +54,8 @@ static void json_entry(scree_json *json, const scree_check_entry *entry, const c
 scree_status scree_check_json_write(const scree_check_entry *entries, size_t entry_count,
                                     const char *command_line, const char *path, bool overwrite,
                                     scree_error *error) {
-  scree_output output;
-  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
-  scree_json json = scree_json_start(output.stream);
+  scree_json json;
+  SCREE_TRY(scree_json_open(&json, path, overwrite, error));
   SCREE_JSON_LIST (&json, NULL, i, entry_count) json_entry(&json, &entries[i], command_line);
-  return scree_output_commit(&output, error);
+  return scree_json_commit(&json, error);
 }

@@ -215,17 +215,16 @@ static void json_set(scree_json *json, const scree_choice_report *report) {
   scree_json_end(json);
 }
 
-static void json_report(scree_json *json, const void *what) {
+scree_status scree_choice_json_write(const void *what, const char *path, bool overwrite,
+                                     scree_error *error) {
   const scree_choice_report *report = what;
+  scree_json file, *json = &file;
+  SCREE_TRY(scree_json_open(json, path, overwrite, error));
   scree_json_array(json, NULL);
   for (size_t e = 0; e < report->entry_count; e++) json_entry(json, report, e);
   if (report->set) json_set(json, report);
   scree_json_end(json);
-}
-
-scree_status scree_choice_json_write(const void *report, const char *path, bool overwrite,
-                                     scree_error *error) {
-  return scree_json_file(path, overwrite, json_report, report, error);
+  return scree_json_commit(json, error);
 }
 
 /* ---- CSV ---- */

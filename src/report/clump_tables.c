@@ -103,15 +103,14 @@ static void json_entry(scree_json *json, const scree_clump_report *report,
   scree_json_end(json);
 }
 
-static void json_report(scree_json *json, const void *what) {
+scree_status scree_clump_json_write(const void *what, const char *path, bool overwrite,
+                                    scree_error *error) {
   const scree_clump_report *report = what;
+  scree_json file, *json = &file;
+  SCREE_TRY(scree_json_open(json, path, overwrite, error));
   SCREE_JSON_LIST (json, NULL, i, report->entry_count)
     json_entry(json, report, &report->entries[i]);
-}
-
-scree_status scree_clump_json_write(const void *report, const char *path, bool overwrite,
-                                    scree_error *error) {
-  return scree_json_file(path, overwrite, json_report, report, error);
+  return scree_json_commit(json, error);
 }
 
 scree_status scree_clump_csv_write(const void *what, const char *path, bool overwrite,

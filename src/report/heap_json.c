@@ -35,9 +35,8 @@ static void put_ground(scree_json *json, const scree_ground *g) {
 
 scree_status scree_heap_json_write(const scree_heap_entry *entry, const char *path, bool overwrite,
                                    scree_error *error) {
-  scree_output output;
-  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
-  scree_json json = scree_json_start(output.stream);
+  scree_json json;
+  SCREE_TRY(scree_json_open(&json, path, overwrite, error));
   scree_json_object(&json, NULL);
   scree_json_maker(&json, entry->command_line);
   SCREE_JSON_MEMBERS(&json, entry, file, kind);
@@ -45,5 +44,5 @@ scree_status scree_heap_json_write(const scree_heap_entry *entry, const char *pa
   scree_json_repose(&json, entry->repose);
   SCREE_JSON_MEMBERS(&json, entry->options, particle_size, band_low, band_high);
   scree_json_end(&json);
-  return scree_output_commit(&output, error);
+  return scree_json_commit(&json, error);
 }

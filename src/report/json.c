@@ -113,13 +113,16 @@ void scree_json_matrix(scree_json *json, const char *key, const double values[3]
   SCREE_JSON_ROW_LIST (json, key, i, 3) scree_json_numbers(json, NULL, values[i], 3);
 }
 
-scree_status scree_json_file(const char *path, bool overwrite, scree_json_writer *write,
-                             const void *what, scree_error *error) {
-  scree_output output;
-  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
-  scree_json json = scree_json_start(output.stream);
-  write(&json, what);
-  return scree_output_commit(&output, error);
+scree_status scree_json_open(scree_json *json, const char *path, bool overwrite,
+                             scree_error *error) {
+  *json = (scree_json){0};
+  SCREE_TRY(scree_output_open(path, overwrite, &json->output, error));
+  json->stream = json->output.stream;
+  return SCREE_OK;
+}
+
+scree_status scree_json_commit(scree_json *json, scree_error *error) {
+  return scree_output_commit(&json->output, error);
 }
 
 void scree_json_source(scree_json *json, const char *format, scree_checksum checksum,

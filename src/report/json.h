@@ -11,12 +11,13 @@
  * (ferror). */
 #pragma once
 
-#include "base/error.h"
+#include "base/file.h"
 
 enum { SCREE_JSON_DEPTH = 32 };
 
 typedef struct scree_json {
   FILE *stream;
+  scree_output output; /* of scree_json_open */
   int depth;
   struct {
     char closing;  /* ']' or '}' */
@@ -26,6 +27,10 @@ typedef struct scree_json {
 } scree_json;
 
 scree_json scree_json_start(FILE *stream);
+/* A whole file, to be committed; "-" is stdout. */
+scree_status scree_json_open(scree_json *json, const char *path, bool overwrite,
+                             scree_error *error);
+scree_status scree_json_commit(scree_json *json, scree_error *error);
 void scree_json_object(scree_json *json, const char *key);
 void scree_json_array(scree_json *json, const char *key);
 /* The same, all on one line: for rows of a table. */
@@ -80,11 +85,6 @@ void scree_json_matrix(scree_json *json, const char *key, const double values[3]
 #define SCREE_JSON_ROW(json, key, object, ...)                                                     \
   (scree_json_row_object(json, key), SCREE_JSON_MEMBERS(json, object, __VA_ARGS__),                \
    scree_json_end(json))
-
-/* A whole file, written by `write`. "-" is stdout. */
-typedef void scree_json_writer(scree_json *json, const void *what);
-scree_status scree_json_file(const char *path, bool overwrite, scree_json_writer *write,
-                             const void *what, scree_error *error);
 
 /* Fields that many files have. Of what: a file's format, checksum, and unit of length in metres. */
 void scree_json_source(scree_json *json, const char *format, scree_checksum checksum,

@@ -148,11 +148,10 @@ static void json_entry(scree_json *json, const scree_measure_entry *entry,
 scree_status scree_measure_json_write(const scree_measure_entry *entries, size_t entry_count,
                                       const char *command_line, const char *path, bool overwrite,
                                       scree_error *error) {
-  scree_output output;
-  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
-  scree_json json = scree_json_start(output.stream);
+  scree_json json;
+  SCREE_TRY(scree_json_open(&json, path, overwrite, error));
   SCREE_JSON_LIST (&json, NULL, i, entry_count) json_entry(&json, &entries[i], command_line);
-  return scree_output_commit(&output, error);
+  return scree_json_commit(&json, error);
 }
 
 static void json_deviation(scree_json *json, const char *key, const scree_deviation *d) {
@@ -165,9 +164,8 @@ static void json_deviation(scree_json *json, const char *key, const scree_deviat
 
 scree_status scree_distance_json_write(const scree_distance_entry *entry, const char *command_line,
                                        const char *path, bool overwrite, scree_error *error) {
-  scree_output output;
-  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
-  scree_json json = scree_json_start(output.stream);
+  scree_json json;
+  SCREE_TRY(scree_json_open(&json, path, overwrite, error));
   scree_json_object(&json, NULL);
   SCREE_JSON_LIST (&json, "files", i, 2) {
     char checksum[SCREE_CHECKSUM_TEXT];
@@ -183,7 +181,7 @@ scree_status scree_distance_json_write(const scree_distance_entry *entry, const 
   SCREE_JSON_ROW(&json, "options", &entry->options, sample_count, hausdorff_gap, one_way);
   scree_json_maker(&json, command_line);
   scree_json_end(&json);
-  return scree_output_commit(&output, error);
+  return scree_json_commit(&json, error);
 }
 
 static void json_row(scree_json *json, const scree_curve_row *row, bool distances) {
@@ -203,9 +201,8 @@ static void json_row(scree_json *json, const scree_curve_row *row, bool distance
 
 scree_status scree_curve_json_write(const scree_curve_entry *entry, const char *command_line,
                                     const char *path, bool overwrite, scree_error *error) {
-  scree_output output;
-  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
-  scree_json json = scree_json_start(output.stream);
+  scree_json json;
+  SCREE_TRY(scree_json_open(&json, path, overwrite, error));
   scree_json_object(&json, NULL);
   scree_json_text(&json, "file", entry->file);
   scree_json_source(&json, entry->format, entry->checksum, entry->unit_m);
@@ -219,7 +216,7 @@ scree_status scree_curve_json_write(const scree_curve_entry *entry, const char *
     json_row(&json, &entry->rows[i], entry->distances);
   scree_json_maker(&json, command_line);
   scree_json_end(&json);
-  return scree_output_commit(&output, error);
+  return scree_json_commit(&json, error);
 }
 
 /* ---- CSV ---- */

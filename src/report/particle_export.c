@@ -67,9 +67,8 @@ static scree_status write_json(const scree_export_options *options, const scree_
   const char *slash = strrchr(mesh_path, '/');
   double moments[3];
   for (int k = 0; k < 3; k++) moments[k] = options->density * m->principal_moments[k];
-  scree_output output;
-  SCREE_TRY(scree_output_open(path, options->overwrite, &output, error));
-  scree_json json = scree_json_start(output.stream);
+  scree_json json;
+  SCREE_TRY(scree_json_open(&json, path, options->overwrite, error));
   scree_json_object(&json, NULL);
   scree_json_text(&json, "mesh_file", slash ? slash + 1 : mesh_path);
   scree_json_number(&json, "unit_m", options->unit_m);
@@ -91,7 +90,7 @@ static scree_status write_json(const scree_export_options *options, const scree_
   scree_json_end(&json);
   scree_export_json_provenance(&json, options);
   scree_json_end(&json);
-  return scree_output_commit(&output, error);
+  return scree_json_commit(&json, error);
 }
 
 static scree_status write_mesh(const scree_export_options *options, const scree_mesh *mesh,

@@ -9,7 +9,8 @@
 
 #include "report/text.h"
 
-#include <cairo.h>
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
 #include <math.h>
 #include <string.h>
 
@@ -39,6 +40,40 @@ typedef struct frame {
   double x_low, x_high, y_low, y_high; /* the axes' ends */
   scree_scale x_scale, y_scale;
 } frame;
+
+/* ---- texts: each run by cairo's own calls, smaller and shifted inside a mark ---- */
+
+static const double SMALL = 0.72, DROP = 0.22, RISE = 0.38; /* of the size */
+
+static double show(cairo_t *cr, const char *text, double size, double x, double y, int draw) {
+  double start = x;
+  scree_text_run r;
+  while (*text) {
+    text = scree_text_run_next(text, &r);
+    cairo_set_font_size(cr, r.kind ? SMALL * size : size);
+    cairo_text_extents_t extents;
+    cairo_text_extents(cr, r.text, &extents);
+    if (draw) {
+      cairo_move_to(cr, x, y + (r.kind == '_' ? DROP * size : r.kind == '^' ? -RISE * size : 0));
+      cairo_show_text(cr, r.text);
+    }
+    x += extents.x_advance;
+  }
+  return x - start;
+}
+
+/* In user units at the size given. */
+static double text_width(cairo_t *cr, const char *text, double size) {
+  return show(cr, text, size, 0, 0, 0);
+}
+
+/* With the anchor at (x, y): align 0 left, 0.5 centre, 1 right; y is the baseline. */
+static void text_draw(cairo_t *cr, const char *text, double size, double x, double y,
+                      double align) {
+  if (align != 0) x -= align * text_width(cr, text, size);
+  show(cr, text, size, x, y, 1);
+  cairo_new_path(cr);
+}
 
 /* ---- ranges ---- */
 
@@ -319,21 +354,21 @@ static void draw_ticks(cairo_t *cr, const frame *f, const scree_ticks *ticks, bo
     }
     cairo_stroke(cr);
     if (*label && is_y)
-      scree_text_draw(cr, label, SMALL_FONT, f->x - 5, at + 0.35 * SMALL_FONT, 1);
+      text_draw(cr, label, SMALL_FONT, f->x - 5, at + 0.35 * SMALL_FONT, 1);
     else if (*label)
-      scree_text_draw(cr, label, SMALL_FONT, at, bottom + 13, 0.5);
+      text_draw(cr, label, SMALL_FONT, at, bottom + 13, 0.5);
   }
 }
 
 static void draw_labels(cairo_t *cr, const frame *f, const scree_panel *panel) {
   if (panel->x.label)
-    scree_text_draw(cr, panel->x.label, FONT, f->x + f->width / 2, f->y + f->height + 29, 0.5);
-  if (panel->title) scree_text_draw(cr, panel->title, FONT, f->x, f->y - 7, 0);
+    text_draw(cr, panel->x.label, FONT, f->x + f->width / 2, f->y + f->height + 29, 0.5);
+  if (panel->title) text_draw(cr, panel->title, FONT, f->x, f->y - 7, 0);
   if (!panel->y.label) return;
   cairo_save(cr);
   cairo_translate(cr, f->x - LEFT + 13, f->y + f->height / 2);
   cairo_rotate(cr, -acos(-1) / 2);
-  scree_text_draw(cr, panel->y.label, FONT, 0, 0, 0.5);
+  text_draw(cr, panel->y.label, FONT, 0, 0, 0.5);
   cairo_restore(cr);
 }
 
@@ -356,12 +391,11 @@ static void draw_guides(cairo_t *cr, const frame *f, const scree_panel *panel) {
     /* above the frame, where no data is, and clear of the title; a line across carries its word
      * on the right end */
     if (guide->label && !guide->across) {
-      double left = x - 0.5 * scree_text_width(cr, guide->label, SMALL_FONT);
-      if (panel->title)
-        left = fmax(left, f->x + scree_text_width(cr, panel->title, FONT) + SMALL_FONT);
-      scree_text_draw(cr, guide->label, SMALL_FONT, left, f->y - 4, 0);
+      double left = x - 0.5 * text_width(cr, guide->label, SMALL_FONT);
+      if (panel->title) left = fmax(left, f->x + text_width(cr, panel->title, FONT) + SMALL_FONT);
+      text_draw(cr, guide->label, SMALL_FONT, left, f->y - 4, 0);
     } else if (guide->label)
-      scree_text_draw(cr, guide->label, SMALL_FONT, f->x + f->width - 3, y - 3, 1);
+      text_draw(cr, guide->label, SMALL_FONT, f->x + f->width - 3, y - 3, 1);
   }
 }
 
@@ -417,7 +451,7 @@ static void draw_entry(cairo_t *cr, const scree_series *series, double x, double
   if (series->draw & SCREE_DRAW_MARKERS)
     draw_marker(cr, series, x + (LEGEND_SAMPLE - 6) / 2, middle);
   cairo_set_source_rgb(cr, INK, INK, INK);
-  scree_text_draw(cr, series->label, SMALL_FONT, x + LEGEND_SAMPLE, y, 0);
+  text_draw(cr, series->label, SMALL_FONT, x + LEGEND_SAMPLE, y, 0);
 }
 
 /* Moves to the next series that has an entry of its own, from *panel, *series on. */
@@ -430,7 +464,7 @@ static bool next_entry(const scree_figure *figure, size_t *panel, size_t *series
 }
 
 static double entry_width(cairo_t *cr, const scree_series *series) {
-  return LEGEND_SAMPLE + scree_text_width(cr, series->label, SMALL_FONT) + LEGEND_GAP;
+  return LEGEND_SAMPLE + text_width(cr, series->label, SMALL_FONT) + LEGEND_GAP;
 }
 
 /* Draws the entries from *panel, *series on that fit into one row, centred, and moves behind them;
@@ -485,7 +519,8 @@ static void select_font(cairo_t *cr) {
   cairo_select_font_face(cr, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
 }
 
-void scree_figure_extent(const scree_figure *figure, double *width, double *height) {
+/* Size of the whole figure in points. */
+static void figure_extent(const scree_figure *figure, double *width, double *height) {
   double cell_width, cell_height;
   cell_size(figure, &cell_width, &cell_height);
   size_t columns = column_count(figure), rows = (figure->panel_count + columns - 1) / columns;
@@ -499,10 +534,11 @@ void scree_figure_extent(const scree_figure *figure, double *width, double *heig
   cairo_surface_destroy(surface);
 }
 
-void scree_figure_draw(const scree_figure *figure, cairo_t *cr) {
+/* In points from the origin, background included. */
+static void figure_draw(const scree_figure *figure, cairo_t *cr) {
   double cell_width, cell_height, width, height;
   cell_size(figure, &cell_width, &cell_height);
-  scree_figure_extent(figure, &width, &height);
+  figure_extent(figure, &width, &height);
   size_t columns = column_count(figure), rows = (figure->panel_count + columns - 1) / columns;
   cairo_set_source_rgb(cr, 1, 1, 1);
   cairo_paint(cr);
@@ -515,5 +551,60 @@ void scree_figure_draw(const scree_figure *figure, cairo_t *cr) {
   draw_legend(cr, figure, width, cell_height * (double)rows, true);
   if (!figure->note) return;
   cairo_set_source_rgb(cr, 0.45, 0.45, 0.45);
-  scree_text_draw(cr, figure->note, NOTE_FONT, width - RIGHT, height - EDGE + 1, 1);
+  text_draw(cr, figure->note, NOTE_FONT, width - RIGHT, height - EDGE + 1, 1);
+}
+
+/* ---- files: cairo streams into our own, so that a picture appears complete or not at all ---- */
+
+static const double PIXELS_PER_POINT = 2;
+
+/* Never fails: a write that does leaves its mark on the stream, and scree_output_commit, which
+ * knows the reason, finds it. */
+static cairo_status_t to_stream(void *stream, const unsigned char *bytes, unsigned count) {
+  (void)fwrite(bytes, 1, count, stream);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+static cairo_status_t draw_to(const scree_figure *figure, cairo_surface_t *surface, double scale) {
+  cairo_t *cr = cairo_create(surface);
+  cairo_scale(cr, scale, scale);
+  figure_draw(figure, cr);
+  cairo_status_t status = cairo_status(cr);
+  cairo_destroy(cr);
+  return status;
+}
+
+static cairo_status_t write_png(const scree_figure *figure, FILE *stream) {
+  double width, height;
+  figure_extent(figure, &width, &height);
+  cairo_surface_t *surface =
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(width * PIXELS_PER_POINT),
+                                 (int)ceil(height * PIXELS_PER_POINT));
+  cairo_status_t status = draw_to(figure, surface, PIXELS_PER_POINT);
+  if (status == CAIRO_STATUS_SUCCESS)
+    status = cairo_surface_write_to_png_stream(surface, to_stream, stream);
+  cairo_surface_destroy(surface);
+  return status;
+}
+
+static cairo_status_t write_vector(const scree_figure *figure, FILE *stream, bool pdf) {
+  double width, height;
+  figure_extent(figure, &width, &height);
+  cairo_surface_t *surface =
+      pdf ? cairo_pdf_surface_create_for_stream(to_stream, stream, width, height)
+          : cairo_svg_surface_create_for_stream(to_stream, stream, width, height);
+  cairo_status_t status = draw_to(figure, surface, 1);
+  cairo_surface_finish(surface);
+  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface);
+  cairo_surface_destroy(surface);
+  return status;
+}
+
+scree_status scree_figure_paint(const scree_figure *figure, scree_paint paint, FILE *stream,
+                                const char *path, scree_error *error) {
+  cairo_status_t drawn = paint == SCREE_PAINT_PNG
+                             ? write_png(figure, stream)
+                             : write_vector(figure, stream, paint == SCREE_PAINT_PDF);
+  if (drawn == CAIRO_STATUS_SUCCESS) return SCREE_OK;
+  return scree_fail(error, SCREE_IO, "%s: cannot draw: %s", path, cairo_status_to_string(drawn));
 }

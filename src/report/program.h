@@ -310,6 +310,3 @@ void scree_calibration_print(const scree_calibration_result *result, FILE *strea
 scree_writer scree_calibration_json_write;
 /* The samples, a row each. */
 scree_writer scree_calibration_csv_write;
-
-/* "surfaces", "points", "contacts" or "walls"; NULL beyond. */
-const char *scree_world_view_name(scree_world_view view);

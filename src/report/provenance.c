@@ -10,9 +10,8 @@ scree_work_start scree_work_started(void) {
 
 scree_status scree_provenance_write(const scree_work_start *start, const char *command_line,
                                     const char *path, bool overwrite, scree_error *error) {
-  scree_output output;
-  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
-  scree_json json = scree_json_start(output.stream);
+  scree_json json;
+  SCREE_TRY(scree_json_open(&json, path, overwrite, error));
   char started[32], system[SCREE_SYSTEM_TEXT], processor[SCREE_SYSTEM_TEXT];
   scree_format_time(start->calendar, started);
   scree_system_name(system);
@@ -27,5 +26,5 @@ scree_status scree_provenance_write(const scree_work_start *start, const char *c
   scree_json_text(&json, "processor", processor);
   scree_json_count(&json, "processors", (uint64_t)scree_processor_count());
   scree_json_end(&json);
-  return scree_output_commit(&output, error);
+  return scree_json_commit(&json, error);
 }

@@ -35,6 +35,9 @@ void scree_shape_json(scree_json *json, const scree_particle *particle) {
 /* ---- finding them ---- */
 
 void scree_shapes_free(scree_shapes *shapes) {
+  for (size_t i = 0; shapes->spheres && i < shapes->count; i++)
+    scree_mesh_free(&shapes->spheres[i]);
+  scree_free(shapes->spheres);
   scree_free(shapes->particles);
   scree_free(shapes->of_body);
   *shapes = (scree_shapes){0};
@@ -117,4 +120,20 @@ scree_status scree_spheres_mesh(const scree_particle *particle, int level, scree
   scree_particle_measure(particle, &m);
   SCREE_TRY(scree_sample_make(name, NULL, NULL, &unit, error));
   return mesh_of_spheres(particle, m.point_count, &unit, mesh, error);
+}
+
+scree_status scree_shapes_draw(scree_shapes *shapes, int level, scree_error *error) {
+  SCREE_TRY_ALLOC_ZERO(shapes->spheres, shapes->count, error);
+  for (size_t i = 0; i < shapes->count; i++) {
+    scree_particle_measures m;
+    scree_particle_measure(shapes->particles[i], &m);
+    if (m.kind != SCREE_PARTICLE_MESH)
+      SCREE_TRY(scree_spheres_mesh(shapes->particles[i], level, &shapes->spheres[i], error));
+  }
+  return SCREE_OK;
+}
+
+const scree_mesh *scree_shape_surface(const scree_shapes *shapes, size_t shape) {
+  const scree_mesh *spheres = &shapes->spheres[shape];
+  return spheres->triangle_count ? spheres : scree_particle_mesh(shapes->particles[shape]);
 }

@@ -6,11 +6,15 @@
 typedef struct scree_shapes {
   scree_particle **particles; /* of each shape, borrowed */
   size_t count;
-  size_t *of_body; /* the shape of every body ever added */
+  size_t *of_body;     /* the shape of every body ever added */
+  scree_mesh *spheres; /* scree_shapes_draw: of each shape that is made of spheres; else empty */
 } scree_shapes;
 
 scree_status scree_shapes_find(const scree_world *world, scree_shapes *shapes, scree_error *error);
 void scree_shapes_free(scree_shapes *shapes);
+/* Makes a surface of each shape, in its frame; spheres as scree_spheres_mesh. */
+scree_status scree_shapes_draw(scree_shapes *shapes, int level, scree_error *error);
+const scree_mesh *scree_shape_surface(const scree_shapes *shapes, size_t shape);
 
 /* Bodies that are in the world. */
 size_t scree_world_live_count(const scree_world *world);

@@ -95,14 +95,9 @@ static void put_family(scree_json *json, const scree_study_result *r,
   for (size_t k = 0; k + 1 < f->level_count; k++)
     put_comparison(json, r, f->levels[k], &f->comparisons[k]);
   scree_json_end(json);
-  scree_json_row_object(json, "time_law");
-  scree_json_count(json, "count", f->time_law.count);
-  scree_json_number(json, "factor", f->time_law.count ? f->time_law.factor : NAN);
-  scree_json_number(json, "exponent", f->time_law.count ? f->time_law.exponent : NAN);
-  scree_json_number(json, "exponent_low", f->time_law.count ? f->time_law.exponent_low : NAN);
-  scree_json_number(json, "exponent_high", f->time_law.count ? f->time_law.exponent_high : NAN);
-  scree_json_number(json, "r2", f->time_law.count ? f->time_law.r2 : NAN);
-  scree_json_end(json);
+  const scree_power_law none = {0, NAN, NAN, NAN, NAN, NAN},
+                        *law = f->time_law.count ? &f->time_law : &none;
+  SCREE_JSON_ROW(json, "time_law", law, count, factor, exponent, exponent_low, exponent_high, r2);
   scree_json_object(json, "time_polynomial");
   scree_json_count(json, "count", f->time_curve.count);
   scree_json_numbers(json, "coefficients", f->time_curve.coefficient,
@@ -113,8 +108,11 @@ static void put_family(scree_json *json, const scree_study_result *r,
   scree_json_end(json);
 }
 
-static void put_result(scree_json *json, const void *result) {
+scree_status scree_study_json_write(const void *result, const char *path, bool overwrite,
+                                    scree_error *error) {
   const scree_study_result *r = result;
+  scree_json file, *json = &file;
+  SCREE_TRY(scree_json_open(json, path, overwrite, error));
   scree_json_object(json, NULL);
   SCREE_JSON_MEMBERS(json, r, version, name, design, method, angle, seed);
   scree_json_count(json, "replicates", r->replicate_count);
@@ -131,11 +129,7 @@ static void put_result(scree_json *json, const void *result) {
     SCREE_JSON_ROW(json, NULL, &r->failures[i], label, replicate, reason);
   }
   scree_json_end(json);
-}
-
-scree_status scree_study_json_write(const void *result, const char *path, bool overwrite,
-                                    scree_error *error) {
-  return scree_json_file(path, overwrite, put_result, result, error);
+  return scree_json_commit(json, error);
 }
 
 /* ---- CSV ---- */

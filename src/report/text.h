@@ -1,17 +1,7 @@
-/* Text with _{below} and ^{above} on a cairo context. */
+/* Text with _{below} and ^{above}, in runs. */
 #pragma once
 
 #include <stddef.h>
-
-/* cairo_t, so that this header compiles without cairo's include path. */
-struct _cairo;
-
-/* Width in user units at the size given. */
-double scree_text_width(struct _cairo *cr, const char *text, double size);
-
-/* Draws with the anchor at (x, y): align 0 left, 0.5 centre, 1 right; y is the baseline. */
-void scree_text_draw(struct _cairo *cr, const char *text, double size, double x, double y,
-                     double align);
 
 enum { SCREE_RUN_BYTES = 256 };
 typedef struct scree_text_run {

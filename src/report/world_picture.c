@@ -14,7 +14,6 @@ enum { SPHERE_LEVEL = 3 };
 
 typedef struct drawing {
   scree_shapes shapes;
-  scree_mesh *meshes; /* own, of shapes made of spheres; else empty */
   size_t wall_count;
   scree_mesh *walls;
   scree_render_item *items;
@@ -22,22 +21,10 @@ typedef struct drawing {
 } drawing;
 
 static void free_drawing(drawing *s) {
-  for (size_t i = 0; s->meshes && i < s->shapes.count; i++) scree_mesh_free(&s->meshes[i]);
   for (size_t w = 0; s->walls && w < s->wall_count; w++) scree_mesh_free(&s->walls[w]);
-  scree_free(s->meshes);
   scree_free(s->walls);
   scree_free(s->items);
   scree_shapes_free(&s->shapes);
-}
-
-static scree_status make_spheres(drawing *s, scree_error *error) {
-  for (size_t i = 0; i < s->shapes.count; i++) {
-    scree_particle_measures m;
-    scree_particle_measure(s->shapes.particles[i], &m);
-    if (m.kind != SCREE_PARTICLE_MESH)
-      SCREE_TRY(scree_spheres_mesh(s->shapes.particles[i], SPHERE_LEVEL, &s->meshes[i], error));
-  }
-  return SCREE_OK;
 }
 
 /* of: where not NULL, the shapes are numbered as it has them. */
@@ -48,9 +35,7 @@ static void add_bodies(const scree_world *world, const scree_scene *of, drawing 
     scree_body body;
     scree_world_get_body(world, i, &body);
     scree_render_item *item = &s->items[s->item_count++];
-    *item = (scree_render_item){.mesh = s->meshes[shape].triangle_count
-                                            ? &s->meshes[shape]
-                                            : scree_particle_mesh(s->shapes.particles[shape])};
+    *item = (scree_render_item){.mesh = scree_shape_surface(&s->shapes, shape)};
     memcpy(item->position, body.position, sizeof item->position);
     memcpy(item->quaternion, body.orientation, sizeof item->quaternion);
     shape = of ? scree_scene_body_shape(of, i) : shape;
@@ -235,10 +220,9 @@ static scree_status draw(const scree_world *world, const scree_scene *of, bool w
   drawing s = {.wall_count = walls ? scree_world_wall_count(world) : 0};
   scree_render_options o = options ? *options : scree_default_render_options();
   SCREE_TRY(scree_shapes_find(world, &s.shapes, error));
-  SCREE_TRY_ALLOC_ZERO(s.meshes, s.shapes.count, error);
   SCREE_TRY_ALLOC_ZERO(s.walls, s.wall_count, error);
   SCREE_TRY_ALLOC_ZERO(s.items, scree_world_body_count(world) + s.wall_count, error);
-  SCREE_TRY(make_spheres(&s, error));
+  SCREE_TRY(scree_shapes_draw(&s.shapes, SPHERE_LEVEL, error));
   add_bodies(world, of, &s);
   const crowd all = find_crowd(world);
   SCREE_TRY(add_walls(world, &o, &all, &s, error));

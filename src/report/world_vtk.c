@@ -34,14 +34,13 @@ static scree_status make_room(sheet *s, size_t point_count, size_t triangle_coun
   return SCREE_OK;
 }
 
-/* The mesh scaled, turned and moved, appended. */
-static void add_mesh(sheet *s, const scree_mesh *mesh, double scale, const mat3 *turn, vec3 move) {
+/* The mesh turned and moved, appended. */
+static void add_mesh(sheet *s, const scree_mesh *mesh, const mat3 *turn, vec3 move) {
   for (size_t t = 0; t < 3 * mesh->triangle_count; t++)
     s->triangles[3 * s->triangle_count + t] = (uint32_t)s->point_count + mesh->triangles[t];
-  for (size_t v = 0; v < mesh->vertex_count; v++) {
-    vec3 p = vec3_scale(vec3_load(mesh->positions + 3 * v), scale);
-    vec3_store(s->points + 3 * (s->point_count + v), vec3_add(mat3_mul_vec(turn, p), move));
-  }
+  for (size_t v = 0; v < mesh->vertex_count; v++)
+    vec3_store(s->points + 3 * (s->point_count + v),
+               vec3_add(mat3_mul_vec(turn, vec3_load(mesh->positions + 3 * v)), move));
   s->point_count += mesh->vertex_count;
   s->triangle_count += mesh->triangle_count;
 }
@@ -61,47 +60,6 @@ typedef struct output_name {
 
 /* ---- Bodies ---- */
 
-static bool is_mesh(const scree_particle_measures *m) {
-  return m->kind == SCREE_PARTICLE_MESH;
-}
-
-/* The icosphere of unit radius that stands for every sphere. */
-static scree_status unit_sphere(scree_mesh *sphere, scree_error *error) {
-  char name[] = "icosphere-0";
-  name[sizeof name - 2] = (char)('0' + SPHERE_LEVEL);
-  SCREE_TRY(scree_sample_make(name, NULL, NULL, sphere, error));
-  for (size_t v = 0; v < sphere->vertex_count; v++)
-    vec3_store(sphere->positions + 3 * v, vec3_unit(vec3_load(sphere->positions + 3 * v)));
-  return SCREE_OK;
-}
-
-static void count_body(const scree_particle *particle, const scree_mesh *sphere, size_t *points,
-                       size_t *triangles) {
-  scree_particle_measures m;
-  scree_particle_measure(particle, &m);
-  const scree_mesh *mesh = is_mesh(&m) ? scree_particle_mesh(particle) : sphere;
-  size_t copies = is_mesh(&m) ? 1 : m.point_count;
-  *points += copies * mesh->vertex_count;
-  *triangles += copies * mesh->triangle_count;
-}
-
-static void add_body(sheet *s, const scree_particle *particle, const scree_body *state,
-                     const scree_mesh *sphere) {
-  scree_particle_measures m;
-  mat3 turn = turn_of(state->orientation);
-  vec3 move = vec3_load(state->position);
-  scree_particle_measure(particle, &m);
-  if (is_mesh(&m)) {
-    add_mesh(s, scree_particle_mesh(particle), 1, &turn, move);
-    return;
-  }
-  for (size_t k = 0; k < m.point_count; k++) {
-    double centre[3], radius;
-    scree_particle_point(particle, k, centre, &radius);
-    add_mesh(s, sphere, radius, &turn, vec3_add(mat3_mul_vec(&turn, vec3_load(centre)), move));
-  }
-}
-
 /* What a triangle of a body carries. */
 typedef struct surface_row {
   int64_t body, shape, material;
@@ -116,14 +74,15 @@ static const scree_vtk_member surface_members[] = {
     SCREE_VTK_MEMBER(surface_row, angular_speed, "angular_speed", SCREE_VTK_FLOAT32, 1),
 };
 
-static void fill_surfaces(const scree_world *world, const scree_shapes *shapes,
-                          const scree_mesh *sphere, sheet *s, surface_row *rows) {
+static void fill_surfaces(const scree_world *world, const scree_shapes *shapes, sheet *s,
+                          surface_row *rows) {
   for (size_t i = 0; i < scree_world_body_count(world); i++) {
     scree_body state;
     size_t begin = s->triangle_count;
     if (scree_world_body_removed(world, i)) continue;
     scree_world_get_body(world, i, &state);
-    add_body(s, shapes->particles[shapes->of_body[i]], &state, sphere);
+    mat3 turn = turn_of(state.orientation);
+    add_mesh(s, scree_shape_surface(shapes, shapes->of_body[i]), &turn, vec3_load(state.position));
     for (size_t t = begin; t < s->triangle_count; t++)
       rows[t] = (surface_row){
           (int64_t)i, (int64_t)shapes->of_body[i], (int64_t)scree_world_body_material(world, i),
@@ -152,17 +111,19 @@ static scree_vtk_data triangles_of(const sheet *s) {
 static scree_status write_surfaces(const scree_world *world, const output_name *to,
                                    scree_error *error) {
   SCREE_CLEANUP(scree_shapes_free) scree_shapes shapes = {0};
-  SCREE_CLEANUP(scree_mesh_free) scree_mesh sphere = {0};
   SCREE_CLEANUP(free_sheet) sheet s = {0};
   size_t points = 0, triangles = 0;
-  SCREE_TRY(unit_sphere(&sphere, error));
   SCREE_TRY(scree_shapes_find(world, &shapes, error));
-  for (size_t i = 0; i < scree_world_body_count(world); i++)
-    if (!scree_world_body_removed(world, i))
-      count_body(shapes.particles[shapes.of_body[i]], &sphere, &points, &triangles);
+  SCREE_TRY(scree_shapes_draw(&shapes, SPHERE_LEVEL, error));
+  for (size_t i = 0; i < scree_world_body_count(world); i++) {
+    if (scree_world_body_removed(world, i)) continue;
+    const scree_mesh *surface = scree_shape_surface(&shapes, shapes.of_body[i]);
+    points += surface->vertex_count;
+    triangles += surface->triangle_count;
+  }
   SCREE_TRY(make_room(&s, points, triangles, error));
   SCREE_SCRATCH(surface_row, rows, triangles, error);
-  fill_surfaces(world, &shapes, &sphere, &s, rows);
+  fill_surfaces(world, &shapes, &s, rows);
   return write(world, triangles_of(&s), ROWS(rows, false, surface_members), to, error);
 }
 
@@ -404,7 +365,7 @@ static void add_wall(sheet *s, const scree_world *world, size_t index, const ext
     add_cylinder(s, &turn, at, &wall, e);
     break;
   case SCREE_WALL_MESH:
-    add_mesh(s, wall.mesh, 1, &turn, at);
+    add_mesh(s, wall.mesh, &turn, at);
     break;
   }
 }
@@ -489,11 +450,6 @@ static scree_status write_walls(const scree_world *world, const scree_scene *sce
 }
 
 /* ---- One file ---- */
-
-const char *scree_world_view_name(scree_world_view view) {
-  static const char *const names[] = {"surfaces", "points", "contacts", "walls"};
-  return (int)view >= 0 && view < SCREE_VIEW_COUNT ? names[view] : NULL;
-}
 
 scree_status scree_world_vtp_write(const scree_world *world, scree_world_view view,
                                    const char *path, bool overwrite, scree_error *error) {

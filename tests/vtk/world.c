@@ -147,8 +147,9 @@ int main(int argc, char **argv) {
   add_bodies(world);
   must(scree_world_step(world, 5, &error), &error);
   for (int view = 0; view < SCREE_VIEW_COUNT; view++) {
+    static const char *const names[SCREE_VIEW_COUNT] = {"surfaces", "points", "contacts", "walls"};
     char path[512];
-    snprintf(path, sizeof path, "%s/%s.vtp", argv[1], scree_world_view_name(view));
+    snprintf(path, sizeof path, "%s/%s.vtp", argv[1], names[view]);
     must(scree_world_vtp_write(world, view, path, false, &error), &error);
     if (scree_world_vtp_write(world, view, path, false, &error) != SCREE_EXISTS) return 1;
   }
