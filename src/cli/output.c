@@ -60,23 +60,26 @@ bool cli_has_ending(const char *path, const char *ending) {
   return dot && !strcasecmp(dot, ending);
 }
 
-static bool says(const char *path, cli_content content) {
-  if (content == CLI_MESH) return scree_file_format_of(path) != SCREE_FORMAT_AUTO;
-  if (!strcmp(path, "-")) return true;
-  if (content == CLI_PAGE) return cli_has_ending(path, ".html") || cli_has_ending(path, ".htm");
-  return cli_has_ending(path, content == CLI_PICTURE ? ".png" : ".vtp");
-}
-
 scree_status cli_check_ending(const cli_verb *verb, const char *path, cli_content content) {
   static const struct {
-    const char *what, *endings;
-  } contents[] = {[CLI_MESH] = {"mesh", ".stl, .ply, .obj, .off or .3mf"},
-                  [CLI_PICTURE] = {"picture", ".png"},
-                  [CLI_VTP] = {"ParaView file", ".vtp"},
-                  [CLI_PAGE] = {"page", ".html"}};
-  if (says(path, content)) return SCREE_OK;
-  return cli_misuse(verb, "%s: the name of a %s must end in %s", path, contents[content].what,
-                    contents[content].endings);
+    const char *what, *named;
+    const char *endings[5];
+  } contents[] = {
+      [CLI_MESH] = {"mesh", ".stl, .ply, .obj, .off or .3mf", {NULL}},
+      [CLI_FIGURE] = {"figure",
+                      ".png, .svg, .pdf, .csv or .gnuplot",
+                      {".png", ".svg", ".pdf", ".csv", ".gnuplot"}},
+      [CLI_PICTURE] = {"picture", ".png", {".png"}},
+      [CLI_VTP] = {"ParaView file", ".vtp", {".vtp"}},
+      [CLI_PAGE] = {"page", ".html", {".html", ".htm"}},
+  };
+  bool stream = !strcmp(path, "-") && content != CLI_MESH && content != CLI_FIGURE;
+  bool good = stream || (content == CLI_MESH && scree_file_format_of(path) != SCREE_FORMAT_AUTO);
+  for (int i = 0; i < 5 && contents[content].endings[i]; i++)
+    good = good || cli_has_ending(path, contents[content].endings[i]);
+  return good ? SCREE_OK
+              : cli_misuse(verb, "%s: the name of a %s must end in %s", path,
+                           contents[content].what, contents[content].named);
 }
 
 /* ---- what is printed ---- */

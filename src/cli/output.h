@@ -13,9 +13,9 @@ scree_status cli_check_output(const cli_call *call, const char *path, bool overw
 bool cli_has_ending(const char *path, const char *ending);
 
 /* What is written, which its name must say by its ending. */
-typedef enum cli_content { CLI_MESH, CLI_PICTURE, CLI_VTP, CLI_PAGE } cli_content;
+typedef enum cli_content { CLI_MESH, CLI_FIGURE, CLI_PICTURE, CLI_VTP, CLI_PAGE } cli_content;
 /* CLI_MISUSED after telling that the name has none of the endings. A stream, which has no name, is
- * right for all but a mesh: that one has several formats. */
+ * right for all but a mesh and a figure: these have several formats. */
 scree_status cli_check_ending(const cli_verb *verb, const char *path, cli_content content);
 
 /* The files that a run leaves in its folder, by their names; a # in a name stands for the number of

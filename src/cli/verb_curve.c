@@ -69,43 +69,29 @@ static void free_table(table *t) {
 static void print_header(const table *t) {
   bool distance = t->arguments->distance;
   if (t->arguments->json) return;
-  if (t->arguments->csv) {
-    printf("triangle_count,rp,area,volume,eps_s,eps_v,ip,quadric_error%s\n",
-           distance ? ",forward_mean,forward_max,backward_mean,backward_max,hausdorff" : "");
-    return;
+  printf("%*s", t->arguments->csv ? 0 : 9, t->arguments->csv ? "triangle_count" : "triangles");
+  for (int k = 0; k < SCREE_CURVE_COLUMNS; k++) {
+    const scree_curve_column *c = &scree_curve_columns[k];
+    if (!t->arguments->csv && c->text[distance].width)
+      printf(" %*s", c->text[distance].width, c->head);
+    else if (t->arguments->csv && (distance || k < SCREE_CURVE_DISTANCES))
+      printf(",%s", c->csv);
   }
-  if (distance)
-    printf("%9s %8s %8s %7s %8s %8s %8s %8s %8s\n", "triangles", "Rp", "eps_s", "eps_v", "Ip",
-           "mean", "max", "back", "back max");
-  else
-    printf("%9s %9s %9s %9s %9s %9s %9s %8s\n", "triangles", "Rp", "S (cm2)", "V (cm3)", "eps_s",
-           "eps_v", "Ip", "Q (mm)");
-}
-
-static void print_csv_row(const table *t, const scree_curve_row *row) {
-  const scree_level *level = &row->level;
-  const scree_distance *d = &row->distance;
-  printf("%zu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g", level->triangle_count, level->rp,
-         level->area, level->volume, row->eps_s, row->eps_v, row->ip, level->quadric_error);
-  if (t->arguments->distance)
-    printf(",%.17g,%.17g,%.17g,%.17g,%.17g", d->forward.mean, d->forward.maximum, d->backward.mean,
-           d->backward.maximum, d->hausdorff);
+  putchar('\n');
 }
 
 static void print_row(const table *t, const scree_curve_row *row) {
-  const scree_level *level = &row->level;
-  const scree_distance *d = &row->distance;
+  bool distance = t->arguments->distance, csv = t->arguments->csv;
   cli_terminal_end();
-  if (t->arguments->csv)
-    print_csv_row(t, row);
-  else if (t->arguments->distance)
-    printf("%9zu %8.3g %8.3g %7.2g %8.4g %8.3g %8.3g %8.3g %8.3g", level->triangle_count, level->rp,
-           row->eps_s, row->eps_v, row->ip, d->forward.mean * 1e3, d->forward.maximum * 1e3,
-           d->backward.mean * 1e3, d->backward.maximum * 1e3);
-  else
-    printf("%9zu %9.3g %9.4g %9.4g %9.3g %9.2g %9.4g %8.3g", level->triangle_count, level->rp,
-           level->area * 1e4, level->volume * 1e6, row->eps_s, row->eps_v, row->ip,
-           level->quadric_error * 1e3);
+  printf("%*zu", csv ? 0 : 9, row->level.triangle_count);
+  for (int k = 0; k < SCREE_CURVE_COLUMNS; k++) {
+    const scree_curve_column *c = &scree_curve_columns[k];
+    double value = scree_curve_value(row, k);
+    if (!csv && c->text[distance].width)
+      printf(" %*.*g", c->text[distance].width, c->text[distance].digits, value * c->scale);
+    else if (csv && (distance || k < SCREE_CURVE_DISTANCES))
+      printf(",%.17g", value);
+  }
   putchar('\n');
 }
 

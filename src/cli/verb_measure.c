@@ -188,33 +188,27 @@ static void print_topology(const scree_topology *t) {
 
 static void warn(const scree_measure_entry *entry) {
   const scree_measures *m = &entry->measures;
+  const scree_topology *t = &entry->topology;
   char shown[CLI_PRINTABLE_BYTES];
-  const char *file = cli_printable(entry->file, shown);
-  size_t crowded = entry->topology.non_manifold_edge_count;
+  const char *file = cli_printable(entry->file, shown), *what = NULL;
+  size_t crowded = t->non_manifold_edge_count;
   if (!m->has_volume)
-    fprintf(stderr,
-            "scree: %s: warning: the surface encloses no volume: it has no centroid, moments, "
-            "sphericity or convexity\n",
-            file);
-  else if (!m->closed && entry->topology.closed && entry->topology.oriented)
+    what = "the surface encloses no volume: it has no centroid, moments, sphericity or convexity";
+  else if (!m->closed && t->closed && t->oriented)
     fprintf(stderr,
             "scree: %s: warning: %zu non-manifold edge%s, where the facets do not pair up both "
             "ways, so they enclose no volume; volume, centroid, moments and what follows from them "
             "mean little\n",
             file, crowded, cli_plural(crowded));
-  else if (!m->closed && entry->topology.closed)
-    fprintf(stderr,
-            "scree: %s: warning: the facets are not wound consistently, so they enclose no volume; "
-            "volume, centroid, moments and what follows from them mean little\n",
-            file);
+  else if (!m->closed && t->closed)
+    what = "the facets are not wound consistently, so they enclose no volume; volume, centroid, "
+           "moments and what follows from them mean little";
   else if (!m->closed)
-    fprintf(stderr,
-            "scree: %s: warning: the surface is not closed; volume, centroid, moments and what "
-            "follows from them are a stand-in, with every hole closed by a cone\n",
-            file);
+    what = "the surface is not closed; volume, centroid, moments and what follows from them are a "
+           "stand-in, with every hole closed by a cone";
   else if (m->inward)
-    fprintf(stderr, "scree: %s: warning: the surface is inside out: its volume is negative\n",
-            file);
+    what = "the surface is inside out: its volume is negative";
+  if (what) fprintf(stderr, "scree: %s: warning: %s\n", file, what);
 }
 
 /* Shells are measured one by one and added up: said where their union has another volume. */
@@ -290,8 +284,10 @@ static scree_status write_tables(const cli_call *call, const scree_measure_entry
 /* A file that cannot be measured is told on stderr; the others are measured all the same. */
 static scree_status run(const cli_call *call, scree_error *error) {
   const measure_arguments *arguments = call->options;
-  if (arguments->zingg)
+  if (arguments->zingg) {
+    SCREE_TRY(cli_check_ending(call->verb, arguments->zingg, CLI_FIGURE));
     SCREE_TRY(cli_check_output(call, arguments->zingg, arguments->overwrite, error));
+  }
   SCREE_SCRATCH_ZERO(scree_measure_entry, entries, call->input_count, error);
   typedef char format_name[32];
   SCREE_SCRATCH_ZERO(format_name, formats, call->input_count, error);

@@ -184,20 +184,27 @@ scree_status scree_distance_json_write(const scree_distance_entry *entry, const 
   return scree_json_commit(&json, error);
 }
 
-static void json_row(scree_json *json, const scree_curve_row *row, bool distances) {
-  scree_json_row_object(json, NULL);
-  SCREE_JSON_MEMBERS(json, &row->level, triangle_count, rp, area, volume);
-  SCREE_JSON_MEMBERS(json, row, eps_s, eps_v, ip);
-  scree_json_number(json, "quadric_error", row->level.quadric_error);
-  if (distances) {
-    scree_json_number(json, "forward_mean", row->distance.forward.mean);
-    scree_json_number(json, "forward_maximum", row->distance.forward.maximum);
-    scree_json_number(json, "backward_mean", row->distance.backward.mean);
-    scree_json_number(json, "backward_maximum", row->distance.backward.maximum);
-    scree_json_number(json, "hausdorff", row->distance.hausdorff);
-  }
-  scree_json_end(json);
-}
+#define AT(member) offsetof(scree_curve_row, member)
+const scree_curve_column scree_curve_columns[SCREE_CURVE_COLUMNS] = {
+    {"rp", "rp", "Rp", 1, {{9, 3}, {8, 3}}, AT(level.rp)},
+    {"area", "area", "S (cm2)", 1e4, {{9, 4}}, AT(level.area)},
+    {"volume", "volume", "V (cm3)", 1e6, {{9, 4}}, AT(level.volume)},
+    {"eps_s", "eps_s", "eps_s", 1, {{9, 3}, {8, 3}}, AT(eps_s)},
+    {"eps_v", "eps_v", "eps_v", 1, {{9, 2}, {7, 2}}, AT(eps_v)},
+    {"ip", "ip", "Ip", 1, {{9, 4}, {8, 4}}, AT(ip)},
+    {"quadric_error", "quadric_error", "Q (mm)", 1e3, {{8, 3}}, AT(level.quadric_error)},
+    {"forward_mean", "forward_mean", "mean", 1e3, {{0, 0}, {8, 3}}, AT(distance.forward.mean)},
+    {"forward_max", "forward_maximum", "max", 1e3, {{0, 0}, {8, 3}}, AT(distance.forward.maximum)},
+    {"backward_mean", "backward_mean", "back", 1e3, {{0, 0}, {8, 3}}, AT(distance.backward.mean)},
+    {"backward_max",
+     "backward_maximum",
+     "back max",
+     1e3,
+     {{0, 0}, {8, 3}},
+     AT(distance.backward.maximum)},
+    {"hausdorff", "hausdorff", "", 1e3, {{0, 0}}, AT(distance.hausdorff)},
+};
+#undef AT
 
 scree_status scree_curve_json_write(const scree_curve_entry *entry, const char *command_line,
                                     const char *path, bool overwrite, scree_error *error) {
@@ -212,8 +219,13 @@ scree_status scree_curve_json_write(const scree_curve_entry *entry, const char *
   SCREE_JSON_MEMBERS(&json, &entry->facts, closed, shell_count, boundary_edge_count,
                      locked_vertex_count);
   scree_json_count(&json, "floor_triangle_count", entry->facts.floor_count);
-  SCREE_JSON_LIST (&json, "levels", i, entry->row_count)
-    json_row(&json, &entry->rows[i], entry->distances);
+  SCREE_JSON_LIST (&json, "levels", i, entry->row_count) {
+    scree_json_row_object(&json, NULL);
+    scree_json_count(&json, "triangle_count", entry->rows[i].level.triangle_count);
+    for (int k = 0; k < (entry->distances ? SCREE_CURVE_COLUMNS : SCREE_CURVE_DISTANCES); k++)
+      scree_json_number(&json, scree_curve_columns[k].json, scree_curve_value(&entry->rows[i], k));
+    scree_json_end(&json);
+  }
   scree_json_maker(&json, command_line);
   scree_json_end(&json);
   return scree_json_commit(&json, error);

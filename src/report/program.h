@@ -115,6 +115,21 @@ typedef struct scree_curve_row {
   scree_distance distance; /* forward: from the scan to the level; read where distances is true */
 } scree_curve_row;
 
+/* Its numbers beside the triangle count, in the order of the table: as text, CSV and JSON. */
+typedef struct scree_curve_column {
+  const char *csv, *json, *head; /* names; the last in text, with its unit */
+  double scale;                  /* from m into that unit */
+  struct {
+    int width, digits;
+  } text[2];     /* without and with distances; width 0: it is not shown */
+  size_t offset; /* of the value in a row */
+} scree_curve_column;
+enum { SCREE_CURVE_COLUMNS = 12, SCREE_CURVE_DISTANCES = 7 }; /* from the second on, distances */
+extern const scree_curve_column scree_curve_columns[SCREE_CURVE_COLUMNS];
+static inline double scree_curve_value(const scree_curve_row *row, int column) {
+  return *(const double *)(const void *)((const char *)row + scree_curve_columns[column].offset);
+}
+
 /* A table of levels of one curve. Texts are borrowed. */
 typedef struct scree_curve_entry {
   const char *file, *format; /* as given; as read */
