@@ -16,6 +16,8 @@ import ctypes
 import ctypes.util
 import os
 import pathlib
+import re
+import reprlib
 import threading
 import weakref
 
@@ -152,6 +154,15 @@ class Function:
             return text_of(value.value) if value._type_ is ctypes.c_char else column(value)
         return value.value
 
+    def _call(self, given, passed):
+        try:
+            return self.c(*passed)
+        except ctypes.ArgumentError as wrong:
+            index = int(re.search(r"argument (\d+)", str(wrong))[1]) - 1
+            parameter = self.parameters[index]
+            meant = {"double": "number", "char": "text"}.get(parameter.base, parameter.base.removeprefix("scree_"))
+            raise TypeError(f"{parameter.name} is {reprlib.repr(given[index])}; a {meant} is meant") from None
+
     def __call__(self, *given):
         count = len(self.parameters) - self.fallible
         if len(given) > count:
@@ -172,10 +183,10 @@ class Function:
                        in list(zip(self.parameters, self.types))[len(given):count]]
             passed += [room for _, room, _ in outputs]
             if not self.fallible:
-                result = self.c(*passed)
+                result = self._call(given, passed)
             else:
                 result, error = None, self.library.type("error")()
-                status = self.c(*passed, error)
+                status = self._call(given, [*passed, error])
                 if status.value != 0:
                     for callback in callbacks:
                         callback.raise_problem()

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import os
 from typing import Any, Callable, Optional
 
@@ -50,6 +51,9 @@ class Mesh(Shared):
         corners, count = c_array(ctypes.c_uint32, triangles, 3)
         if any(corner >= point_count for corner in corners[:3 * count]):
             raise ValueError(f"a triangle names a vertex beyond the {point_count} given")
+        broken = next((k for k, x in enumerate(points) if not math.isfinite(x)), None)
+        if broken is not None:
+            raise ValueError(f"vertex {broken // 3} has a coordinate that is not finite: {points[broken]}")
         if weld:
             loose = (ctypes.c_double * (9 * count))()
             for k, corner in enumerate(corners[:3 * count]):

@@ -151,6 +151,13 @@ class Meshes(unittest.TestCase):
     def test_refusals(self):
         with self.assertRaisesRegex(ValueError, "beyond the 3"):
             scree.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 3]])
+        with self.assertRaisesRegex(ValueError, "vertex 2 has a coordinate that is not finite: nan"):
+            scree.Mesh([[0, 0, 0], [1, 0, 0], [0, float("nan"), 0]], [[0, 1, 2]])
+        for wrong in (3, "a", [1, 2], tetrahedron, object()):
+            with self.assertRaisesRegex(TypeError, "mesh is .*; a mesh is meant"):
+                scree.Scene.template("drop-box", {"a": wrong})
+        with self.assertRaisesRegex(TypeError, "radius is 'a'; a number is meant"):
+            scree.Particle.sphere("a")
         with self.assertRaisesRegex(TypeError, "there are resolution, noise, seed"):
             scree.sample("fp-1", resolutoin=1e-3)
         with self.assertRaisesRegex(scree.Error, "no sample"):
