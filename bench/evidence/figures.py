@@ -57,7 +57,7 @@ def orifice():
     table = RESULTS / "orifice.csv"
     if table.exists():
         series = [(name, [(float(r["hole"]), float(r["rate"]) ** 0.4) for r in read(table) if r["code"] == name], "points")
-                  for name in ("scree", "liggghts", "liggghts-no-dashpot")]
+                  for name in ("scree", "liggghts", "liggghts-no-dashpot", "yade")]
         write(FIGURES / "evidence-orifice.svg", series, "hole, sphere diameters", "(spheres a second) to the power 2/5")
 
 
