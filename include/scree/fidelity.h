@@ -67,7 +67,8 @@ SCREE_API double scree_fidelity_change(const scree_fidelity *fidelity, size_t ro
 /* What is known of the scan. */
 typedef enum scree_scan_fact {
   SCREE_SCAN_LENGTH,     /* D, m */
-  SCREE_SCAN_NOISE,      /* standard deviation of the scanner's noise, m; 0 where none is seen */
+  SCREE_SCAN_NOISE,      /* standard deviation of the scanner's noise, m; 0 where none is seen, NaN
+                            where the mesh is too coarse, or too rough, to tell it from shape */
   SCREE_SCAN_CLEAN_AREA, /* without what noise adds, m2 */
   SCREE_SCAN_THICKNESS,  /* median thickness of the walls, m; NaN without walls */
   SCREE_SCAN_THINNEST,   /* first percentile of it, m */

@@ -1,12 +1,16 @@
 /* Round each point a height z = a + b x + c y + d x^2 + e x y + f y^2 over the mean tangent plane
  * is fitted by least squares to the vertices within REACH spacings that face the same way.
  *
- * The median residual of the fits is noise where it does not depend on how far they reach. What the
- * quadric misses of the shape grows with the third power of the reach. So fits of two reaches tell
- * the two apart: r1^2 = n^2 + s^2 and r2^2 = n^2 + k s^2, with k the sixth power of the ratio.
+ * Scanner noise is alike all over the surface, and what it leaves over of a fit does not depend on
+ * how far that reaches. What the quadric misses of the shape is not alike, and grows with the
+ * reach: with its third power where the surface is smooth, with the first along edges and on rough
+ * ground. So the noise is asked of fits of two reaches, r1^2 = n^2 + s^2 and r2^2 = n^2 + k s^2,
+ * where they fit best, at a tenth of the points. With k of smooth shape n is largest, with k of
+ * edges least. Where the two are far apart, or many points have too few vertices within reach that
+ * face their way, as of a coarse mesh, the noise cannot be told.
  *
- * Noise of slope g adds g^2 / 2 to each unit of area. The slope is seen at points that fit well, as
- * the angle between the facet and the fitted surface. */
+ * Noise of slope g adds g^2 / 2 to each unit of area. The slope is seen as the angle between the
+ * facet and the fitted surface. */
 #include "choice/fit.h"
 
 #include "base/alloc.h"
@@ -24,15 +28,25 @@ enum {
 };
 /* In spacings, sqrt(area / vertices): about 20 and 38 vertices. */
 static const double REACH = 2.5, FAR_REACH = 3.5;
-/* Fits whose residual is above this many medians are of edges and corners. */
+/* Fits whose residual is above so many times what is usual are of edges and corners. */
 static const double GOOD_FIT = 2;
+/* Per neighbour: where these lie in two rows, which tell no curvature across, pivots are squares of
+ * the noise; in three rows they are 0.05. */
+static const double LEAST_PIVOT = 0.01;
+/* Share of the points that must have fits for the noise to be told, and the share of these that it
+ * is asked of, with its quantile of the normal distribution. */
+static const double TOLD_SHARE = 2.0 / 3, BEST_SHARE = 0.1, BEST_QUANTILE = -1.2816;
+/* The largest noise that the fits allow over the least, squared, for it to be told. */
+static const double MOST_SPAN = 4;
+/* Of the spacing: what is no more is told in any case, that of shape as none. */
+static const double LEAST_NOISE = 0.01;
 
 /* Vertices in cubic cells, by a hash of the cell. */
 typedef struct cells {
   const scree_mesh *mesh;
   vec3 *normals; /* of the vertices */
   vec3 low;
-  double side; /* of a cell: the reach */
+  double spacing, side; /* of the vertices; of a cell: the reach */
   uint32_t mask, *starts, *vertices;
 } cells;
 
@@ -100,13 +114,14 @@ static int find_neighbours(const cells *c, vec3 p, vec3 normal,
   return count;
 }
 
-/* Solves the system in place by elimination with pivots; the last column becomes the solution. */
-static bool solve(double a[UNKNOWNS][UNKNOWNS + 1]) {
+/* Solves the system in place by elimination with pivots, none of them below `least`; the last
+ * column becomes the solution. */
+static bool solve(double a[UNKNOWNS][UNKNOWNS + 1], double least) {
   for (int i = 0; i < UNKNOWNS; i++) {
     int pivot = i;
     for (int j = i + 1; j < UNKNOWNS; j++)
       if (fabs(a[j][i]) > fabs(a[pivot][i])) pivot = j;
-    if (!(fabs(a[pivot][i]) > 1e-9)) return false;
+    if (!(fabs(a[pivot][i]) > least)) return false;
     for (int k = 0; k <= UNKNOWNS; k++) {
       double swap = a[i][k];
       a[i][k] = a[pivot][k];
@@ -121,14 +136,21 @@ static bool solve(double a[UNKNOWNS][UNKNOWNS + 1]) {
   return true;
 }
 
-/* The residual (root mean square, m) of the fit round p, INFINITY where there is none; *normal
- * becomes the fitted surface's at p. */
-static double fit_at(const cells *c, vec3 p, vec3 *normal) {
+typedef struct point_fit {
+  double residual; /* root mean square, m; INFINITY: there is no fit */
+  int freedom;     /* neighbours less unknowns */
+  vec3 normal;     /* the fitted surface's at the point */
+} point_fit;
+
+/* Round p, where the surface has that normal. */
+static point_fit fit_at(const cells *c, vec3 p, vec3 normal) {
   uint32_t neighbours[MOST_NEIGHBOURS];
-  int count = find_neighbours(c, p, *normal, neighbours);
+  point_fit fit = {.residual = INFINITY, .normal = normal};
+  int count = find_neighbours(c, p, normal, neighbours);
   vec3 up = {0, 0, 0}, u, v;
   for (int i = 0; i < count; i++) up = vec3_add(up, c->normals[neighbours[i]]);
-  if (count < LEAST_NEIGHBOURS || vec3_norm(up) == 0) return INFINITY;
+  if (count < LEAST_NEIGHBOURS || vec3_norm(up) == 0) return fit;
+  fit.freedom = count - UNKNOWNS;
   up = vec3_unit(up);
   vec3_frame(up, &u, &v);
   double a[UNKNOWNS][UNKNOWNS + 1] = {{0}}, right[UNKNOWNS], square = 0;
@@ -143,40 +165,70 @@ static double fit_at(const cells *c, vec3 p, vec3 *normal) {
     }
   }
   for (int j = 0; j < UNKNOWNS; j++) right[j] = a[j][UNKNOWNS];
-  if (!solve(a)) return INFINITY;
+  if (!solve(a, LEAST_PIVOT * count)) return fit;
   for (int j = 0; j < UNKNOWNS; j++) square -= a[j][UNKNOWNS] * right[j];
-  *normal = vec3_unit(vec3_mad(vec3_mad(up, u, -a[1][UNKNOWNS]), v, -a[2][UNKNOWNS]));
-  return c->side * sqrt(fmax(square, 0) / (count - UNKNOWNS));
+  fit.normal = vec3_unit(vec3_mad(vec3_mad(up, u, -a[1][UNKNOWNS]), v, -a[2][UNKNOWNS]));
+  fit.residual = c->side * sqrt(fmax(square, 0) / fit.freedom);
+  return fit;
 }
 
 typedef struct fitting {
   const cells *cells;
-  const vec3 *points, *facet_normals;
-  vec3 *normals; /* fitted */
-  double *residuals;
+  const vec3 *points, *normals;
+  point_fit *fits;
 } fitting;
 
 static void fit_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   const fitting *f = context;
-  for (size_t i = begin; i < end; i++) {
-    f->normals[i] = f->facet_normals[i];
-    f->residuals[i] = fit_at(f->cells, f->points[i], &f->normals[i]);
+  for (size_t i = begin; i < end; i++) f->fits[i] = fit_at(f->cells, f->points[i], f->normals[i]);
+}
+
+/* Cells are as large as the fits reach. */
+static void fit_all(cells *c, double reach, const vec3 *points, const vec3 *normals, size_t count,
+                    point_fit *fits) {
+  fitting f = {c, points, normals, fits};
+  c->side = reach * c->spacing;
+  fill_cells(c);
+  scree_parallel_for(count, BLOCK, fit_block, &f);
+}
+
+static double median_residual(const point_fit *fits, size_t count, double *scratch) {
+  for (size_t i = 0; i < count; i++) scratch[i] = fits[i].residual;
+  scree_sort_numbers(scratch, count);
+  return count > 0 && isfinite(scratch[count / 2]) ? scratch[count / 2] : 0;
+}
+
+/* The same points count for both reaches. */
+static bool has_both(const point_fit *near, const point_fit *far) {
+  return isfinite(near->residual + far->residual);
+}
+
+/* What the best residuals would be of, were they of noise alone, by the distribution of chi squared
+ * (Wilson and Hilferty 1931): of `fits`, which are near or far. NaN: at too few points. */
+static double best_residual(const point_fit *fits, const point_fit *near, const point_fit *far,
+                            size_t count, double *scratch) {
+  size_t told = 0;
+  double freedom = 0;
+  for (size_t i = 0; i < count; i++) {
+    if (!has_both(&near[i], &far[i])) continue;
+    freedom += fits[i].freedom;
+    scratch[told++] = fits[i].residual;
   }
+  if ((double)told < TOLD_SHARE * (double)count || told == 0) return NAN;
+  scree_sort_numbers(scratch, told);
+  double variance = 2 / (9 * freedom / (double)told);
+  return scratch[(size_t)(BEST_SHARE * (double)told)] /
+         pow(1 - variance + BEST_QUANTILE * sqrt(variance), 1.5);
 }
 
-static double median(double *values, size_t count) {
-  if (count == 0) return 0;
-  scree_sort_numbers(values, count);
-  return isfinite(values[count / 2]) ? values[count / 2] : 0;
-}
-
-/* The share of the near fits' squared residual that is noise. */
-static double noise_share(double near, double far) {
-  double growth = pow(FAR_REACH / REACH, 6);
-  if (!(near > 0)) return 0;
-  double share = (growth - far * far / (near * near)) / (growth - 1);
-  return fmax(0, fmin(1, share));
+/* The share of the near fits' squared residual that is noise; NaN: it cannot be told. */
+static double noise_share(double near, double far, double spacing) {
+  double square = (FAR_REACH / REACH) * (FAR_REACH / REACH), smooth = square * square * square;
+  double growth = far * far / (near * near), most = (smooth - growth) / (smooth - 1),
+         least = (square - growth) / (square - 1);
+  bool is_told = near <= LEAST_NOISE * spacing || MOST_SPAN * least >= most;
+  return is_told ? fmax(0, fmin(1, most)) : NAN;
 }
 
 static scree_status make_cells(const scree_mesh *mesh, cells *c, scree_error *error) {
@@ -184,17 +236,14 @@ static scree_status make_cells(const scree_mesh *mesh, cells *c, scree_error *er
   vec3 high;
   scree_status status = scree_mesh_area_volume(mesh, &area, NULL, error);
   if (status != SCREE_OK) return status;
-  *c = (cells){.mesh = mesh, .side = REACH * sqrt(area / (double)mesh->vertex_count), .mask = 1};
+  *c = (cells){.mesh = mesh, .spacing = sqrt(area / (double)mesh->vertex_count), .mask = 1};
   while (c->mask < mesh->vertex_count) c->mask = 2 * c->mask + 1;
   scree_mesh_bounds(mesh, &c->low, &high);
-  SCREE_ALLOC_OR(c->normals, mesh->vertex_count, error, failed);
-  SCREE_ALLOC_OR(c->starts, (size_t)c->mask + 2, error, failed);
-  SCREE_ALLOC_OR(c->vertices, mesh->vertex_count, error, failed);
+  SCREE_TRY_ALLOC(c->normals, mesh->vertex_count, error);
+  SCREE_TRY_ALLOC(c->starts, (size_t)c->mask + 2, error);
+  SCREE_TRY_ALLOC(c->vertices, mesh->vertex_count, error);
   set_normals(c);
-  fill_cells(c);
   return SCREE_OK;
-failed:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static void free_cells(cells *c) {
@@ -204,12 +253,13 @@ static void free_cells(cells *c) {
 }
 
 /* Mean cosine between facets and fitted surface where the fit is good. */
-static double mean_cosine(const fitting *f, size_t count, double most) {
+static double mean_cosine(const point_fit *near, const point_fit *far, const vec3 *normals,
+                          size_t count, double most) {
   double sum = 0;
   size_t good = 0;
   for (size_t i = 0; i < count; i++) {
-    if (!(f->residuals[i] <= most)) continue;
-    sum += vec3_dot(f->normals[i], f->facet_normals[i]);
+    if (!has_both(&near[i], &far[i]) || near[i].residual > most) continue;
+    sum += vec3_dot(near[i].normal, normals[i]);
     good++;
   }
   return good ? sum / (double)good : 1;
@@ -217,37 +267,20 @@ static double mean_cosine(const fitting *f, size_t count, double most) {
 
 scree_status scree_fit_points(const scree_mesh *mesh, const vec3 *points, vec3 *normals,
                               size_t count, scree_fit *fit, scree_error *error) {
-  cells c = {0};
-  vec3 *fitted = NULL, *unused = NULL;
-  double *residuals = NULL, *sorted = NULL;
-  scree_status status = make_cells(mesh, &c, error);
-  if (status != SCREE_OK) goto done;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(fitted, count, error, done);
-  SCREE_ALLOC_OR(unused, count, error, done);
-  SCREE_ALLOC_OR(residuals, count, error, done);
-  SCREE_ALLOC_OR(sorted, count, error, done);
-  fitting f = {&c, points, normals, unused, sorted};
-  c.side *= FAR_REACH / REACH; /* cells stay as they were filled, so they are filled anew */
-  fill_cells(&c);
-  scree_parallel_for(count, BLOCK, fit_block, &f);
-  double far = median(sorted, count);
-  c.side *= REACH / FAR_REACH;
-  fill_cells(&c);
-  f.normals = fitted;
-  f.residuals = residuals;
-  scree_parallel_for(count, BLOCK, fit_block, &f);
-  for (size_t i = 0; i < count; i++) sorted[i] = residuals[i];
-  double near = median(sorted, count), share = noise_share(near, far);
-  *fit = (scree_fit){near * sqrt(share), 1 - share * (1 - mean_cosine(&f, count, GOOD_FIT * near))};
+  SCREE_CLEANUP(free_cells) cells c = {0};
+  SCREE_TRY(make_cells(mesh, &c, error));
+  SCREE_SCRATCH(point_fit, near, count, error);
+  SCREE_SCRATCH(point_fit, far, count, error);
+  SCREE_SCRATCH(double, scratch, count, error);
+  fit_all(&c, FAR_REACH, points, normals, count, far);
+  fit_all(&c, REACH, points, normals, count, near);
+  double best = best_residual(near, near, far, count, scratch),
+         share = noise_share(best, best_residual(far, near, far, count, scratch), c.spacing),
+         most = GOOD_FIT * median_residual(near, count, scratch);
+  *fit = (scree_fit){best * sqrt(share), 1};
+  if (share > 0)
+    fit->area_share = 1 - share * (1 - mean_cosine(near, far, normals, count, GOOD_FIT * best));
   for (size_t i = 0; i < count; i++)
-    if (residuals[i] <= GOOD_FIT * near) normals[i] = fitted[i];
-  status = SCREE_OK;
-done:
-  free_cells(&c);
-  scree_free(fitted);
-  scree_free(unused);
-  scree_free(residuals);
-  scree_free(sorted);
-  return status;
+    if (near[i].residual <= most) normals[i] = near[i].normal;
+  return SCREE_OK;
 }

@@ -7,8 +7,9 @@
 
 /* What the fits say of the scan as a whole. */
 typedef struct scree_fit {
-  double sigma;      /* of the noise, m: 0 where what is rough is shape */
-  double area_share; /* clean area / area, at most 1 */
+  double sigma;      /* of the noise, m: 0 where what is rough is shape, NaN where the mesh is too
+                        coarse or too rough to tell */
+  double area_share; /* clean area / area, at most 1; 1 where the noise cannot be told */
 } scree_fit;
 
 /* Fits round each of the points (on the mesh, of the outward unit normals given) and replaces its
