@@ -69,8 +69,7 @@ static scree_status choose_by_cost(const scree_curve *curve, scree_choice *choic
                                    scree_error *error) {
   const scree_fidelity *f = choice->fidelity;
   size_t count = 0, rows = scree_fidelity_count(f);
-  scree_kept *levels = scree_alloc(rows, sizeof *levels);
-  if (!levels) return scree_fail_memory(error, rows * sizeof *levels, "errors of levels");
+  SCREE_SCRATCH(scree_kept, levels, rows, error);
   for (size_t i = 0; i < rows; i++)
     if (scree_fidelity_is_usual(f, i))
       levels[count++] = (scree_kept){scree_fidelity_triangle_count(f, i),
@@ -80,43 +79,31 @@ static scree_status choose_by_cost(const scree_curve *curve, scree_choice *choic
       pick_at(curve, choice, scree_curve_find(curve, (size_t)least.triangle_count), least.sum);
   choice->cost.fewest = (size_t)least.fewest;
   choice->cost.most = (size_t)least.most;
-  scree_free(levels);
   return SCREE_OK;
 }
 
 static scree_status measure(const scree_curve *curve, const scree_mesh *scan,
                             const scree_choice_options *options, const scree_progress *progress,
                             scree_choice *choice, scree_error *error) {
-  scree_gauge gauge = {0};
+  SCREE_CLEANUP(scree_gauge_free) scree_gauge gauge = {0};
   scree_recommended found;
-  size_t *indices = scree_alloc(SCREE_FIDELITY_MOST + choice->level_count, sizeof *indices);
-  if (!indices)
-    return scree_fail_memory(error, choice->level_count * sizeof *indices, "levels to measure");
+  SCREE_SCRATCH(size_t, indices, SCREE_FIDELITY_MOST + choice->level_count, error);
   size_t count =
       list_levels(curve, choice, options->fine_errors ? SIZE_MAX : SCREE_FIDELITY_FINEST, indices);
-  scree_status status = scree_gauge_make(scan, SCREE_GAUGE_POINTS, &gauge, error);
-  if (status == SCREE_OK)
-    status =
-        scree_fidelity_sweep(&gauge, curve, indices, count, progress, &choice->fidelity, error);
-  if (status == SCREE_OK) {
-    fill_errors(choice, options->weight);
-    status = choose_by_cost(curve, choice, error);
-  }
+  SCREE_TRY(scree_gauge_make(scan, SCREE_GAUGE_POINTS, &gauge, error));
+  SCREE_TRY(
+      scree_fidelity_sweep(&gauge, curve, indices, count, progress, &choice->fidelity, error));
+  fill_errors(choice, options->weight);
+  SCREE_TRY(choose_by_cost(curve, choice, error));
   double tolerances[SCREE_SHAPE_ERROR_COUNT];
-  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT && status == SCREE_OK; e++)
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
     tolerances[e] = scree_choice_tolerance(choice, options, (scree_shape_error)e);
-  if (status == SCREE_OK)
-    status = scree_recommend(curve, &gauge, choice->fidelity, tolerances, &found, error);
-  if (status == SCREE_OK) {
-    double load = scree_normalised_error(found.reading.errors, tolerances, &choice->limited_by);
-    choice->recommended = pick_at(curve, choice, found.level_index, load);
-    status = scree_fidelity_insert(choice->fidelity, found.level_index,
-                                   choice->recommended.triangle_count, &found.reading,
-                                   &choice->recommended_row, error);
-  }
-  scree_gauge_free(&gauge);
-  scree_free(indices);
-  return status;
+  SCREE_TRY(scree_recommend(curve, &gauge, choice->fidelity, tolerances, &found, error));
+  double load = scree_normalised_error(found.reading.errors, tolerances, &choice->limited_by);
+  choice->recommended = pick_at(curve, choice, found.level_index, load);
+  return scree_fidelity_insert(choice->fidelity, found.level_index,
+                               choice->recommended.triangle_count, &found.reading,
+                               &choice->recommended_row, error);
 }
 
 scree_status scree_choose(const scree_curve *curve, const scree_mesh *scan,
@@ -125,24 +112,21 @@ scree_status scree_choose(const scree_curve *curve, const scree_mesh *scan,
   scree_choice_options defaults = scree_default_choice_options();
   if (!options) options = &defaults;
   scree_level_table table = {scree_curve_level_count(curve), curve_row, curve};
-  scree_choice chosen;
-  scree_status status = scree_choice_from_table(&table, options, &chosen, error);
-  if (status != SCREE_OK) return status;
-  if (scan && !options->area_only) status = measure(curve, scan, options, progress, &chosen, error);
-  if (status == SCREE_OK)
-    *choice = chosen;
-  else
-    scree_choice_free(&chosen);
-  return status;
+  SCREE_CLEANUP(scree_choice_free) scree_choice chosen = {0};
+  SCREE_TRY(scree_choice_from_table(&table, options, &chosen, error));
+  if (scan && !options->area_only)
+    SCREE_TRY(measure(curve, scan, options, progress, &chosen, error));
+  *choice = chosen;
+  chosen = (scree_choice){0};
+  return SCREE_OK;
 }
 
 scree_status scree_choose_mesh(scree_mesh *scan, double scale, const scree_progress *progress,
                                scree_mesh *mesh, scree_choice *choice, scree_error *error) {
   scree_curve *curve = NULL;
   scree_choice chosen = {0};
-  scree_status status = scree_curve_build_scaled(scan, scale, NULL, progress, &curve, error);
-  if (status != SCREE_OK) return status;
-  status = scree_choose(curve, scan, NULL, progress, &chosen, error);
+  SCREE_TRY(scree_curve_build_scaled(scan, scale, NULL, progress, &curve, error));
+  scree_status status = scree_choose(curve, scan, NULL, progress, &chosen, error);
   if (status == SCREE_OK)
     status = scree_curve_mesh(curve, chosen.recommended.level_index, mesh, error);
   scree_curve_free(curve);

@@ -17,6 +17,7 @@
 
 #include "base/alloc.h"
 #include "base/number.h"
+#include "base/radix.h"
 #include "choice/noise.h"
 
 #include <math.h>
@@ -121,15 +122,8 @@ size_t scree_choice_target(double rp, size_t triangle_count) {
 }
 
 size_t scree_level_find(const scree_level_table *table, size_t target) {
-  size_t low = 0, high = table->count - 1;
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (table->row(table->context, middle).triangle_count <= target)
-      high = middle;
-    else
-      low = middle + 1;
-  }
-  return low;
+  SCREE_FIND_FIRST(i, 0, table->count - 1, table->row(table->context, i).triangle_count > target)
+  return i;
 }
 
 /* The best level so far by one error. */
@@ -255,8 +249,7 @@ static scree_status run_pass(const scree_level_table *table, const scree_choice_
   aim(&trace, p.triangle_count);
   for (size_t i = 0; i < table->count; i++) {
     scree_level_row row = table->row(table->context, i);
-    scree_status status = check_row(row, i, error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(check_row(row, i, error));
     pass_enter(&p, i, row);
     keep_best(&p, p.eps, &p.plain);
     keep_best(&p, p.worst, &p.robust);
@@ -334,9 +327,9 @@ scree_status scree_choice_from_table(const scree_level_table *table,
                                      const scree_choice_options *options, scree_choice *choice,
                                      scree_error *error) {
   scree_level_row scan = table->row(table->context, 0);
-  scree_status status = check_options(options, error);
-  if (status == SCREE_OK) status = check_scan(scan, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(check_options(options, error));
+  SCREE_TRY(check_scan(scan, error));
+  SCREE_CLEANUP(scree_choice_free)
   scree_choice filled = {.triangle_count = scan.triangle_count,
                          .area = scan.area,
                          .volume = scan.volume,
@@ -345,23 +338,13 @@ scree_status scree_choice_from_table(const scree_level_table *table,
                          .trace_count = log_grid_count(options->rp_min, 1, SCREE_TRACE_PER_DECADE)};
   bool smooth = options->reference == SCREE_REFERENCE_SMOOTH;
   filled.reference_area = smooth ? filled.noise.area : filled.area;
-  filled.levels = scree_alloc_zero(filled.level_count, sizeof *filled.levels);
-  filled.trace = scree_alloc_zero(filled.trace_count, sizeof *filled.trace);
-  if (!filled.levels || !filled.trace) {
-    scree_choice_free(&filled);
-    return scree_fail_memory(error,
-                             (filled.level_count + filled.trace_count) * sizeof *filled.levels,
-                             "the levels of a choice");
-  }
+  SCREE_TRY_ALLOC_ZERO(filled.levels, filled.level_count, error);
+  SCREE_TRY_ALLOC_ZERO(filled.trace, filled.trace_count, error);
   for (size_t i = 0; i < filled.level_count; i++)
     filled.levels[i].rp = scree_choice_grid_rp(options, i);
   for (size_t i = 0; i < filled.trace_count; i++)
     filled.trace[i].rp = log_grid(options->rp_min, SCREE_TRACE_PER_DECADE, i);
-  status = run_pass(table, options, &filled, error);
-  if (status != SCREE_OK) {
-    scree_choice_free(&filled);
-    return status;
-  }
+  SCREE_TRY(run_pass(table, options, &filled, error));
   for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
     filled.best[e] = scree_choice_best_level(&filled, (scree_shape_error)e, options->weight);
   size_t finer =
@@ -383,6 +366,7 @@ scree_status scree_choice_from_table(const scree_level_table *table,
   find_similar(filled.trace, filled.trace_count, SCREE_SMOOTH_IP, &filled.smooth);
   filled.recommended = filled.cost = filled.robust;
   *choice = filled;
+  filled = (scree_choice){0};
   return SCREE_OK;
 }
 

@@ -78,20 +78,18 @@ static scree_status load_and_decimate(object *o) {
   const scree_choice_job *job = o->batch->job;
   scree_progress progress = enter_stage(o, 0, LOAD_PART);
   double scale = 1;
-  scree_status status = job->load(job->context, o->index, &progress, &o->mesh, &scale, &o->error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(job->load(job->context, o->index, &progress, &o->mesh, &scale, &o->error));
   progress = enter_stage(o, LOAD_PART, 1 - LOAD_PART - choice_part(&job->options));
   return scree_curve_build_scaled(&o->mesh, scale, &job->simplify, &progress, &o->curve, &o->error);
 }
 
 static scree_status choose_object(object *o) {
   batch *b = o->batch;
-  scree_status status = load_and_decimate(o);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(load_and_decimate(o));
   double part = choice_part(&b->job->options);
   scree_progress progress = enter_stage(o, 1 - part, part);
-  status = scree_choose(o->curve, &o->mesh, &b->job->options, &progress, &b->choices[o->index],
-                        &o->error);
+  scree_status status = scree_choose(o->curve, &o->mesh, &b->job->options, &progress,
+                                     &b->choices[o->index], &o->error);
   size_t bytes = KEPT_BYTES_PER_TRIANGLE * o->mesh.triangle_count;
   bool fits = atomic_fetch_add(&b->kept_bytes, bytes) + bytes <= KEEP_BYTES || b->job->count == 1;
   if (!b->job->done || !fits) let_go(o);
@@ -167,13 +165,10 @@ static scree_status leave_out(batch *b, scree_error *error) {
 /* The set's choice is of the objects that have one. */
 static scree_status choose_set(const batch *b, scree_set_choice *set, scree_error *error) {
   size_t count = 0;
-  scree_choice *chosen = scree_alloc(b->job->count, sizeof *chosen);
-  if (!chosen) return scree_fail_memory(error, b->job->count * sizeof *chosen, "the choices");
+  SCREE_SCRATCH(scree_choice, chosen, b->job->count, error);
   for (size_t i = 0; i < b->job->count; i++)
     if (!b->objects[i].left_out) chosen[count++] = b->choices[i];
-  scree_status status = scree_choose_set(chosen, count, set, error);
-  scree_free(chosen);
-  return status;
+  return scree_choose_set(chosen, count, set, error);
 }
 
 static void free_batch(batch *b, bool failed) {
@@ -187,12 +182,8 @@ static void free_batch(batch *b, bool failed) {
 scree_status scree_choose_each(const scree_choice_job *job, const scree_progress *progress,
                                scree_choice *choices, scree_set_choice *set, scree_error *error) {
   if (job->count == 0) return scree_fail(error, SCREE_BAD_ARGUMENT, "no object to choose for");
-  batch b = {.job = job,
-             .progress = progress,
-             .choices = choices,
-             .objects = scree_alloc_zero(job->count, sizeof *b.objects)};
-  if (!b.objects)
-    return scree_fail_memory(error, job->count * sizeof *b.objects, "the list of objects");
+  batch b = {.job = job, .progress = progress, .choices = choices};
+  SCREE_TRY_ALLOC_ZERO(b.objects, job->count, error);
   atomic_flag_clear(&b.reporting);
   atomic_init(&b.first_failed, SIZE_MAX);
   for (size_t i = 0; i < job->count; i++) {

@@ -5,6 +5,7 @@
 #include "base/alloc.h"
 #include "base/math.h"
 #include "base/progress.h"
+#include "simplify/curve.h"
 
 #include <math.h>
 #include <string.h>
@@ -42,6 +43,16 @@ size_t scree_fidelity_levels(const scree_curve *curve, size_t level_indices[SCRE
   return count;
 }
 
+void scree_fidelity_free(scree_fidelity *fidelity) {
+  if (!fidelity) return;
+  scree_free(fidelity->rows);
+  scree_free(fidelity);
+}
+
+static void free_fidelity_at(scree_fidelity **fidelity) {
+  scree_fidelity_free(*fidelity);
+}
+
 static scree_status check_indices(const scree_curve *curve, const size_t *indices, size_t count,
                                   scree_error *error) {
   for (size_t i = 0; i < count; i++)
@@ -54,21 +65,19 @@ static scree_status check_indices(const scree_curve *curve, const size_t *indice
 
 static scree_status sweep(scree_fidelity *f, const scree_gauge *gauge, const scree_curve *curve,
                           const scree_progress *progress, scree_error *error) {
-  scree_replay *replay = NULL;
+  SCREE_CLEANUP(scree_replay_free_at) scree_replay *replay = NULL;
   scree_ticker ticker = {.progress = progress};
-  scree_status status = scree_replay_start(curve, &replay, error);
-  for (size_t i = 0; i < f->count && status == SCREE_OK; i++) {
+  SCREE_TRY(scree_replay_start(curve, &replay, error));
+  for (size_t i = 0; i < f->count; i++) {
     const scree_mesh *level;
     level_row *r = &f->rows[i];
     if (!scree_tick(&ticker, "measuring levels", (double)i / (double)f->count))
-      status = scree_fail(error, SCREE_CANCELLED, "cancelled while measuring levels");
-    if (status == SCREE_OK) status = scree_replay_step(replay, r->level_index, &level, error);
-    if (status == SCREE_OK)
-      status = scree_gauge_read(gauge, level, SCREE_GAUGE_GAP, NULL, &r->reading, error);
-    if (status == SCREE_OK) r->triangle_count = level->triangle_count;
+      return scree_fail(error, SCREE_CANCELLED, "cancelled while measuring levels");
+    SCREE_TRY(scree_replay_step(replay, r->level_index, &level, error));
+    SCREE_TRY(scree_gauge_read(gauge, level, SCREE_GAUGE_GAP, NULL, &r->reading, error));
+    r->triangle_count = level->triangle_count;
   }
-  scree_replay_free(replay);
-  return status;
+  return SCREE_OK;
 }
 
 /* Both lists ascend. */
@@ -94,24 +103,18 @@ scree_status scree_fidelity_sweep(const scree_gauge *gauge, const scree_curve *c
                                   const size_t *level_indices, size_t level_count,
                                   const scree_progress *progress, scree_fidelity **fidelity,
                                   scree_error *error) {
-  scree_status status = check_indices(curve, level_indices, level_count, error);
-  if (status != SCREE_OK) return status;
-  scree_fidelity *made = scree_alloc_zero(1, sizeof *made);
-  if (!made) return scree_fail_memory(error, sizeof *made, "errors of levels");
+  SCREE_TRY(check_indices(curve, level_indices, level_count, error));
+  SCREE_CLEANUP(free_fidelity_at) scree_fidelity *made = NULL;
+  SCREE_TRY_ALLOC_ZERO(made, 1, error);
+  SCREE_TRY_ALLOC_ZERO(made->rows, level_count, error);
   made->count = level_count;
-  made->rows = scree_alloc_zero(level_count, sizeof *made->rows);
-  if (!made->rows)
-    status = scree_fail_memory(error, level_count * sizeof *made->rows, "errors of levels");
-  for (size_t i = 0; status == SCREE_OK && i < level_count; i++)
-    made->rows[i].level_index = level_indices[i];
-  if (status == SCREE_OK) mark_usual(made, curve);
+  for (size_t i = 0; i < level_count; i++) made->rows[i].level_index = level_indices[i];
+  mark_usual(made, curve);
   keep_facts(made, gauge);
-  if (status == SCREE_OK) status = sweep(made, gauge, curve, progress, error);
-  if (status == SCREE_OK)
-    *fidelity = made;
-  else
-    scree_fidelity_free(made);
-  return status;
+  SCREE_TRY(sweep(made, gauge, curve, progress, error));
+  *fidelity = made;
+  made = NULL;
+  return SCREE_OK;
 }
 
 scree_status scree_fidelity_measure(const scree_curve *curve, const scree_mesh *scan,
@@ -119,17 +122,13 @@ scree_status scree_fidelity_measure(const scree_curve *curve, const scree_mesh *
                                     const scree_progress *progress, scree_fidelity **fidelity,
                                     scree_error *error) {
   size_t usual[SCREE_FIDELITY_MOST];
-  scree_gauge gauge;
+  SCREE_CLEANUP(scree_gauge_free) scree_gauge gauge = {0};
   if (!level_indices) {
     level_count = scree_fidelity_levels(curve, usual);
     level_indices = usual;
   }
-  scree_status status = scree_gauge_make(scan, SCREE_GAUGE_POINTS, &gauge, error);
-  if (status != SCREE_OK) return status;
-  status =
-      scree_fidelity_sweep(&gauge, curve, level_indices, level_count, progress, fidelity, error);
-  scree_gauge_free(&gauge);
-  return status;
+  SCREE_TRY(scree_gauge_make(scan, SCREE_GAUGE_POINTS, &gauge, error));
+  return scree_fidelity_sweep(&gauge, curve, level_indices, level_count, progress, fidelity, error);
 }
 
 scree_status scree_fidelity_insert(scree_fidelity *f, size_t level_index, size_t triangle_count,
@@ -138,20 +137,14 @@ scree_status scree_fidelity_insert(scree_fidelity *f, size_t level_index, size_t
   size_t at = 0;
   while (at < f->count && f->rows[at].level_index < level_index) at++;
   if (at == f->count || f->rows[at].level_index != level_index) {
-    level_row *grown = scree_resize(f->rows, f->count + 1, sizeof *grown);
-    if (!grown) return scree_fail_memory(error, (f->count + 1) * sizeof *grown, "errors of levels");
+    level_row *grown;
+    SCREE_TRY_BLOCK(grown, scree_resize(f->rows, f->count + 1, sizeof *grown), f->count + 1, error);
     f->rows = grown;
     memmove(&f->rows[at + 1], &f->rows[at], (f->count++ - at) * sizeof *grown);
   }
   f->rows[at] = (level_row){level_index, triangle_count, *reading, false};
   *row = at;
   return SCREE_OK;
-}
-
-void scree_fidelity_free(scree_fidelity *fidelity) {
-  if (!fidelity) return;
-  scree_free(fidelity->rows);
-  scree_free(fidelity);
 }
 
 size_t scree_fidelity_count(const scree_fidelity *fidelity) {

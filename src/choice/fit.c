@@ -234,8 +234,7 @@ static double noise_share(double near, double far, double spacing) {
 static scree_status make_cells(const scree_mesh *mesh, cells *c, scree_error *error) {
   double area;
   vec3 high;
-  scree_status status = scree_mesh_area_volume(mesh, &area, NULL, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_mesh_area_volume(mesh, &area, NULL, error));
   *c = (cells){.mesh = mesh, .spacing = sqrt(area / (double)mesh->vertex_count), .mask = 1};
   while (c->mask < mesh->vertex_count) c->mask = 2 * c->mask + 1;
   scree_mesh_bounds(mesh, &c->low, &high);

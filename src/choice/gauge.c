@@ -83,85 +83,71 @@ static void find_walls(scree_gauge *g) {
 }
 
 static scree_status set_thickness(scree_gauge *g, scree_error *error) {
-  double *sorted = scree_alloc(g->wall_count, sizeof *sorted);
-  if (!sorted) return scree_fail_memory(error, g->wall_count * sizeof *sorted, "walls");
+  SCREE_SCRATCH(double, sorted, g->wall_count, error);
   for (size_t i = 0; i < g->wall_count; i++) sorted[i] = g->walls[i].thickness;
   g->thickness = percentile(sorted, g->wall_count, 0.5);
   g->thinnest = percentile(sorted, g->wall_count, 0.01);
-  scree_free(sorted);
   return SCREE_OK;
 }
 
 static scree_status set_probes(scree_gauge *g, scree_error *error) {
-  vec3 *points = NULL;
-  scree_status status = SCREE_OUT_OF_MEMORY;
   g->probe_step = PROBE_STEP;
   g->probe_count = (g->spread.count + PROBE_STEP - 1) / PROBE_STEP;
-  SCREE_ALLOC_OR(points, g->probe_count, error, done);
-  SCREE_ALLOC_OR(g->probe_normals, g->probe_count, error, done);
-  SCREE_ALLOC_OR(g->walls, g->probe_count + 1, error, done);
+  SCREE_SCRATCH(vec3, points, g->probe_count, error);
+  SCREE_TRY_ALLOC(g->probe_normals, g->probe_count, error);
+  SCREE_TRY_ALLOC(g->walls, g->probe_count + 1, error);
   for (size_t i = 0; i < g->probe_count; i++) {
     points[i] = g->spread.points[i * PROBE_STEP];
     g->probe_normals[i] = g->spread.normals[i * PROBE_STEP];
     if (g->measures.inward) g->probe_normals[i] = vec3_neg(g->probe_normals[i]);
   }
-  status = scree_fit_points(g->scan, points, g->probe_normals, g->probe_count, &g->fit, error);
-  if (status != SCREE_OK) goto done;
+  SCREE_TRY(scree_fit_points(g->scan, points, g->probe_normals, g->probe_count, &g->fit, error));
   g->clean_area = g->fit.area_share * g->measures.area;
   find_walls(g);
-  status = set_thickness(g, error);
-done:
-  scree_free(points);
-  return status;
+  return set_thickness(g, error);
 }
 
 /* With flat fans of thousands of triangles, whose boxes all meet, cut otherwise. */
 static scree_status make_surface(const scree_mesh *scan, scree_surface **surface,
                                  scree_error *error) {
   scree_mesh same = *scan;
-  uint32_t *triangles;
-  scree_status status = scree_flat_fans_cut(scan, &triangles, error);
+  SCREE_CLEANUP(scree_free_at) uint32_t *triangles = NULL;
+  SCREE_TRY(scree_flat_fans_cut(scan, &triangles, error));
   if (triangles) same.triangles = triangles;
-  if (status == SCREE_OK) status = scree_surface_create(&same, surface, error);
-  scree_free(triangles);
-  return status;
+  return scree_surface_create(&same, surface, error);
 }
 
 scree_status scree_gauge_make(const scree_mesh *scan, size_t point_count, scree_gauge *gauge,
                               scree_error *error) {
-  scree_gauge made = {.scan = scan};
-  scree_status status = scree_mesh_measure(scan, &made.measures, error);
-  if (status == SCREE_OK && !(made.measures.area > 0))
-    status = scree_fail(error, SCREE_BAD_MESH, "%zu triangles of area %g m2: no surface to judge",
-                        scan->triangle_count, made.measures.area);
-  if (status != SCREE_OK) return status;
+  SCREE_CLEANUP(scree_gauge_free) scree_gauge made = {.scan = scan};
+  SCREE_TRY(scree_mesh_measure(scan, &made.measures, error));
+  if (!(made.measures.area > 0))
+    return scree_fail(error, SCREE_BAD_MESH, "%zu triangles of area %g m2: no surface to judge",
+                      scan->triangle_count, made.measures.area);
   made.length = sqrt(made.measures.area / acos(-1));
   scree_extent_of_mesh(&made.extent, made.measures.oriented_axes, scan);
-  status = make_surface(scan, &made.surface, error);
-  if (status == SCREE_OK) status = scree_spread_make(scan, point_count, &made.spread, error);
-  if (status == SCREE_OK) status = set_probes(&made, error);
-  if (status == SCREE_OK)
-    *gauge = made;
-  else
-    scree_gauge_free(&made);
-  return status;
+  SCREE_TRY(make_surface(scan, &made.surface, error));
+  SCREE_TRY(scree_spread_make(scan, point_count, &made.spread, error));
+  SCREE_TRY(set_probes(&made, error));
+  *gauge = made;
+  made = (scree_gauge){0};
+  return SCREE_OK;
 }
 
 scree_status scree_gauge_refine(const scree_gauge *gauge, size_t point_count, scree_gauge *refined,
                                 scree_error *error) {
+  SCREE_CLEANUP(scree_gauge_free)
   scree_gauge made = {.scan = gauge->scan,
                       .surface = gauge->surface,
                       .refined = true,
                       .measures = gauge->measures,
                       .length = gauge->length,
                       .extent = gauge->extent};
-  scree_status status = scree_spread_make(gauge->scan, point_count, &made.spread, error);
-  if (status == SCREE_OK) status = set_probes(&made, error);
-  if (status == SCREE_OK)
-    *refined = made;
-  else
-    scree_gauge_free(&made);
-  return status;
+  SCREE_TRY(scree_spread_make(gauge->scan, point_count, &made.spread, error));
+  SCREE_TRY(set_probes(&made, error));
+  *refined = made;
+  made = (scree_gauge){0};
+  return SCREE_OK;
 }
 
 void scree_gauge_free(scree_gauge *gauge) {
@@ -264,15 +250,14 @@ static double normals_error(const forward *f) {
 /* The mean of distance over thickness, and the change of the first percentile of thickness. */
 static scree_status read_walls(const forward *f, scree_gauge_reading *r, scree_error *error) {
   const scree_gauge *g = f->gauge;
-  double *now = scree_alloc(g->wall_count, sizeof *now), sum = 0;
-  if (!now) return scree_fail_memory(error, g->wall_count * sizeof *now, "walls");
+  double sum = 0;
+  SCREE_SCRATCH(double, now, g->wall_count, error);
   for (size_t i = 0; i < g->wall_count; i++) {
     sum += f->distances[g->walls[i].point] / g->walls[i].thickness;
     now[i] = thickness_along(&f->level->bvh, &g->walls[i]);
   }
   r->errors[SCREE_ERROR_THICKNESS] = g->wall_count ? sum / (double)g->wall_count : NAN;
   r->changes[SCREE_CHANGE_THINNEST] = percentile(now, g->wall_count, 0.01) / g->thinnest - 1;
-  scree_free(now);
   return SCREE_OK;
 }
 
@@ -328,25 +313,17 @@ static size_t back_points(const scree_gauge *g, size_t facet_count) {
 /* From points spread over the level; their mean distance from the scan. */
 static scree_status go_back(forward *f, double *mean, scree_error *error) {
   const scree_gauge *g = f->gauge;
-  scree_spread points = {0};
+  SCREE_CLEANUP(scree_spread_free) scree_spread points = {0};
   scree_sum sum = {0, 0};
-  double *distances = NULL;
-  scree_status status =
-      scree_spread_make(f->mesh, back_points(g, f->mesh->triangle_count), &points, error);
-  if (status != SCREE_OK) return status;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(distances, points.count, error, done);
+  SCREE_TRY(scree_spread_make(f->mesh, back_points(g, f->mesh->triangle_count), &points, error));
+  SCREE_SCRATCH(double, distances, points.count, error);
   scree_surface_distances(g->surface, &points.points->x, points.count, distances);
   for (size_t i = 0; i < points.count; i++) {
     scree_sum_add(&sum, distances[i]);
     keep_farthest(f, distances[i], points.points[i]);
   }
   *mean = scree_sum_value(sum) / (double)points.count;
-  status = SCREE_OK;
-done:
-  scree_spread_free(&points);
-  scree_free(distances);
-  return status;
+  return SCREE_OK;
 }
 
 /* A facet that spans a hollow of the other surface is farther off than its corners. */
@@ -359,64 +336,57 @@ static scree_status search_facets(forward *f, const scree_surface *from, const s
                                     .known = f->maximum,
                                     .cut_budget = f->gauge->spread.count /
                                                   (f->gauge->refined ? BACK_STEP : CUT_STEP)};
-  scree_status status = scree_surface_deviation(from, to, &way, NULL, &d, error);
-  if (status == SCREE_OK) keep_farthest(f, d.maximum, vec3_load(d.at));
-  return status;
+  SCREE_TRY(scree_surface_deviation(from, to, &way, NULL, &d, error));
+  keep_farthest(f, d.maximum, vec3_load(d.at));
+  return SCREE_OK;
 }
 
 static scree_status read_means(forward *f, double gap, scree_gauge_reading *r, scree_error *error) {
   double back;
   go_forward(f, gap);
-  scree_status status = go_back(f, &back, error);
-  if (status == SCREE_OK) r->errors[SCREE_ERROR_MEAN] = fmax(f->mean, back) / f->gauge->length;
-  return status;
+  SCREE_TRY(go_back(f, &back, error));
+  r->errors[SCREE_ERROR_MEAN] = fmax(f->mean, back) / f->gauge->length;
+  return SCREE_OK;
 }
 
 static scree_status read_farthest(forward *f, double gap, scree_gauge_reading *r,
                                   scree_error *error) {
   const scree_gauge *g = f->gauge;
-  scree_status status = search_facets(f, f->level, g->surface, gap, error);
-  if (status == SCREE_OK && g->refined &&
-      sqrt(g->surface->largest_facet) >= SMALL_FACET * g->length)
-    status = search_facets(f, g->surface, f->level, gap, error);
+  SCREE_TRY(search_facets(f, f->level, g->surface, gap, error));
+  if (g->refined && sqrt(g->surface->largest_facet) >= SMALL_FACET * g->length)
+    SCREE_TRY(search_facets(f, g->surface, f->level, gap, error));
   r->errors[SCREE_ERROR_HAUSDORFF] = f->maximum / g->length;
   vec3_store(r->farthest, f->at);
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status read_level(forward *f, double gap, const double *tolerances,
                                scree_gauge_reading *r, scree_error *error) {
-  scree_status status = read_means(f, gap, r, error);
-  if (status != SCREE_OK || (tolerances && scree_normalised_error(r->errors, tolerances, NULL) > 1))
-    return status;
-  status = read_farthest(f, gap, r, error);
-  if (status == SCREE_OK) status = read_walls(f, r, error);
+  SCREE_TRY(read_means(f, gap, r, error));
+  if (tolerances && scree_normalised_error(r->errors, tolerances, NULL) > 1) return SCREE_OK;
+  SCREE_TRY(read_farthest(f, gap, r, error));
+  SCREE_TRY(read_walls(f, r, error));
   r->errors[SCREE_ERROR_NORMALS] = normals_error(f);
   r->errors[SCREE_ERROR_THINNEST] = fabs(r->changes[SCREE_CHANGE_THINNEST]);
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_gauge_read(const scree_gauge *gauge, const scree_mesh *level, double gap,
                               const double *tolerances, scree_gauge_reading *reading,
                               scree_error *error) {
-  scree_surface *surface = NULL;
+  scree_surface *surface;
   scree_measures measures;
   scree_gauge_reading r = {0};
-  forward f = {.gauge = gauge, .mesh = level};
-  scree_status status = scree_mesh_measure(level, &measures, error);
-  if (status == SCREE_OK) status = scree_surface_create(level, &surface, error);
-  if (status != SCREE_OK) return status;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(f.distances, gauge->spread.count, error, done);
-  SCREE_ALLOC_OR(f.nearest, gauge->spread.count, error, done);
-  f.level = surface;
+  SCREE_SCRATCH(double, distances, gauge->spread.count, error);
+  SCREE_SCRATCH(uint32_t, nearest, gauge->spread.count, error);
+  SCREE_TRY(scree_mesh_measure(level, &measures, error));
+  SCREE_TRY(scree_surface_create(level, &surface, error));
+  forward f = {
+      .gauge = gauge, .mesh = level, .level = surface, .distances = distances, .nearest = nearest};
   read_measures(gauge, &measures, &r);
   read_widths(gauge, level, &r);
-  status = read_level(&f, gap, tolerances, &r, error);
-  if (status == SCREE_OK) *reading = r;
-done:
+  scree_status status = read_level(&f, gap, tolerances, &r, error);
   scree_surface_free(surface);
-  scree_free(f.distances);
-  scree_free(f.nearest);
+  if (status == SCREE_OK) *reading = r;
   return status;
 }

@@ -76,14 +76,11 @@ typedef struct bracket {
 
 static scree_status keeps_all(search *s, const scree_gauge *gauge, double gap, size_t level_index,
                               bool *keeps) {
-  scree_mesh mesh = {0};
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
   scree_gauge_reading reading;
-  scree_status status = scree_curve_mesh(s->curve, level_index, &mesh, s->error);
-  if (status == SCREE_OK)
-    status =
-        scree_gauge_read(gauge, &mesh, gap, level_index ? s->tolerances : NULL, &reading, s->error);
-  scree_mesh_free(&mesh);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_curve_mesh(s->curve, level_index, &mesh, s->error));
+  SCREE_TRY(
+      scree_gauge_read(gauge, &mesh, gap, level_index ? s->tolerances : NULL, &reading, s->error));
   *keeps = scree_normalised_error(reading.errors, s->tolerances, NULL) <= MOST_LOAD;
   if (*keeps || level_index == 0) s->reading = reading;
   return SCREE_OK;
@@ -93,8 +90,7 @@ static scree_status narrow(search *s, const scree_gauge *gauge, double gap, brac
   while (b->coarse - b->fine > 1) {
     size_t middle = b->fine + (b->coarse - b->fine) / 2;
     bool keeps;
-    scree_status status = keeps_all(s, gauge, gap, middle, &keeps);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(keeps_all(s, gauge, gap, middle, &keeps));
     if (keeps)
       b->fine = middle;
     else
@@ -122,17 +118,17 @@ static bracket first_bracket(const search *s, const scree_fidelity *f) {
 static scree_status find_level(search *s, const scree_gauge *quick, const scree_gauge *dense,
                                const scree_fidelity *f, size_t *level_index) {
   bracket b = first_bracket(s, f);
-  scree_status status = narrow(s, quick, SCREE_GAUGE_GAP, &b);
-  for (size_t step = 1; status == SCREE_OK; step *= 2) {
+  SCREE_TRY(narrow(s, quick, SCREE_GAUGE_GAP, &b));
+  for (size_t step = 1;; step *= 2) {
     bool keeps;
-    status = keeps_all(s, dense, DENSE_GAP, b.fine, &keeps);
-    if (status != SCREE_OK || keeps || b.fine == 0) break;
+    SCREE_TRY(keeps_all(s, dense, DENSE_GAP, b.fine, &keeps));
+    if (keeps || b.fine == 0) break;
     b.coarse = b.fine;
     b.fine -= step < b.fine ? step : b.fine;
   }
-  if (status == SCREE_OK) status = narrow(s, dense, DENSE_GAP, &b);
+  SCREE_TRY(narrow(s, dense, DENSE_GAP, &b));
   *level_index = b.fine;
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_recommend(const scree_curve *curve, const scree_gauge *gauge,
@@ -140,14 +136,10 @@ scree_status scree_recommend(const scree_curve *curve, const scree_gauge *gauge,
                              const double tolerances[SCREE_SHAPE_ERROR_COUNT],
                              scree_recommended *found, scree_error *error) {
   search s = {.curve = curve, .tolerances = tolerances, .error = error};
-  scree_gauge dense;
-  scree_recommended made;
-  scree_status status = scree_gauge_refine(gauge, DENSE_POINTS, &dense, error);
-  if (status != SCREE_OK) return status;
-  status = find_level(&s, gauge, &dense, fidelity, &made.level_index);
-  scree_gauge_free(&dense);
-  if (status != SCREE_OK) return status;
-  made.reading = s.reading;
-  *found = made;
+  SCREE_CLEANUP(scree_gauge_free) scree_gauge dense = {0};
+  SCREE_TRY(scree_gauge_refine(gauge, DENSE_POINTS, &dense, error));
+  size_t level_index;
+  SCREE_TRY(find_level(&s, gauge, &dense, fidelity, &level_index));
+  *found = (scree_recommended){.level_index = level_index, .reading = s.reading};
   return SCREE_OK;
 }

@@ -119,16 +119,12 @@ static scree_status check_choices(const scree_choice *choices, size_t count, scr
 
 scree_status scree_choose_set(const scree_choice *choices, size_t count, scree_set_choice *set,
                               scree_error *error) {
-  scree_status status = check_choices(choices, count, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(check_choices(choices, count, error));
+  SCREE_CLEANUP(scree_set_choice_free)
   scree_set_choice filled = {.object_count = count, .level_count = choices[0].level_count};
-  filled.ip = scree_alloc(filled.level_count, sizeof(double));
-  filled.low = scree_alloc(filled.level_count, sizeof(double));
-  filled.high = scree_alloc(filled.level_count, sizeof(double));
-  if (!filled.ip || !filled.low || !filled.high) {
-    scree_set_choice_free(&filled);
-    return scree_fail_memory(error, 3 * filled.level_count * sizeof(double), "the set's choice");
-  }
+  SCREE_TRY_ALLOC(filled.ip, filled.level_count, error);
+  SCREE_TRY_ALLOC(filled.low, filled.level_count, error);
+  SCREE_TRY_ALLOC(filled.high, filled.level_count, error);
   fill_grid(choices, count, &filled);
   fill_spread(choices, count, &filled);
   filled.paper = pick_for_set(choices, count, SCREE_PLAIN_IP);
@@ -137,6 +133,7 @@ scree_status scree_choose_set(const scree_choice *choices, size_t count, scree_s
   filled.paper_growth = growth_of(choices, count, SCREE_PLAIN_IP, &filled.paper);
   filled.robust_growth = growth_of(choices, count, SCREE_ROBUST_IP, &filled.robust);
   *set = filled;
+  filled = (scree_set_choice){0};
   return SCREE_OK;
 }
 

@@ -86,39 +86,26 @@ static void group_vertices(const scree_mesh *mesh, const uint32_t *nearest, cons
 
 scree_status scree_spread_make(const scree_mesh *mesh, size_t count, scree_spread *spread,
                                scree_error *error) {
-  scree_spread made = {0};
-  scree_keyed *keys = NULL, *swap = NULL;
-  uint32_t *before = NULL, *nearest = NULL;
-  double *distance = NULL;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(keys, mesh->triangle_count, error, done);
-  SCREE_ALLOC_OR(swap, mesh->triangle_count, error, done);
-  SCREE_ALLOC_OR(before, mesh->triangle_count, error, done);
-  SCREE_ALLOC_OR(nearest, mesh->vertex_count, error, done);
-  SCREE_ALLOC_OR(distance, mesh->vertex_count, error, done);
-  SCREE_ALLOC_OR(made.points, count, error, done);
-  SCREE_ALLOC_OR(made.normals, count, error, done);
-  SCREE_ALLOC_OR(made.vertices, mesh->vertex_count, error, done);
-  SCREE_ALLOC_OR(made.starts, count + 1, error, done);
-  SCREE_ALLOC_OR(made.reach, count, error, done);
+  SCREE_CLEANUP(scree_spread_free) scree_spread made = {0};
+  SCREE_SCRATCH(scree_keyed, keys, mesh->triangle_count, error);
+  SCREE_SCRATCH(scree_keyed, swap, mesh->triangle_count, error);
+  SCREE_SCRATCH(uint32_t, before, mesh->triangle_count, error);
+  SCREE_SCRATCH(uint32_t, nearest, mesh->vertex_count, error);
+  SCREE_SCRATCH(double, distance, mesh->vertex_count, error);
+  SCREE_TRY_ALLOC(made.points, count, error);
+  SCREE_TRY_ALLOC(made.normals, count, error);
+  SCREE_TRY_ALLOC(made.vertices, mesh->vertex_count, error);
+  SCREE_TRY_ALLOC(made.starts, count + 1, error);
+  SCREE_TRY_ALLOC(made.reach, count, error);
   key_facets(mesh, keys);
   const scree_keyed *curve =
       scree_radix_sort(keys, swap, mesh->triangle_count, 3 * SCREE_MORTON_BITS);
   take_points(mesh, curve, count, before, &made);
   find_nearest(mesh, curve, before, &made, nearest, distance);
   group_vertices(mesh, nearest, distance, &made);
-  status = SCREE_OK;
-done:
-  scree_free(keys);
-  scree_free(swap);
-  scree_free(before);
-  scree_free(nearest);
-  scree_free(distance);
-  if (status == SCREE_OK)
-    *spread = made;
-  else
-    scree_spread_free(&made);
-  return status;
+  *spread = made;
+  made = (scree_spread){0};
+  return SCREE_OK;
 }
 
 void scree_spread_free(scree_spread *spread) {

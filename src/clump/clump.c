@@ -4,7 +4,6 @@
 #include "clump/quality.h"
 #include "particle/particle.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum { LARGEST_COUNT = 300 };
@@ -39,14 +38,6 @@ static scree_status check_options(const scree_clump_options *o, scree_error *err
   return SCREE_OK;
 }
 
-static int largest_first(const void *a, const void *b) {
-  const scree_sphere *s = a, *t = b;
-  if (s->radius != t->radius) return s->radius > t->radius ? -1 : 1;
-  for (int k = 0; k < 3; k++)
-    if (s->centre[k] != t->centre[k]) return s->centre[k] < t->centre[k] ? -1 : 1;
-  return 0;
-}
-
 /* Into the mesh's coordinates. */
 static void put_spheres(const scree_target *body, const scree_sphere *from, size_t count,
                         scree_sphere *to) {
@@ -60,7 +51,7 @@ static void put_spheres(const scree_target *body, const scree_sphere *from, size
       to[i].centre[k] = centre[k] + body->scale * x;
     }
   }
-  qsort(to, count, sizeof *to, largest_first);
+  scree_spheres_sort(to, count);
 }
 
 static void choose(scree_clumps *c) {
@@ -73,18 +64,15 @@ static void choose(scree_clumps *c) {
 }
 
 static scree_status collect(scree_path *p, scree_clumps *c, scree_error *error) {
-  scree_judge judge;
+  SCREE_CLEANUP(scree_judge_free) scree_judge judge = {0};
   size_t total = 0, used = 0;
   for (size_t n = 1; n <= p->most; n++) {
     c->clump_count += p->best[n].count > 0;
     total += p->best[n].count;
   }
-  c->clumps = scree_alloc_zero(c->clump_count, sizeof *c->clumps);
-  c->storage = scree_alloc(total, sizeof *c->storage);
-  if (!c->clumps || !c->storage)
-    return scree_fail_memory(error, total * sizeof *c->storage, "the spheres of clumps");
-  scree_status status = scree_judge_make(p->body, &p->field, &p->ruler, &judge, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY_ALLOC_ZERO(c->clumps, c->clump_count, error);
+  SCREE_TRY_ALLOC(c->storage, total, error);
+  SCREE_TRY(scree_judge_make(p->body, &p->field, &p->ruler, &judge, error));
   c->clump_count = 0;
   for (size_t n = 1; n <= p->most; n++) {
     const scree_trial *t = &p->best[n];
@@ -95,7 +83,6 @@ static scree_status collect(scree_path *p, scree_clumps *c, scree_error *error) 
     put_spheres(p->body, t->spheres, t->count, clump->spheres);
     used += t->count;
   }
-  scree_judge_free(&judge);
   if (p->ruler.failed) return scree_fail_memory(error, 0, "the chords of a clump");
   choose(c);
   return SCREE_OK;
@@ -103,37 +90,29 @@ static scree_status collect(scree_path *p, scree_clumps *c, scree_error *error) 
 
 static scree_status make(const scree_target *body, const scree_clump_options *o,
                          const scree_progress *progress, scree_clumps *c, scree_error *error) {
-  scree_path path;
-  scree_status status =
-      scree_path_make(body, o->most, o->outside / body->scale, progress, &path, error);
-  if (status != SCREE_OK) return status;
-  status = o->method == SCREE_CLUMP_FITTED ? scree_path_search(&path, error)
-                                           : scree_greedy_fill(&path, o, error);
+  SCREE_CLEANUP(scree_path_free) scree_path path = {0};
+  SCREE_TRY(scree_path_make(body, o->most, o->outside / body->scale, progress, &path, error));
+  SCREE_TRY(o->method == SCREE_CLUMP_FITTED ? scree_path_search(&path, error)
+                                            : scree_greedy_fill(&path, o, error));
   c->size = SCREE_UNIT_SIZE * body->scale;
   c->thickness = body->scale * path.field.thickness;
   c->wall_cells = scree_distance_field_cells(&path.field);
-  if (status == SCREE_OK) status = collect(&path, c, error);
-  scree_path_free(&path);
-  return status;
+  return collect(&path, c, error);
 }
 
 scree_status scree_clumps_make(const scree_mesh *mesh, const scree_clump_options *options,
                                const scree_progress *progress, scree_clumps *clumps,
                                scree_error *error) {
   scree_clump_options used = options ? *options : scree_default_clump_options();
-  scree_clumps c = {.method = used.method};
-  scree_target body;
-  scree_status status = check_options(&used, error);
-  if (status == SCREE_OK) status = scree_target_make(mesh, &body, error);
-  if (status != SCREE_OK) return status;
-  status = scree_mesh_measure(mesh, &c.measures, error);
-  if (status == SCREE_OK) status = make(&body, &used, progress, &c, error);
-  scree_target_free(&body);
-  if (status == SCREE_OK)
-    *clumps = c;
-  else
-    scree_clumps_free(&c);
-  return status;
+  SCREE_CLEANUP(scree_clumps_free) scree_clumps c = {.method = used.method};
+  SCREE_CLEANUP(scree_target_free) scree_target body = {0};
+  SCREE_TRY(check_options(&used, error));
+  SCREE_TRY(scree_target_make(mesh, &body, error));
+  SCREE_TRY(scree_mesh_measure(mesh, &c.measures, error));
+  SCREE_TRY(make(&body, &used, progress, &c, error));
+  *clumps = c;
+  c = (scree_clumps){0};
+  return SCREE_OK;
 }
 
 void scree_clumps_free(scree_clumps *clumps) {
@@ -169,29 +148,20 @@ scree_status scree_clump_particle(const scree_clumps *clumps, const scree_clump 
                                   scree_particle **particle, scree_error *error) {
   size_t count = clump->sphere_count;
   scree_solid solid = solid_of(&clumps->measures);
-  double *centres = scree_alloc(3 * count, sizeof *centres),
-         *radii = scree_alloc(count, sizeof *radii);
-  scree_status status =
-      centres && radii ? SCREE_OK : scree_fail_memory(error, 4 * count * sizeof *radii, "a clump");
-  for (size_t i = 0; i < count && status == SCREE_OK; i++) {
+  SCREE_SCRATCH(double, centres, 3 * count, error);
+  SCREE_SCRATCH(double, radii, count, error);
+  for (size_t i = 0; i < count; i++) {
     memcpy(centres + 3 * i, clump->spheres[i].centre, 3 * sizeof *centres);
     radii[i] = clump->spheres[i].radius;
   }
-  if (status == SCREE_OK)
-    status = scree_particle_clump_of(centres, radii, count, &solid, particle, error);
-  scree_free(centres);
-  scree_free(radii);
-  return status;
+  return scree_particle_clump_of(centres, radii, count, &solid, particle, error);
 }
 
 scree_status scree_clump_fit(const scree_mesh *mesh, size_t count, const scree_progress *progress,
                              scree_particle **particle, scree_error *error) {
   scree_clump_options o = scree_default_clump_options();
-  scree_clumps clumps;
+  SCREE_CLEANUP(scree_clumps_free) scree_clumps clumps = {0};
   o.most = count;
-  scree_status status = scree_clumps_make(mesh, &o, progress, &clumps, error);
-  if (status != SCREE_OK) return status;
-  status = scree_clump_particle(&clumps, scree_clumps_of_count(&clumps, count), particle, error);
-  scree_clumps_free(&clumps);
-  return status;
+  SCREE_TRY(scree_clumps_make(mesh, &o, progress, &clumps, error));
+  return scree_clump_particle(&clumps, scree_clumps_of_count(&clumps, count), particle, error);
 }

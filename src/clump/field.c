@@ -117,48 +117,38 @@ static size_t number_bricks(scree_distance_field *f, size_t *cells) {
   return count;
 }
 
-static scree_status fill(const scree_target *body, scree_distance_field *f, scree_lines *lines,
-                         size_t **cells, scree_error *error) {
+static scree_status fill(const scree_target *body, scree_distance_field *f, scree_error *error) {
   size_t count = f->n[0] * f->n[1] * f->n[2];
   double fine = scree_distance_field_spacing(f);
-  *lines = (scree_lines){.nx = (f->n[0] - 1) * SCREE_FINER + 1,
-                         .ny = (f->n[1] - 1) * SCREE_FINER + 1,
-                         .x0 = f->low[0] + 1.237e-6 * fine, /* off vertices on round numbers */
-                         .y0 = f->low[1] + 2.311e-6 * fine,
-                         .step = fine,
-                         .cosine = 1};
-  scree_status status = scree_lines_cast(body, lines, error);
-  if (status != SCREE_OK) return status;
-  SCREE_ALLOC_OR(f->values, count, error, out_of_memory);
-  SCREE_ALLOC_OR(f->brick, count, error, out_of_memory);
-  SCREE_ALLOC_OR(*cells, count, error, out_of_memory);
-  job j = {body, f, lines, *cells};
+  SCREE_CLEANUP(scree_lines_free)
+  scree_lines lines = {.nx = (f->n[0] - 1) * SCREE_FINER + 1,
+                       .ny = (f->n[1] - 1) * SCREE_FINER + 1,
+                       .x0 = f->low[0] + 1.237e-6 * fine, /* off vertices on round numbers */
+                       .y0 = f->low[1] + 2.311e-6 * fine,
+                       .step = fine,
+                       .cosine = 1};
+  SCREE_TRY(scree_lines_cast(body, &lines, error));
+  SCREE_TRY_ALLOC(f->values, count, error);
+  SCREE_TRY_ALLOC(f->brick, count, error);
+  SCREE_SCRATCH(size_t, cells, count, error);
+  job j = {body, f, &lines, cells};
   scree_parallel_for(f->n[0] * f->n[1], BLOCK, fill_rows, &j);
-  f->brick_count = number_bricks(f, *cells);
-  SCREE_ALLOC_OR(f->bricks, f->brick_count, error, out_of_memory);
+  f->brick_count = number_bricks(f, cells);
+  SCREE_TRY_ALLOC(f->bricks, f->brick_count, error);
   scree_parallel_for(f->brick_count, BLOCK, fill_bricks, &j);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_distance_field_make(const scree_target *body, size_t most,
                                        scree_distance_field *field, scree_error *error) {
-  scree_distance_field f = {0};
-  scree_lines lines = {0};
-  size_t *cells = NULL;
-  scree_status status = scree_target_thickness(body, &f.thickness, error);
-  if (status != SCREE_OK) return status;
+  SCREE_CLEANUP(scree_distance_field_free) scree_distance_field f = {0};
+  SCREE_TRY(scree_target_thickness(body, &f.thickness, error));
   f.step = choose_step(body, most, f.thickness);
   lay_grid(body, &f);
-  status = fill(body, &f, &lines, &cells, error);
-  scree_lines_free(&lines);
-  scree_free(cells);
-  if (status == SCREE_OK)
-    *field = f;
-  else
-    scree_distance_field_free(&f);
-  return status;
+  SCREE_TRY(fill(body, &f, error));
+  *field = f;
+  f = (scree_distance_field){0};
+  return SCREE_OK;
 }
 
 void scree_distance_field_free(scree_distance_field *field) {

@@ -160,6 +160,10 @@ static int largest_first(const void *a, const void *b) {
   return 0;
 }
 
+void scree_spheres_sort(scree_sphere *spheres, size_t count) {
+  qsort(spheres, count, sizeof *spheres, largest_first);
+}
+
 /* 0 where they touch from outside, 180 degrees where one holds the other. */
 static double meeting_angle(const scree_sphere *s, const scree_sphere *t) {
   vec3 d = vec3_sub(vec3_load(s->centre), vec3_load(t->centre));
@@ -173,7 +177,7 @@ static void fill_bubble(scree_path *p, const scree_clump_options *o, scree_spher
   size_t count = 0;
   for (size_t i = 0; i < SAMPLES; i++)
     medial[i] = touching(p, scree_target_sample(p->body, i, SAMPLES));
-  qsort(medial, SAMPLES, sizeof *medial, largest_first);
+  scree_spheres_sort(medial, SAMPLES);
   for (size_t i = 0; i < SAMPLES && count < p->most; i++) {
     if (medial[i].radius < o->ratio * medial[0].radius) break;
     bool apart = true;
@@ -186,15 +190,12 @@ static void fill_bubble(scree_path *p, const scree_clump_options *o, scree_spher
 
 scree_status scree_greedy_fill(scree_path *path, const scree_clump_options *options,
                                scree_error *error) {
-  scree_sphere *scratch = scree_alloc(SAMPLES, sizeof *scratch);
-  if (!scratch)
-    return scree_fail_memory(error, SAMPLES * sizeof *scratch, "spheres to choose from");
+  SCREE_SCRATCH(scree_sphere, scratch, SAMPLES, error);
   if (options->method == SCREE_CLUMP_FAVIER) fill_favier(path);
   if (options->method == SCREE_CLUMP_PEELING) fill_peeling(path);
   if (options->method == SCREE_CLUMP_FERELLEC)
     fill_ferellec(path, options->seed, (uint32_t *)scratch);
   if (options->method == SCREE_CLUMP_BUBBLE) fill_bubble(path, options, scratch);
-  scree_free(scratch);
   if (path->ruler.failed) return scree_fail_memory(error, 0, "the chords of a clump");
   if (!path->best[1].count)
     return scree_fail(error, SCREE_LIMIT, "the method %s finds no sphere inside",

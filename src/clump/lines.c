@@ -74,28 +74,19 @@ static void gather(const hits *found, scree_lines *l) {
 }
 
 scree_status scree_lines_cast(const scree_target *body, scree_lines *lines, scree_error *error) {
-  hits found = {0};
-  bool ok = true;
-  for (size_t t = 0; ok && t < body->mesh.triangle_count; t++) {
+  SCREE_CLEANUP(scree_free_at) hits found = {0};
+  for (size_t t = 0; t < body->mesh.triangle_count; t++) {
     vec3 p[3];
     for (int k = 0; k < 3; k++)
       p[k] = scree_lines_turn(lines, scree_mesh_corner(&body->mesh, t, k));
-    ok = cast_triangle(lines, p, &found);
+    if (!cast_triangle(lines, p, &found))
+      return scree_fail_memory(error, 0, "lines through a body");
   }
-  if (ok) {
-    if (found.count > 0) qsort(found.items, found.count, sizeof *found.items, by_place);
-    lines->first = scree_alloc(lines->nx * lines->ny + 1, sizeof *lines->first);
-    lines->spans = scree_alloc(found.count + 1, sizeof *lines->spans);
-    ok = lines->first && lines->spans;
-  }
-  if (ok)
-    gather(&found, lines);
-  else
-    scree_lines_free(lines);
-  scree_free(found.items);
-  return ok ? SCREE_OK
-            : scree_fail_memory(error, lines->nx * lines->ny * sizeof *lines->first,
-                                "lines through a body");
+  if (found.count > 0) qsort(found.items, found.count, sizeof *found.items, by_place);
+  SCREE_TRY_ALLOC(lines->first, lines->nx * lines->ny + 1, error);
+  SCREE_TRY_ALLOC(lines->spans, found.count + 1, error);
+  gather(&found, lines);
+  return SCREE_OK;
 }
 
 void scree_lines_free(scree_lines *lines) {

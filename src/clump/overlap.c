@@ -21,6 +21,7 @@ static void find_extent(const scree_target *body, const scree_lines *l, vec3 *lo
 }
 
 scree_status scree_ruler_make(const scree_target *body, scree_ruler *ruler, scree_error *error) {
+  SCREE_CLEANUP(scree_ruler_free)
   scree_ruler g = {.body = body, .lines = {.cosine = cosine, .sine = sine}};
   vec3 low, high, section = vec3_sub(body->high, body->low);
   find_extent(body, &g.lines, &low, &high);
@@ -34,15 +35,12 @@ scree_status scree_ruler_make(const scree_target *body, scree_ruler *ruler, scre
   g.lines.x0 = low.x + (0.5 - rim_lines) * step;
   g.lines.y0 = low.y + (0.5 - rim_lines) * step;
   g.lines.step = step;
-  scree_status status = scree_lines_cast(body, &g.lines, error);
-  if (status != SCREE_OK) return status;
-  SCREE_ALLOC_OR(g.count, g.lines.nx * g.lines.ny, error, out_of_memory);
-  SCREE_ALLOC_OR(g.next, g.lines.nx * g.lines.ny, error, out_of_memory);
+  SCREE_TRY(scree_lines_cast(body, &g.lines, error));
+  SCREE_TRY_ALLOC(g.count, g.lines.nx * g.lines.ny, error);
+  SCREE_TRY_ALLOC(g.next, g.lines.nx * g.lines.ny, error);
   *ruler = g;
+  g = (scree_ruler){0};
   return SCREE_OK;
-out_of_memory:
-  scree_ruler_free(&g);
-  return SCREE_OUT_OF_MEMORY;
 }
 
 void scree_ruler_free(scree_ruler *ruler) {

@@ -300,22 +300,18 @@ scree_status scree_path_search(scree_path *p, scree_error *error) {
 
 scree_status scree_path_make(const scree_target *body, size_t most, double most_outside,
                              const scree_progress *progress, scree_path *path, scree_error *error) {
-  scree_path p = {.body = body, .most = most, .room = most > 20 ? most + SPARE_COUNTS : most + 2};
-  p.ticker = (scree_ticker){.progress = progress};
-  *path = p;
-  scree_status status = scree_distance_field_make(body, most, &path->field, error);
-  if (status == SCREE_OK) status = scree_ruler_make(body, &path->ruler, error);
-  if (status == SCREE_OK) status = scree_mover_make(body, &path->field, &path->mover, error);
-  if (status == SCREE_OK) status = scree_sphere_sites_make(&path->field, &path->places, error);
-  if (status == SCREE_OK) {
-    path->mover.most_outside = most_outside;
-    path->best = scree_alloc_zero(path->room + 1, sizeof *path->best);
-    path->work = scree_alloc_zero(4, sizeof *path->work);
-    if (!path->best || !path->work)
-      status = scree_fail_memory(error, (path->room + 5) * sizeof *path->best, "clumps");
-  }
-  if (status != SCREE_OK) scree_path_free(path);
-  return status;
+  *path = (scree_path){.body = body,
+                       .most = most,
+                       .room = most > 20 ? most + SPARE_COUNTS : most + 2,
+                       .ticker = {.progress = progress}};
+  SCREE_TRY(scree_distance_field_make(body, most, &path->field, error));
+  SCREE_TRY(scree_ruler_make(body, &path->ruler, error));
+  SCREE_TRY(scree_mover_make(body, &path->field, &path->mover, error));
+  SCREE_TRY(scree_sphere_sites_make(&path->field, &path->places, error));
+  SCREE_TRY_ALLOC_ZERO(path->best, path->room + 1, error);
+  SCREE_TRY_ALLOC_ZERO(path->work, 4, error);
+  path->mover.most_outside = most_outside;
+  return SCREE_OK;
 }
 
 void scree_path_free(scree_path *path) {

@@ -21,9 +21,8 @@ enum {
 scree_status scree_judge_make(const scree_target *body, const scree_distance_field *field,
                               scree_ruler *ruler, scree_judge *judge, scree_error *error) {
   *judge = (scree_judge){.body = body, .field = field, .ruler = ruler};
-  judge->points =
-      scree_alloc(EXPOSED_POINTS + SCREE_MOST_SPHERES * LEAST_DIRECTIONS, sizeof *judge->points);
-  return judge->points ? SCREE_OK : scree_fail_memory(error, 0, "points on a clump");
+  SCREE_TRY_ALLOC(judge->points, EXPOSED_POINTS + SCREE_MOST_SPHERES * LEAST_DIRECTIONS, error);
+  return SCREE_OK;
 }
 
 void scree_judge_free(scree_judge *judge) {

@@ -56,20 +56,18 @@ scree_status scree_sphere_sites_make(const scree_distance_field *field, scree_sp
                                      scree_error *error) {
   size_t room = field->n[0] * field->n[1] * field->n[2] +
                 field->brick_count * SCREE_FINER * SCREE_FINER * SCREE_FINER / 2;
-  scree_sphere_sites p = {0};
-  SCREE_ALLOC_OR(p.x, room, error, out_of_memory);
-  SCREE_ALLOC_OR(p.y, room, error, out_of_memory);
-  SCREE_ALLOC_OR(p.z, room, error, out_of_memory);
-  SCREE_ALLOC_OR(p.depth, room, error, out_of_memory);
-  SCREE_ALLOC_OR(p.volume, room, error, out_of_memory);
+  SCREE_CLEANUP(scree_sphere_sites_free) scree_sphere_sites p = {0};
+  SCREE_TRY_ALLOC(p.x, room, error);
+  SCREE_TRY_ALLOC(p.y, room, error);
+  SCREE_TRY_ALLOC(p.z, room, error);
+  SCREE_TRY_ALLOC(p.depth, room, error);
+  SCREE_TRY_ALLOC(p.volume, room, error);
   collect(field, &p);
-  SCREE_ALLOC_OR(p.left, p.count, error, out_of_memory);
-  SCREE_ALLOC_OR(p.cluster, p.count, error, out_of_memory);
+  SCREE_TRY_ALLOC(p.left, p.count, error);
+  SCREE_TRY_ALLOC(p.cluster, p.count, error);
   *places = p;
+  p = (scree_sphere_sites){0};
   return SCREE_OK;
-out_of_memory:
-  scree_sphere_sites_free(&p);
-  return SCREE_OUT_OF_MEMORY;
 }
 
 void scree_sphere_sites_free(scree_sphere_sites *places) {

@@ -61,9 +61,7 @@ static void set_tolerances(scree_mover *m) {
 scree_status scree_mover_make(const scree_target *body, const scree_distance_field *field,
                               scree_mover *mover, scree_error *error) {
   *mover = (scree_mover){.body = body, .field = field, .most_outside = INFINITY};
-  mover->equations = scree_alloc(SCREE_MOST_SPHERES, sizeof *mover->equations);
-  if (!mover->equations)
-    return scree_fail_memory(error, SCREE_MOST_SPHERES * sizeof *mover->equations, "a clump's fit");
+  SCREE_TRY_ALLOC(mover->equations, SCREE_MOST_SPHERES, error);
   set_tolerances(mover);
   return SCREE_OK;
 }

@@ -36,8 +36,7 @@ scree_status scree_spheres_write(const scree_clumps *clumps, const scree_clump *
                                  double unit_m, const char *path, bool overwrite,
                                  scree_error *error) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   char provenance[SCREE_PROVENANCE_SIZE];
   scree_provenance_text(unit_m, NULL, provenance);
   fprintf(output.stream, "x,y,z,radius\n# %s\n", provenance);

@@ -49,9 +49,7 @@ static void into_frame(scree_target *b) {
 }
 
 static scree_status sum_areas(scree_target *b, scree_error *error) {
-  b->area_below = scree_alloc(b->mesh.triangle_count, sizeof *b->area_below);
-  if (!b->area_below)
-    return scree_fail_memory(error, b->mesh.triangle_count * sizeof *b->area_below, "areas");
+  SCREE_TRY_ALLOC(b->area_below, b->mesh.triangle_count, error);
   for (size_t t = 0; t < b->mesh.triangle_count; t++) {
     vec3 normal = scree_facet_normal(&b->mesh, t);
     b->area += vec3_norm(normal) / 2;
@@ -61,9 +59,8 @@ static scree_status sum_areas(scree_target *b, scree_error *error) {
 }
 
 scree_status scree_target_make(const scree_mesh *mesh, scree_target *body, scree_error *error) {
-  scree_target b = {0};
-  scree_status status = scree_mesh_verify(mesh, error);
-  if (status != SCREE_OK) return status;
+  SCREE_CLEANUP(scree_target_free) scree_target b = {0};
+  SCREE_TRY(scree_mesh_verify(mesh, error));
   if (mesh->triangle_count == 0 || !scree_mesh_is_cycle(mesh))
     return scree_fail(error, SCREE_BAD_MESH,
                       "the surface is not closed, so it has no volume to fill with spheres; "
@@ -82,17 +79,14 @@ scree_status scree_target_make(const scree_mesh *mesh, scree_target *body, scree
   for (int k = 0; k < 3; k++)
     b.moments[SCREE_FIRST_INERTIA + k] =
         (second[(k + 1) % 3] + second[(k + 2) % 3]) / (solid.volume * b.scale * b.scale);
-  status = scree_mesh_copy(mesh, &b.mesh, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_mesh_copy(mesh, &b.mesh, error));
   into_frame(&b);
   scree_mesh_bounds(&b.mesh, &b.low, &b.high);
-  status = sum_areas(&b, error);
-  if (status == SCREE_OK) status = scree_bvh_build(&b.mesh, &b.tree, error);
-  if (status == SCREE_OK)
-    *body = b;
-  else
-    scree_target_free(&b);
-  return status;
+  SCREE_TRY(sum_areas(&b, error));
+  SCREE_TRY(scree_bvh_build(&b.mesh, &b.tree, error));
+  *body = b;
+  b = (scree_target){0};
+  return SCREE_OK;
 }
 
 void scree_target_free(scree_target *body) {
@@ -156,13 +150,11 @@ double scree_target_tangent_radius(const scree_target *body, scree_target_point 
 
 scree_status scree_target_thickness(const scree_target *body, double *thickness,
                                     scree_error *error) {
-  double *walls = scree_alloc(THICKNESS_SAMPLES, sizeof *walls);
-  if (!walls) return scree_fail_memory(error, THICKNESS_SAMPLES * sizeof *walls, "thicknesses");
+  SCREE_SCRATCH(double, walls, THICKNESS_SAMPLES, error);
   for (size_t i = 0; i < THICKNESS_SAMPLES; i++)
     walls[i] =
         2 * scree_target_tangent_radius(body, scree_target_sample(body, i, THICKNESS_SAMPLES));
   scree_sort_numbers(walls, THICKNESS_SAMPLES);
   *thickness = walls[THICKNESS_SAMPLES / 4];
-  scree_free(walls);
   return SCREE_OK;
 }

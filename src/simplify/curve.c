@@ -1,6 +1,7 @@
 /* The public face: building the record, reading levels. */
 #include "simplify/curve.h"
 
+#include "base/radix.h"
 #include "base/sum.h"
 #include "mesh/mesh.h"
 #include "simplify/decimate.h"
@@ -23,6 +24,10 @@ void scree_curve_free(scree_curve *curve) {
   scree_free(curve->counts);
   scree_free(curve->cut.triangles);
   scree_free(curve);
+}
+
+static void free_curve_at(scree_curve **curve) {
+  scree_curve_free(*curve);
 }
 
 static size_t count_at(const scree_curve *curve, size_t level) {
@@ -49,13 +54,11 @@ static scree_status accumulate(scree_curve *curve, scree_sum area, scree_sum vol
     all_two &= scree_collapse_record_triangles(r, i) == 2;
   }
   if (all_two) return SCREE_OK;
-  SCREE_ALLOC_OR(curve->counts, r->count + 1, error, out_of_memory);
+  SCREE_TRY_ALLOC(curve->counts, r->count + 1, error);
   curve->counts[0] = count;
   for (size_t i = 0; i < r->count; i++)
     curve->counts[i + 1] = count -= scree_collapse_record_triangles(r, i);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* Drops collapses beyond the first level that is low enough. */
@@ -96,14 +99,12 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
                                scree_error *error) {
   const scree_simplify_options defaults = scree_default_simplify_options();
   if (!options) options = &defaults;
-  scree_status status = check_options(options, error);
-  if (status != SCREE_OK) return status;
-  scree_decimator d = {0};
-  scree_curve *made = scree_alloc_zero(1, sizeof *made);
-  if (!made) return scree_fail_memory(error, sizeof *made, "the curve");
-  status = cut_flat_fans(mesh, made, error);
-  if (status == SCREE_OK) status = scree_decimator_start(&d, made->mesh, options, error);
-  if (status != SCREE_OK) goto finished;
+  SCREE_TRY(check_options(options, error));
+  SCREE_CLEANUP(scree_decimator_free) scree_decimator d = {0};
+  SCREE_CLEANUP(free_curve_at) scree_curve *made = NULL;
+  SCREE_TRY_ALLOC_ZERO(made, 1, error);
+  SCREE_TRY(cut_flat_fans(mesh, made, error));
+  SCREE_TRY(scree_decimator_start(&d, made->mesh, options, error));
   d.ticker.progress = progress;
   made->facts = (scree_curve_facts){.method = options->method,
                                     .triangle_count = mesh->triangle_count,
@@ -111,26 +112,20 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
                                     .boundary_edge_count = d.s.boundary_edge_count,
                                     .locked_vertex_count = d.s.locked_vertex_count,
                                     .closed = d.s.closed};
-  status = scree_decimate(&d);
+  scree_status status = scree_decimate(&d);
   if (status == SCREE_CANCELLED)
     scree_fail(error, SCREE_CANCELLED, "decimation was cancelled at %zu triangles",
                d.s.live_triangle_count);
-  if (status != SCREE_OK) goto finished;
+  SCREE_TRY(status);
   cut_at_stop(&d);
-  status = scree_collapse_record_shrink(&d.record, error);
-  if (status != SCREE_OK) goto finished;
+  SCREE_TRY(scree_collapse_record_shrink(&d.record, error));
   made->record = d.record;
   d.record = (scree_collapse_record){0};
-  status = accumulate(made, d.area, d.volume, d.s.scale, error);
-  if (status == SCREE_OK)
-    made->facts.floor_count = count_at(made, scree_curve_level_count(made) - 1);
-finished:
-  scree_decimator_free(&d);
-  if (status == SCREE_OK)
-    *curve = made;
-  else
-    scree_curve_free(made);
-  return status;
+  SCREE_TRY(accumulate(made, d.area, d.volume, d.s.scale, error));
+  made->facts.floor_count = count_at(made, scree_curve_level_count(made) - 1);
+  *curve = made;
+  made = NULL;
+  return SCREE_OK;
 }
 
 static void scale_places(vec3 *position, size_t count, double scale) {
@@ -187,15 +182,8 @@ void scree_curve_level(const scree_curve *curve, size_t index, scree_level *leve
 }
 
 size_t scree_curve_find(const scree_curve *curve, size_t target) {
-  size_t low = 0, high = scree_curve_level_count(curve) - 1; /* the answer lies in [low, high] */
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (count_at(curve, middle) <= target)
-      high = middle;
-    else
-      low = middle + 1;
-  }
-  return low;
+  SCREE_FIND_FIRST(i, 0, scree_curve_level_count(curve) - 1, count_at(curve, i) > target)
+  return i;
 }
 
 size_t scree_curve_collapse_count(const scree_curve *curve) {

@@ -11,3 +11,7 @@ struct scree_curve {
   uint32_t *counts;    /* triangles per level, NULL where every collapse takes two */
   double area, volume; /* of level 0 */
 };
+
+static inline void scree_replay_free_at(scree_replay **replay) {
+  scree_replay_free(*replay);
+}

@@ -41,28 +41,25 @@ enum { USUAL_SHARE = 10 };
 /* The surface as it is becomes the reference surface, and passes go on as long as they are worth
  * their parallel loops. */
 static scree_status take_samples(scree_decimator *d) {
-  scree_status status = scree_decimate_refresh(d);
-  if (status == SCREE_OK) status = scree_halfmesh_copy(&d->s, &d->samples.scan, d->error);
-  if (status == SCREE_OK) status = scree_decimate_in_passes(d, SCREE_PASS_LEAST);
-  if (status == SCREE_OK) status = scree_decimate_refresh(d);
-  if (status == SCREE_OK) status = scree_samples_start(&d->samples, d->error);
-  if (status == SCREE_OK) status = scree_samples_find(&d->s, &d->tree, &d->samples, d->error);
-  return status;
+  SCREE_TRY(scree_decimate_refresh(d));
+  SCREE_TRY(scree_halfmesh_copy(&d->s, &d->samples.scan, d->error));
+  SCREE_TRY(scree_decimate_in_passes(d, SCREE_PASS_LEAST));
+  SCREE_TRY(scree_decimate_refresh(d));
+  SCREE_TRY(scree_samples_start(&d->samples, d->error));
+  return scree_samples_find(&d->s, &d->tree, &d->samples, d->error);
 }
 
 scree_status scree_decimate(scree_decimator *d) {
   const bool by_cost_alone = d->coster->merge;
-  scree_status status =
-      scree_decimate_in_passes(d, by_cost_alone ? SCREE_PASS_LEAST : SCREE_REFERENCE_MOST);
-  if (status == SCREE_OK && !by_cost_alone) status = take_samples(d);
-  size_t done = 1;
-  while (status == SCREE_OK && d->leniency < SCREE_LENIENCIES &&
-         d->s.live_triangle_count > d->options.stop_count) {
-    status = scree_decimate_refresh(d);
-    if (status == SCREE_OK) status = scree_decimate_in_order(d, &done);
+  SCREE_TRY(scree_decimate_in_passes(d, by_cost_alone ? SCREE_PASS_LEAST : SCREE_REFERENCE_MOST));
+  if (!by_cost_alone) SCREE_TRY(take_samples(d));
+  while (d->leniency < SCREE_LENIENCIES && d->s.live_triangle_count > d->options.stop_count) {
+    size_t done;
+    SCREE_TRY(scree_decimate_refresh(d));
+    SCREE_TRY(scree_decimate_in_order(d, &done));
     if (done == 0) d->leniency++;
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- Start and end ---- */
@@ -76,11 +73,9 @@ static void sum_block(void *context, size_t begin, size_t end, size_t block, int
 
 /* The sums of all vertices. */
 static scree_status sum_all(scree_decimator *d) {
-  SCREE_ALLOC_OR(d->s.sums, d->s.vertex_count, d->error, out_of_memory);
+  SCREE_TRY_ALLOC(d->s.sums, d->s.vertex_count, d->error);
   scree_parallel_for(d->s.vertex_count, SUM_BLOCK, sum_block, d);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* Area and volume, by blocks of triangles. */
@@ -106,7 +101,7 @@ static scree_status measure_surface(const scree_halfmesh *s, scree_sum *area, sc
                                     scree_error *error) {
   measuring m = {.s = s};
   size_t count = scree_block_count(s->triangle_count, MEASURE_BLOCK);
-  SCREE_ALLOC_OR(m.blocks, count, error, out_of_memory);
+  SCREE_TRY_ALLOC(m.blocks, count, error);
   scree_parallel_for(s->triangle_count, MEASURE_BLOCK, measure_block, &m);
   for (size_t i = 0; i < count; i++) {
     scree_sum_merge(area, m.blocks[i].area);
@@ -114,8 +109,6 @@ static scree_status measure_surface(const scree_halfmesh *s, scree_sum *area, sc
   }
   scree_free(m.blocks);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_decimator_start(scree_decimator *d, const scree_mesh *mesh,
@@ -125,17 +118,14 @@ scree_status scree_decimator_start(scree_decimator *d, const scree_mesh *mesh,
                          .usual_far = INFINITY,
                          .error = error};
   d->coster = options->method == SCREE_METHOD_QECD ? &scree_qecd_coster : &scree_volume_coster;
-  scree_status status = scree_halfmesh_build(mesh, NULL, &d->s, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_halfmesh_build(mesh, NULL, &d->s, error));
   double limit = options->error_limit / d->s.scale;
   d->error_limit = limit > 0 ? limit * limit : INFINITY;
-  status = measure_surface(&d->s, &d->area, &d->volume, error);
+  SCREE_TRY(measure_surface(&d->s, &d->area, &d->volume, error));
   d->s.area = scree_sum_value(d->area);
-  if (status == SCREE_OK)
-    status = scree_collapse_record_allocate(&d->record, d->s.live_vertex_count, error);
-  if (status == SCREE_OK) status = sum_all(d);
-  if (status == SCREE_OK) status = scree_surface_tree_make(&d->s, &d->tree, error);
-  return status;
+  SCREE_TRY(scree_collapse_record_allocate(&d->record, d->s.live_vertex_count, error));
+  SCREE_TRY(sum_all(d));
+  return scree_surface_tree_make(&d->s, &d->tree, error);
 }
 
 void scree_decimator_free(scree_decimator *d) {
@@ -162,18 +152,12 @@ bool scree_decimate_tick(scree_decimator *d) {
 }
 
 scree_status scree_decimate_squeeze(scree_decimator *d) {
-  uint32_t *vertices = NULL, *triangles = NULL;
-  SCREE_ALLOC_OR(vertices, d->s.vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(triangles, d->s.triangle_count, d->error, out_of_memory);
+  SCREE_SCRATCH(uint32_t, vertices, d->s.vertex_count, d->error);
+  SCREE_SCRATCH(uint32_t, triangles, d->s.triangle_count, d->error);
   if (scree_has_samples(&d->samples)) scree_samples_compact(&d->samples, &d->s);
   scree_halfmesh_compact(&d->s, vertices, triangles);
-  scree_free(vertices);
-  scree_free(triangles);
   scree_halfmesh_give_back(&d->s);
   return scree_markers_find(&d->s, &d->markers, d->error);
-out_of_memory:
-  scree_free(vertices);
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_decimate_refresh(scree_decimator *d) {

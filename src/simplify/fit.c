@@ -51,29 +51,21 @@ static scree_status build_level(fit *f, const scree_curve *curve, const scree_me
                                 const uint32_t *numbering, scree_error *error) {
   const scree_halfmesh *scan = &f->samples.scan;
   scree_halfmesh *s = &f->s;
-  uint32_t *name;
-  scree_status status = scree_halfmesh_build(level, scan, s, error);
-  if (status != SCREE_OK) return status;
-  SCREE_ALLOC_OR(name, level->vertex_count, error, out_of_memory);
+  SCREE_TRY(scree_halfmesh_build(level, scan, s, error));
+  SCREE_SCRATCH(uint32_t, name, level->vertex_count, error);
   for (uint32_t v = 0; v < curve->mesh->vertex_count; v++)
     if (numbering[v] != SCREE_NONE) name[numbering[v]] = v;
   for (size_t v = 0; v < s->vertex_count; v++) s->vertex[v].origin = name[s->vertex[v].origin];
-  scree_free(name);
   s->area = scan->area;
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static scree_status find_areas(fit *f, scree_error *error) {
   const scree_halfmesh *scan = &f->samples.scan;
-  SCREE_ALLOC_OR(f->area, scan->vertex_count, error, out_of_memory);
-  memset(f->area, 0, scan->vertex_count * sizeof *f->area);
+  SCREE_TRY_ALLOC_ZERO(f->area, scan->vertex_count, error);
   for (size_t h = 0; h < 3 * scan->triangle_count; h++)
     f->area[scan->half[h].from] += vec3_norm(scree_normal_of(scan, h / 3));
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static double six_volumes(const scree_halfmesh *s) {
@@ -84,18 +76,16 @@ static double six_volumes(const scree_halfmesh *s) {
 
 static scree_status fit_start(fit *f, const scree_curve *curve, const scree_mesh *level,
                               const uint32_t *numbering, scree_error *error) {
-  *f = (fit){0};
   scree_halfmesh *scan = &f->samples.scan;
-  scree_status status = scree_halfmesh_build(curve->mesh, NULL, scan, error);
-  if (status == SCREE_OK) scan->area = curve->area / (scan->scale * scan->scale);
-  if (status == SCREE_OK) status = scree_samples_start(&f->samples, error);
-  if (status == SCREE_OK) status = build_level(f, curve, level, numbering, error);
-  if (status == SCREE_OK) status = scree_surface_tree_make(&f->s, &f->tree, error);
-  if (status == SCREE_OK) status = scree_markers_find(&f->s, &f->markers, error);
-  if (status == SCREE_OK) status = scree_samples_find(&f->s, &f->tree, &f->samples, error);
-  if (status == SCREE_OK) status = find_areas(f, error);
+  SCREE_TRY(scree_halfmesh_build(curve->mesh, NULL, scan, error));
+  scan->area = curve->area / (scan->scale * scan->scale);
+  SCREE_TRY(scree_samples_start(&f->samples, error));
+  SCREE_TRY(build_level(f, curve, level, numbering, error));
+  SCREE_TRY(scree_surface_tree_make(&f->s, &f->tree, error));
+  SCREE_TRY(scree_markers_find(&f->s, &f->markers, error));
+  SCREE_TRY(scree_samples_find(&f->s, &f->tree, &f->samples, error));
   f->volume = six_volumes(&f->s);
-  return status;
+  return find_areas(f, error);
 }
 
 /* ---- One vertex ---- */
@@ -293,15 +283,12 @@ static void sum_block(void *context, size_t begin, size_t end, size_t block, int
  * that a level fitted to the noise of the vertices is found out. */
 static scree_status sum_over_scan(const fit *f, double *sum, scree_error *error) {
   size_t count = scree_block_count(f->samples.scan.triangle_count, BLOCK);
-  summing m = {.f = f};
-  SCREE_ALLOC_OR(m.blocks, count, error, out_of_memory);
+  SCREE_SCRATCH(double, blocks, count, error);
+  summing m = {f, blocks};
   scree_parallel_for(f->samples.scan.triangle_count, BLOCK, sum_block, &m);
   *sum = 0;
-  for (size_t i = 0; i < count; i++) *sum += m.blocks[i];
-  scree_free(m.blocks);
+  for (size_t i = 0; i < count; i++) *sum += blocks[i];
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* False: the volume could not be kept. */
@@ -314,14 +301,13 @@ static bool sweep(fit *f, bool *out_of_memory) {
 static scree_status run(fit *f, bool *better, scree_error *error) {
   bool out_of_memory = false, kept = true;
   double before, after;
-  scree_status status = sum_over_scan(f, &before, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(sum_over_scan(f, &before, error));
   for (int k = 0; k < scree_tune.sweeps && kept; k++) kept = sweep(f, &out_of_memory);
   if (out_of_memory)
     return scree_fail_memory(error, f->gathered.count * sizeof *f->gathered.items, "samples");
-  status = sum_over_scan(f, &after, error);
-  *better = status == SCREE_OK && kept && after < before;
-  return status;
+  SCREE_TRY(sum_over_scan(f, &after, error));
+  *better = kept && after < before;
+  return SCREE_OK;
 }
 
 /* What moved, to the mesh of the level. */
@@ -337,20 +323,15 @@ static void write_back(const fit *f, const uint32_t *numbering, scree_mesh *leve
 
 scree_status scree_curve_fit(const scree_curve *curve, size_t level_index, scree_mesh *mesh,
                              scree_error *error) {
-  scree_replay *replay = NULL;
+  SCREE_CLEANUP(scree_replay_free_at) scree_replay *replay = NULL;
+  SCREE_CLEANUP(fit_free) fit f = {0};
   const scree_mesh *level;
-  fit f = {0};
-  bool better = false;
-  scree_status status = scree_replay_start(curve, &replay, error);
-  if (status == SCREE_OK) status = scree_replay_step(replay, level_index, &level, error);
-  if (status == SCREE_OK)
-    status = fit_start(&f, curve, level, scree_replay_numbering(replay), error);
-  if (status == SCREE_OK) status = run(&f, &better, error);
-  scree_mesh made = {0};
-  if (status == SCREE_OK) status = scree_mesh_copy(level, &made, error);
-  if (status == SCREE_OK && better) write_back(&f, scree_replay_numbering(replay), &made);
-  if (status == SCREE_OK) *mesh = made;
-  fit_free(&f);
-  scree_replay_free(replay);
-  return status;
+  bool better;
+  SCREE_TRY(scree_replay_start(curve, &replay, error));
+  SCREE_TRY(scree_replay_step(replay, level_index, &level, error));
+  SCREE_TRY(fit_start(&f, curve, level, scree_replay_numbering(replay), error));
+  SCREE_TRY(run(&f, &better, error));
+  SCREE_TRY(scree_mesh_copy(level, mesh, error));
+  if (better) write_back(&f, scree_replay_numbering(replay), mesh);
+  return SCREE_OK;
 }

@@ -6,6 +6,7 @@
 #include "simplify/flat_fan.h"
 
 #include "base/alloc.h"
+#include "base/radix.h"
 #include "mesh/adjacency.h"
 #include "mesh/measure/measure.h"
 #include "mesh/mesh.h"
@@ -31,6 +32,14 @@ typedef struct cutting {
   double thickness;
 } cutting;
 
+static void free_cutting(cutting *c) {
+  scree_adjacency_free(&c->adjacency);
+  scree_free(c->triangles);
+  scree_free(c->touched);
+  scree_free(c->made);
+  scree_free(c->ring);
+}
+
 static uint64_t name_of(uint32_t u, uint32_t v) {
   return u < v ? (uint64_t)v << 32 | u : (uint64_t)u << 32 | v; /* never 0: they differ */
 }
@@ -42,22 +51,18 @@ static uint64_t *made_at(const cutting *c, uint64_t name) {
   return &c->made[i];
 }
 
+/* By what the edges of the mesh ascend: the lower end, then the other. */
+static uint64_t key_of(const cutting *c, size_t edge) {
+  uint32_t h = c->adjacency.edges[edge];
+  uint64_t name = name_of(scree_half_edge_from(c->mesh, h), scree_half_edge_to(c->mesh, h));
+  return name << 32 | name >> 32;
+}
+
 static bool is_edge(const cutting *c, uint32_t u, uint32_t v) {
   uint64_t name = name_of(u, v);
-  uint32_t low = (uint32_t)name, high = (uint32_t)(name >> 32);
-  size_t begin = 0, end = c->adjacency.edge_count;
-  while (begin < end) {
-    size_t middle = begin + (end - begin) / 2;
-    uint32_t h = c->adjacency.edges[middle], from = scree_half_edge_from(c->mesh, h),
-             to = scree_half_edge_to(c->mesh, h);
-    uint32_t first = from < to ? from : to, second = from < to ? to : from;
-    if (first == low && second == high) return true;
-    if (first < low || (first == low && second < high))
-      begin = middle + 1;
-    else
-      end = middle;
-  }
-  return *made_at(c, name) == name;
+  SCREE_FIND_FIRST(i, 0, c->adjacency.edge_count, key_of(c, i) < (name << 32 | name >> 32))
+  return (i < c->adjacency.edge_count && key_of(c, i) == (name << 32 | name >> 32)) ||
+         *made_at(c, name) == name;
 }
 
 static vec3 at(const cutting *c, uint32_t v) {
@@ -132,11 +137,10 @@ static scree_status cut_all(cutting *c, uint32_t *fan_sizes, size_t largest, siz
   scree_mesh_bounds(mesh, &low, &high);
   c->thickness = ROUNDING * vec3_distance(low, high);
   c->made_mask = room - 1;
-  SCREE_ALLOC_OR(c->triangles, 3 * mesh->triangle_count, error, out_of_memory);
-  SCREE_ALLOC_OR(c->ring, largest, error, out_of_memory);
-  c->made = scree_alloc_zero(room, sizeof *c->made);
-  c->touched = scree_alloc_zero(mesh->triangle_count, sizeof *c->touched);
-  if (!c->made || !c->touched) return scree_fail_memory(error, room * sizeof *c->made, "flat fans");
+  SCREE_TRY_ALLOC(c->triangles, 3 * mesh->triangle_count, error);
+  SCREE_TRY_ALLOC(c->ring, largest, error);
+  SCREE_TRY_ALLOC_ZERO(c->made, room, error);
+  SCREE_TRY_ALLOC_ZERO(c->touched, mesh->triangle_count, error);
   memcpy(c->triangles, mesh->triangles, 3 * mesh->triangle_count * sizeof *c->triangles);
   for (uint32_t h = 0; h < 3 * mesh->triangle_count; h++) {
     uint32_t v = mesh->triangles[h];
@@ -145,36 +149,23 @@ static scree_status cut_all(cutting *c, uint32_t *fan_sizes, size_t largest, siz
     cut_fan(c, h);
   }
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_flat_fans_cut(const scree_mesh *mesh, uint32_t **triangles, scree_error *error) {
-  cutting c = {.mesh = mesh};
+  SCREE_CLEANUP(free_cutting) cutting c = {.mesh = mesh};
   size_t largest = 0, all = 0;
-  uint32_t *fan_sizes = scree_alloc_zero(mesh->vertex_count, sizeof *fan_sizes);
-  scree_status status = SCREE_OK;
   *triangles = NULL;
-  if (!fan_sizes)
-    return scree_fail_memory(error, mesh->vertex_count * sizeof *fan_sizes, "flat fans");
+  SCREE_SCRATCH_ZERO(uint32_t, fan_sizes, mesh->vertex_count, error);
   for (size_t i = 0; i < 3 * mesh->triangle_count; i++) fan_sizes[mesh->triangles[i]]++;
   for (size_t v = 0; v < mesh->vertex_count; v++) {
     if (fan_sizes[v] <= SCREE_FAN_MAX) continue;
     all += fan_sizes[v];
     largest = fan_sizes[v] > largest ? fan_sizes[v] : largest;
   }
-  if (largest > 0) {
-    status = scree_adjacency_build(mesh, &c.adjacency, error);
-    if (status == SCREE_OK) status = cut_all(&c, fan_sizes, largest, all, error);
-  }
-  scree_adjacency_free(&c.adjacency);
-  scree_free(c.touched);
-  scree_free(c.made);
-  scree_free(c.ring);
-  scree_free(fan_sizes);
-  if (status == SCREE_OK)
-    *triangles = c.triangles;
-  else
-    scree_free(c.triangles);
-  return status;
+  if (largest == 0) return SCREE_OK;
+  SCREE_TRY(scree_adjacency_build(mesh, &c.adjacency, error));
+  SCREE_TRY(cut_all(&c, fan_sizes, largest, all, error));
+  *triangles = c.triangles;
+  c.triangles = NULL;
+  return SCREE_OK;
 }

@@ -30,6 +30,14 @@ typedef struct builder {
   size_t joined;     /* how often two sets became one */
 } builder;
 
+static void free_builder(builder *b) {
+  scree_free(b->order);
+  scree_free(b->start);
+  scree_free(b->fan);
+  scree_free(b->fan_to);
+  scree_free(b->root);
+}
+
 void scree_halfmesh_free(scree_halfmesh *s) {
   scree_free(s->vertex);
   scree_free(s->half);
@@ -78,8 +86,7 @@ static void check_parts(void *context, size_t begin, size_t end, size_t block, i
 /* A facet that names a vertex twice has no place in the surface, and levels could not be counted.
  */
 static scree_status refuse(const scree_mesh *mesh, scree_error *error) {
-  scree_status status = scree_mesh_verify(mesh, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_mesh_verify(mesh, error));
   size_t t = 0;
   while (!scree_names_twice(mesh->triangles + 3 * t)) t++;
   const uint32_t *c = mesh->triangles + 3 * t;
@@ -222,14 +229,11 @@ static void rank_vertices(void *context, size_t begin, size_t end, size_t block,
 /* Neighbours are near in memory. */
 static scree_status place_in_order(builder *b, vec3 centre, scree_error *error) {
   const scree_mesh *mesh = b->mesh;
-  SCREE_ALLOC_OR(b->order, mesh->vertex_count, error, out_of_memory);
-  scree_status status = scree_order_vertices(mesh, centre, b->order, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY_ALLOC(b->order, mesh->vertex_count, error);
+  SCREE_TRY(scree_order_vertices(mesh, centre, b->order, error));
   scree_parallel_for(mesh->vertex_count, BLOCK, rank_vertices, b);
   place_triangles(b);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* How many half-edges go from u to v, and the last of them. */
@@ -412,25 +416,22 @@ static scree_status build_edges(builder *b, vec3 low, vec3 high, scree_error *er
   const scree_mesh *mesh = b->mesh;
   scree_halfmesh *s = b->surface;
   size_t half_edges = 3 * mesh->triangle_count;
-  SCREE_ALLOC_OR(s->half, half_edges, error, out_of_memory);
+  SCREE_TRY_ALLOC(s->half, half_edges, error);
   /* one block, for a large one costs fewer page faults */
-  SCREE_ALLOC_OR(b->start, 4 * mesh->vertex_count + 1, error, out_of_memory);
+  SCREE_TRY_ALLOC(b->start, 4 * mesh->vertex_count + 1, error);
   b->next[0] = b->start + mesh->vertex_count + 1;
   b->next[1] = b->next[0] + mesh->vertex_count;
   b->rank = b->next[1] + mesh->vertex_count;
-  scree_status status = place_in_order(b, vec3_scale(vec3_add(low, high), 0.5), error);
-  if (status != SCREE_OK) return status;
-  SCREE_ALLOC_OR(b->fan, half_edges, error, out_of_memory);
-  SCREE_ALLOC_OR(b->fan_to, half_edges, error, out_of_memory);
-  SCREE_ALLOC_OR(s->flags, mesh->vertex_count, error, out_of_memory);
+  SCREE_TRY(place_in_order(b, vec3_scale(vec3_add(low, high), 0.5), error));
+  SCREE_TRY_ALLOC(b->fan, half_edges, error);
+  SCREE_TRY_ALLOC(b->fan_to, half_edges, error);
+  SCREE_TRY_ALLOC(s->flags, mesh->vertex_count, error);
   memset(s->flags, 0, mesh->vertex_count);
   sort_fans(b);
   scree_parallel_for(mesh->vertex_count, BLOCK, find_twins, b);
   scree_free(b->fan_to);
   b->fan_to = NULL;
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* Vertices, one per fan. */
@@ -442,65 +443,48 @@ static scree_status build_vertices(builder *b, scree_error *error) {
   for (uint32_t v = 0; v < given; v++)
     if (s->flags[v] & SEVERAL_FANS) cut_vertex(b, v);
   s->vertex_count = b->fan_count;
-  SCREE_ALLOC_OR(s->vertex, s->vertex_count, error, out_of_memory);
-  uint8_t *grown = scree_resize(s->flags, s->vertex_count, 1);
-  if (!grown) {
-    scree_fail_memory(error, s->vertex_count, "vertex flags");
-    goto out_of_memory;
-  }
+  SCREE_TRY_ALLOC(s->vertex, s->vertex_count, error);
+  uint8_t *grown;
+  SCREE_TRY_BLOCK(grown, scree_resize(s->flags, s->vertex_count, 1), s->vertex_count, error);
   s->flags = grown;
   scree_parallel_for(given, BLOCK, place_vertices, b);
   for (uint32_t v = 0; v < given; v++)
     if (s->flags[v] & SEVERAL_FANS) place_copies(b, v);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_halfmesh_build(const scree_mesh *mesh, const scree_halfmesh *other,
                                   scree_halfmesh *surface, scree_error *error) {
-  scree_halfmesh made = {.triangle_count = mesh->triangle_count};
-  builder b = {.mesh = mesh, .surface = &made};
+  SCREE_CLEANUP(scree_halfmesh_free) scree_halfmesh made = {.triangle_count = mesh->triangle_count};
+  SCREE_CLEANUP(free_builder) builder b = {.mesh = mesh, .surface = &made};
   vec3 low = {0, 0, 0}, high = low;
-  scree_status status = check_mesh(mesh, &low, &high, error);
-  if (status == SCREE_OK) status = choose_box(&made, other, low, high, error);
-  if (status == SCREE_OK) status = build_edges(&b, low, high, error);
-  if (status == SCREE_OK) status = build_vertices(&b, error);
-  if (status != SCREE_OK) goto done;
+  SCREE_TRY(check_mesh(mesh, &low, &high, error));
+  SCREE_TRY(choose_box(&made, other, low, high, error));
+  SCREE_TRY(build_edges(&b, low, high, error));
+  SCREE_TRY(build_vertices(&b, error));
   scree_free(b.fan);
   b.fan = NULL;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(b.root, made.vertex_count, error, done);
+  SCREE_TRY_ALLOC(b.root, made.vertex_count, error);
   count_facts(&b);
   *surface = made;
   made = (scree_halfmesh){0};
-  status = SCREE_OK;
-done:
-  scree_free(b.order);
-  scree_free(b.start);
-  scree_free(b.fan);
-  scree_free(b.fan_to);
-  scree_free(b.root);
-  scree_halfmesh_free(&made);
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_halfmesh_copy(const scree_halfmesh *s, scree_halfmesh *copy,
                                  scree_error *error) {
-  scree_halfmesh made = *s;
+  SCREE_CLEANUP(scree_halfmesh_free) scree_halfmesh made = *s;
   made.vertex = NULL, made.half = NULL, made.flags = NULL, made.sums = NULL;
   made.best = NULL, made.cost = NULL;
-  SCREE_ALLOC_OR(made.vertex, s->vertex_count, error, out_of_memory);
-  SCREE_ALLOC_OR(made.half, 3 * s->triangle_count, error, out_of_memory);
-  SCREE_ALLOC_OR(made.flags, s->vertex_count, error, out_of_memory);
+  SCREE_TRY_ALLOC(made.vertex, s->vertex_count, error);
+  SCREE_TRY_ALLOC(made.half, 3 * s->triangle_count, error);
+  SCREE_TRY_ALLOC(made.flags, s->vertex_count, error);
   memcpy(made.vertex, s->vertex, s->vertex_count * sizeof *made.vertex);
   memcpy(made.half, s->half, 3 * s->triangle_count * sizeof *made.half);
   memcpy(made.flags, s->flags, s->vertex_count);
   *copy = made;
+  made = (scree_halfmesh){0};
   return SCREE_OK;
-out_of_memory:
-  scree_halfmesh_free(&made);
-  return SCREE_OUT_OF_MEMORY;
 }
 
 typedef struct compaction {

@@ -110,14 +110,12 @@ scree_status scree_principal_frame_find(const scree_positions *places, vec3 cent
                                         scree_principal_frame *frame, scree_error *error) {
   size_t blocks = scree_block_count(places->count, BLOCK);
   framing f = {.places = places, .frame = frame};
-  SCREE_ALLOC_OR(f.blocks, blocks, error, out_of_memory);
+  SCREE_TRY_ALLOC(f.blocks, blocks, error);
   frame->centre = centre;
   find_axes(&f, blocks);
   direct_axes(&f, blocks);
   scree_free(f.blocks);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 vec3 scree_principal_frame_steps(const scree_principal_frame *frame, double steps, vec3 p) {
@@ -184,20 +182,13 @@ static void order_together(const coding *c, scree_keyed *items, size_t count) {
 scree_status scree_order_vertices(const scree_mesh *mesh, vec3 centre, uint32_t *order,
                                   scree_error *error) {
   size_t count = mesh->vertex_count;
-  coding c = {.places = {mesh->positions, 3, count}};
-  scree_keyed *swap = NULL;
-  scree_status status = scree_principal_frame_find(&c.places, centre, &c.frame, error);
-  if (status != SCREE_OK) return status;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(c.items, count, error, done);
-  SCREE_ALLOC_OR(swap, count, error, done);
+  SCREE_SCRATCH(scree_keyed, items, count, error);
+  SCREE_SCRATCH(scree_keyed, swap, count, error);
+  coding c = {.places = {mesh->positions, 3, count}, .items = items};
+  SCREE_TRY(scree_principal_frame_find(&c.places, centre, &c.frame, error));
   scree_parallel_for(count, BLOCK, code_block, &c);
   scree_keyed *sorted = scree_radix_sort(c.items, swap, count, 3 * SCREE_MORTON_BITS);
   order_together(&c, sorted, count);
   for (size_t i = 0; i < count; i++) order[i] = sorted[i].index;
-  status = SCREE_OK;
-done:
-  scree_free(c.items);
-  scree_free(swap);
-  return status;
+  return SCREE_OK;
 }

@@ -37,22 +37,20 @@ void scree_replay_free(scree_replay *replay) {
 scree_status scree_replay_start(const scree_curve *curve, scree_replay **replay,
                                 scree_error *error) {
   const scree_mesh *mesh = curve->mesh;
-  scree_replay *made = scree_alloc_zero(1, sizeof *made);
-  if (!made) return scree_fail_memory(error, sizeof *made, "the replay");
+  SCREE_CLEANUP(scree_replay_free_at) scree_replay *made = NULL;
+  SCREE_TRY_ALLOC_ZERO(made, 1, error);
   made->curve = curve;
   made->triangle_count = mesh->triangle_count;
-  SCREE_ALLOC_OR(made->root, mesh->vertex_count, error, out_of_memory);
-  SCREE_ALLOC_OR(made->number, mesh->vertex_count, error, out_of_memory);
-  SCREE_ALLOC_OR(made->position, 3 * mesh->vertex_count, error, out_of_memory);
-  SCREE_ALLOC_OR(made->corner, 3 * mesh->triangle_count, error, out_of_memory);
+  SCREE_TRY_ALLOC(made->root, mesh->vertex_count, error);
+  SCREE_TRY_ALLOC(made->number, mesh->vertex_count, error);
+  SCREE_TRY_ALLOC(made->position, 3 * mesh->vertex_count, error);
+  SCREE_TRY_ALLOC(made->corner, 3 * mesh->triangle_count, error);
   for (uint32_t v = 0; v < mesh->vertex_count; v++) made->root[v] = v;
   memcpy(made->position, mesh->positions, 3 * mesh->vertex_count * sizeof *made->position);
   memcpy(made->corner, mesh->triangles, 3 * mesh->triangle_count * sizeof *made->corner);
   *replay = made;
+  made = NULL;
   return SCREE_OK;
-out_of_memory:
-  scree_replay_free(made);
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static void replay_collapses(scree_replay *r, size_t level) {
@@ -78,23 +76,21 @@ static void replay_collapses(scree_replay *r, size_t level) {
 /* The level's mesh with its own vertices, in the order of the mesh given. */
 static scree_status number_vertices(scree_replay *r, scree_mesh *mesh, scree_error *error) {
   size_t vertex_count = r->curve->mesh->vertex_count, used = 0;
-  scree_mesh made = {.triangle_count = r->triangle_count};
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh made = {.triangle_count = r->triangle_count};
   memset(r->number, 0xff, vertex_count * sizeof *r->number);
   for (size_t i = 0; i < 3 * r->triangle_count; i++) r->number[r->corner[i]] = 0;
   for (size_t v = 0; v < vertex_count; v++)
     if (r->number[v] == 0) r->number[v] = (uint32_t)used++;
   made.vertex_count = used;
-  SCREE_ALLOC_OR(made.positions, 3 * used, error, out_of_memory);
-  SCREE_ALLOC_OR(made.triangles, 3 * r->triangle_count, error, out_of_memory);
+  SCREE_TRY_ALLOC(made.positions, 3 * used, error);
+  SCREE_TRY_ALLOC(made.triangles, 3 * r->triangle_count, error);
   for (size_t v = 0; v < vertex_count; v++)
     if (r->number[v] != SCREE_NONE)
       memcpy(made.positions + 3 * (size_t)r->number[v], r->position + 3 * v, 3 * sizeof(double));
   for (size_t i = 0; i < 3 * r->triangle_count; i++) made.triangles[i] = r->number[r->corner[i]];
   *mesh = made;
+  made = (scree_mesh){0};
   return SCREE_OK;
-out_of_memory:
-  scree_mesh_free(&made);
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_replay_step(scree_replay *replay, size_t level_index, const scree_mesh **mesh,
@@ -105,8 +101,7 @@ scree_status scree_replay_step(scree_replay *replay, size_t level_index, const s
                       replay->level, last);
   scree_mesh made;
   replay_collapses(replay, level_index);
-  scree_status status = number_vertices(replay, &made, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(number_vertices(replay, &made, error));
   scree_mesh_free(&replay->mesh);
   replay->mesh = made;
   replay->level = level_index;
@@ -116,14 +111,11 @@ scree_status scree_replay_step(scree_replay *replay, size_t level_index, const s
 
 scree_status scree_curve_mesh(const scree_curve *curve, size_t level_index, scree_mesh *mesh,
                               scree_error *error) {
-  scree_replay *replay = NULL;
+  SCREE_CLEANUP(scree_replay_free_at) scree_replay *replay = NULL;
   const scree_mesh *level;
-  scree_status status = scree_replay_start(curve, &replay, error);
-  if (status == SCREE_OK) status = scree_replay_step(replay, level_index, &level, error);
-  if (status == SCREE_OK) {
-    *mesh = replay->mesh;
-    replay->mesh = (scree_mesh){0};
-  }
-  scree_replay_free(replay);
-  return status;
+  SCREE_TRY(scree_replay_start(curve, &replay, error));
+  SCREE_TRY(scree_replay_step(replay, level_index, &level, error));
+  *mesh = replay->mesh;
+  replay->mesh = (scree_mesh){0};
+  return SCREE_OK;
 }

@@ -70,11 +70,9 @@ static size_t leaves_for(size_t triangle_count) {
 scree_status scree_surface_tree_make(const scree_halfmesh *s, scree_surface_tree *tree,
                                      scree_error *error) {
   tree->leaves = leaves_for(s->triangle_count);
-  SCREE_ALLOC_OR(tree->node, 2 * tree->leaves, error, out_of_memory);
+  SCREE_TRY_ALLOC(tree->node, 2 * tree->leaves, error);
   scree_surface_tree_fit(tree, s, NULL);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 void scree_surface_tree_free(scree_surface_tree *tree) {

@@ -75,10 +75,10 @@ static void find_block(void *context, size_t begin, size_t end, size_t block, in
 /* The surface's vertices are named by those of the scan; what still is where it was stays. */
 static scree_status match(finding *f, scree_error *error) {
   const scree_halfmesh *s = f->s, *scan = &f->samples->scan;
-  uint32_t *number, origins = 0; /* of the mesh's vertices in the reference surface */
+  uint32_t origins = 0; /* of the mesh's vertices in the reference surface */
   for (size_t v = 0; v < scan->vertex_count; v++)
     if (scan->vertex[v].origin >= origins) origins = scan->vertex[v].origin + 1;
-  SCREE_ALLOC_OR(number, origins, error, out_of_memory);
+  SCREE_SCRATCH(uint32_t, number, origins, error);
   for (uint32_t v = (uint32_t)scan->vertex_count; v-- > 0;) number[scan->vertex[v].origin] = v;
   memset(f->stays, 0, scan->vertex_count * sizeof *f->stays);
   for (size_t v = 0; v < s->vertex_count; v++) {
@@ -87,10 +87,7 @@ static scree_status match(finding *f, scree_error *error) {
     vec3 moved = vec3_sub(s->vertex[v].at, scan->vertex[same].at);
     f->stays[same] = vec3_norm2(moved) == 0;
   }
-  scree_free(number);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* To the front of the triangle's list, or behind its first, which deviates most. */
@@ -125,22 +122,16 @@ static void end_block(void *context, size_t begin, size_t end, size_t block, int
 static scree_status find_frame(const scree_positions *places, vec3 middle, mat3 *frame,
                                scree_error *error) {
   scree_principal_frame principal;
-  scree_hull hull = {0};
+  SCREE_CLEANUP(scree_hull_free) scree_hull hull = {0};
   scree_minimum_box box;
-  vec3 *points = NULL;
-  scree_status status = scree_principal_frame_find(places, middle, &principal, error);
-  if (status != SCREE_OK) return status;
-  SCREE_ALLOC_OR(points, places->count, error, out_of_memory);
+  SCREE_TRY(scree_principal_frame_find(places, middle, &principal, error));
+  SCREE_SCRATCH(vec3, points, places->count, error);
   for (size_t v = 0; v < places->count; v++)
     points[v] = vec3_sub(vec3_load(places->at + v * places->stride), middle);
-  status = scree_hull_build(points, places->count, &hull, error);
-  if (status == SCREE_OK) status = scree_minimum_box_fit(&hull, &principal.axes, &box, error);
-  if (status == SCREE_OK) *frame = box.axes;
-  scree_hull_free(&hull);
-  scree_free(points);
-  return status;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
+  SCREE_TRY(scree_hull_build(points, places->count, &hull, error));
+  SCREE_TRY(scree_minimum_box_fit(&hull, &principal.axes, &box, error));
+  *frame = box.axes;
+  return SCREE_OK;
 }
 
 static scree_status measure_extent(scree_samples *p, scree_error *error) {
@@ -148,48 +139,36 @@ static scree_status measure_extent(scree_samples *p, scree_error *error) {
   const scree_positions places = {&scan->vertex->at.x, sizeof *scan->vertex / sizeof(double),
                                   scan->vertex_count};
   mat3 frame;
-  scree_status status = find_frame(&places, vec3_lerp(scan->low, scan->high, 0.5), &frame, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(find_frame(&places, vec3_lerp(scan->low, scan->high, 0.5), &frame, error));
   scree_extent_start(&p->extent, (const double(*)[3])frame.m);
   for (size_t v = 0; v < scan->vertex_count; v++) scree_extent_add(&p->extent, scan->vertex[v].at);
   for (int i = 0; i < SCREE_EXTENT_COUNT; i++)
     p->weight[i] = scree_larger(1, scree_tune.grow * sqrt(scan->area / PI) /
                                        scree_extent_width(&p->extent, i));
-  SCREE_ALLOC_OR(p->end, scan->vertex_count, error, out_of_memory);
+  SCREE_TRY_ALLOC(p->end, scan->vertex_count, error);
   scree_parallel_for(scan->vertex_count, BLOCK, end_block, p);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_samples_start(scree_samples *p, scree_error *error) {
-  scree_status status = scree_surface_tree_make(&p->scan, &p->scan_tree, error);
-  if (status == SCREE_OK) status = measure_extent(p, error);
-  return status;
+  SCREE_TRY(scree_surface_tree_make(&p->scan, &p->scan_tree, error));
+  return measure_extent(p, error);
 }
 
 scree_status scree_samples_find(const scree_halfmesh *surface, const scree_surface_tree *tree,
                                 scree_samples *p, scree_error *error) {
-  finding f = {.s = surface, .tree = tree, .samples = p};
-  scree_status status;
+  SCREE_SCRATCH(bool, stays, p->scan.vertex_count, error);
+  finding f = {.s = surface, .tree = tree, .samples = p, .stays = stays};
   size_t count = p->scan.vertex_count;
-  SCREE_ALLOC_OR(f.stays, count, error, out_of_memory);
-  SCREE_ALLOC_OR(p->of, surface->vertex_count, error, out_of_memory);
-  SCREE_ALLOC_OR(p->first, surface->triangle_count, error, out_of_memory);
-  SCREE_ALLOC_OR(p->worst, surface->triangle_count, error, out_of_memory);
-  SCREE_ALLOC_OR(p->next, count, error, out_of_memory);
-  SCREE_ALLOC_OR(p->far, count, error, out_of_memory);
-  status = match(&f, error);
-  if (status == SCREE_OK) {
-    scree_parallel_for(count, BLOCK, find_block, &f);
-    link_all(p, surface);
-    status = scree_samples_average(p, error);
-  }
-  scree_free(f.stays);
-  return status;
-out_of_memory:
-  scree_free(f.stays);
-  return SCREE_OUT_OF_MEMORY;
+  SCREE_TRY_ALLOC(p->of, surface->vertex_count, error);
+  SCREE_TRY_ALLOC(p->first, surface->triangle_count, error);
+  SCREE_TRY_ALLOC(p->worst, surface->triangle_count, error);
+  SCREE_TRY_ALLOC(p->next, count, error);
+  SCREE_TRY_ALLOC(p->far, count, error);
+  SCREE_TRY(match(&f, error));
+  scree_parallel_for(count, BLOCK, find_block, &f);
+  link_all(p, surface);
+  return scree_samples_average(p, error);
 }
 
 typedef struct averaging {
@@ -214,7 +193,7 @@ static void average_block(void *context, size_t begin, size_t end, size_t block,
 scree_status scree_samples_average(scree_samples *p, scree_error *error) {
   averaging a = {.samples = p};
   size_t blocks = scree_block_count(p->scan.vertex_count, BLOCK);
-  SCREE_ALLOC_OR(a.blocks, blocks, error, out_of_memory);
+  SCREE_TRY_ALLOC(a.blocks, blocks, error);
   scree_parallel_for(p->scan.vertex_count, BLOCK, average_block, &a);
   double sum = 0;
   p->count = 0;
@@ -222,8 +201,6 @@ scree_status scree_samples_average(scree_samples *p, scree_error *error) {
   p->mean = p->count > 0 ? sum / (double)p->count : 0;
   scree_free(a.blocks);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 void scree_samples_compact(scree_samples *p, const scree_halfmesh *s) {

@@ -6,14 +6,12 @@
 scree_status scree_markers_find(const scree_halfmesh *s, scree_markers *markers,
                                 scree_error *error) {
   if (s->shell_count < 2) return SCREE_OK;
-  if (!markers->vertex) SCREE_ALLOC_OR(markers->vertex, s->shell_count, error, out_of_memory);
+  if (!markers->vertex) SCREE_TRY_ALLOC(markers->vertex, s->shell_count, error);
   markers->count = 0;
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->flags[v] & SCREE_VERTEX_MARKER && s->vertex[v].outgoing != SCREE_NONE)
       markers->vertex[markers->count++] = v;
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 void scree_markers_free(scree_markers *markers) {

@@ -59,24 +59,22 @@ static void pass_free(pass *p) {
 static scree_status pass_allocate(pass *p, scree_decimator *d) {
   size_t n = d->s.vertex_count;
   *p = (pass){.d = d, .best = d->s.best, .cost = d->s.cost, .room = n / VERTICES_EACH + 1};
-  SCREE_ALLOC_OR(p->leader, n, d->error, out_of_memory);
-  SCREE_ALLOC_OR(p->apex, n, d->error, out_of_memory);
-  SCREE_ALLOC_OR(p->chosen, n, d->error, out_of_memory);
-  SCREE_ALLOC_OR(p->marks, n, d->error, out_of_memory);
-  SCREE_ALLOC_OR(p->candidates, n, d->error, out_of_memory);
-  SCREE_ALLOC_OR(p->taken, p->room, d->error, out_of_memory);
-  SCREE_ALLOC_OR(p->target, p->room, d->error, out_of_memory);
-  SCREE_ALLOC_OR(p->sorted, p->room, d->error, out_of_memory);
-  SCREE_ALLOC_OR(p->sorted_target, p->room, d->error, out_of_memory);
-  SCREE_ALLOC_OR(p->order, p->room, d->error, out_of_memory);
-  SCREE_ALLOC_OR(p->swap, p->room, d->error, out_of_memory);
+  SCREE_TRY_ALLOC(p->leader, n, d->error);
+  SCREE_TRY_ALLOC(p->apex, n, d->error);
+  SCREE_TRY_ALLOC(p->chosen, n, d->error);
+  SCREE_TRY_ALLOC(p->marks, n, d->error);
+  SCREE_TRY_ALLOC(p->candidates, n, d->error);
+  SCREE_TRY_ALLOC(p->taken, p->room, d->error);
+  SCREE_TRY_ALLOC(p->target, p->room, d->error);
+  SCREE_TRY_ALLOC(p->sorted, p->room, d->error);
+  SCREE_TRY_ALLOC(p->sorted_target, p->room, d->error);
+  SCREE_TRY_ALLOC(p->order, p->room, d->error);
+  SCREE_TRY_ALLOC(p->swap, p->room, d->error);
   memset(p->leader, 0xff, n * sizeof *p->leader);
   memset(p->apex, 0xff, n * sizeof *p->apex);
   memset(p->chosen, 0xff, n * sizeof *p->chosen);
   memset(p->marks, 0, n * sizeof *p->marks);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* ---- Ranking ---- */
@@ -444,42 +442,36 @@ static scree_status run_round(pass *p, size_t *done) {
 /* No vertex is ranked yet. */
 static scree_status start_ranks(scree_decimator *d) {
   scree_halfmesh *s = &d->s;
-  SCREE_ALLOC_OR(s->best, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(s->cost, s->vertex_count, d->error, out_of_memory);
+  SCREE_TRY_ALLOC(s->best, s->vertex_count, d->error);
+  SCREE_TRY_ALLOC(s->cost, s->vertex_count, d->error);
   for (size_t v = 0; v < s->vertex_count; v++) s->flags[v] |= SCREE_VERTEX_STALE;
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static scree_status run_pass(scree_decimator *d, size_t least, size_t *done) {
-  pass p = {0};
+  SCREE_CLEANUP(pass_free) pass p = {0};
   *done = 0;
-  scree_status status = scree_decimate_squeeze(d);
-  if (status == SCREE_OK && !d->s.best) status = start_ranks(d);
-  if (status == SCREE_OK) status = pass_allocate(&p, d);
-  if (status == SCREE_OK) {
-    rank_stale(&p);
-    bool more = set_limit(&p);
-    for (int round = 0; more && status == SCREE_OK && round < ROUNDS; round++) {
-      if (round > 0) rank_stale(&p);
-      status = run_round(&p, done);
-      more = d->s.live_triangle_count > least;
-    }
+  SCREE_TRY(scree_decimate_squeeze(d));
+  if (!d->s.best) SCREE_TRY(start_ranks(d));
+  SCREE_TRY(pass_allocate(&p, d));
+  rank_stale(&p);
+  bool more = set_limit(&p);
+  for (int round = 0; more && round < ROUNDS; round++) {
+    if (round > 0) rank_stale(&p);
+    SCREE_TRY(run_round(&p, done));
+    more = d->s.live_triangle_count > least;
   }
-  pass_free(&p);
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_decimate_in_passes(scree_decimator *d, size_t least) {
-  scree_status status = SCREE_OK;
   size_t done = SIZE_MAX, live = 0;
   if (least < d->options.stop_count) least = d->options.stop_count;
-  while (status == SCREE_OK && d->s.live_triangle_count > least &&
-         (double)done > LEAST_SHARE * (double)live) {
+  while (d->s.live_triangle_count > least && (double)done > LEAST_SHARE * (double)live) {
     live = d->s.live_triangle_count;
-    status = scree_decimate_tick(d) ? run_pass(d, least, &done) : SCREE_CANCELLED;
+    if (!scree_decimate_tick(d)) return SCREE_CANCELLED;
+    SCREE_TRY(run_pass(d, least, &done));
   }
   scree_parallel_for(d->s.vertex_count, BLOCK, renew_sums, d);
-  return status;
+  return SCREE_OK;
 }

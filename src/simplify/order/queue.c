@@ -97,26 +97,22 @@ static void rank_all(queue *q) {
 
 static scree_status set_usual(queue *q) {
   double *costs;
-  SCREE_ALLOC_OR(costs, q->count, q->d->error, out_of_memory);
+  SCREE_TRY_ALLOC(costs, q->count, q->d->error);
   for (size_t i = 0; i < q->count; i++) costs[i] = q->cost[q->edge[i]];
   scree_decimate_set_usual(q->d, costs, q->count, 0);
   scree_free(costs);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static scree_status start(queue *q, scree_decimator *d) {
   size_t half_edges = 3 * d->s.triangle_count;
   *q = (queue){.d = d};
-  SCREE_ALLOC_OR(q->edge, half_edges, d->error, out_of_memory);
-  SCREE_ALLOC_OR(q->place, half_edges, d->error, out_of_memory);
-  SCREE_ALLOC_OR(q->cost, half_edges, d->error, out_of_memory);
-  SCREE_ALLOC_OR(q->known, half_edges, d->error, out_of_memory);
+  SCREE_TRY_ALLOC(q->edge, half_edges, d->error);
+  SCREE_TRY_ALLOC(q->place, half_edges, d->error);
+  SCREE_TRY_ALLOC(q->cost, half_edges, d->error);
+  SCREE_TRY_ALLOC(q->known, half_edges, d->error);
   rank_all(q);
   return q->count > 0 ? set_usual(q) : SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 static void end(queue *q) {
@@ -226,17 +222,16 @@ static scree_status step(queue *q, bool *found) {
 }
 
 scree_status scree_decimate_in_order(scree_decimator *d, size_t *done) {
-  queue q;
+  SCREE_CLEANUP(end) queue q = {0};
   size_t least = (size_t)(scree_tune.refresh * (double)d->s.live_triangle_count);
-  scree_status status = start(&q, d);
-  bool found = true;
-  for (*done = 0; status == SCREE_OK && d->s.live_triangle_count > d->options.stop_count;) {
-    if (*done % TICK_EVERY == 0 && !scree_decimate_tick(d)) status = SCREE_CANCELLED;
-    if (status == SCREE_OK) status = step(&q, &found);
+  SCREE_TRY(start(&q, d));
+  for (*done = 0; d->s.live_triangle_count > d->options.stop_count;) {
+    bool found;
+    if (*done % TICK_EVERY == 0 && !scree_decimate_tick(d)) return SCREE_CANCELLED;
+    SCREE_TRY(step(&q, &found));
     if (!found) break;
     ++*done;
     if (d->s.live_triangle_count <= least) break;
   }
-  end(&q);
-  return status;
+  return SCREE_OK;
 }
