@@ -518,17 +518,10 @@ bool scree_field_is_given(const scree_field *field, const void *record) {
 
 static void put_text(FILE *stream, const char *text) {
   static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./";
-  if (text[strspn(text, plain)] == 0) {
+  if (text[strspn(text, plain)] == 0)
     fputs(text, stream);
-    return;
-  }
-  putc('"', stream);
-  for (; *text; text++) {
-    char escaped[SCREE_YAML_ESCAPED];
-    scree_yaml_escape(*text, escaped);
-    fputs(escaped, stream);
-  }
-  putc('"', stream);
+  else
+    scree_yaml_put_text(text, stream);
 }
 
 /* With the fewest of 6 to 17 digits that read back as the same number. */

@@ -49,6 +49,16 @@ void scree_yaml_escape(char byte, char escaped[SCREE_YAML_ESCAPED]) {
     snprintf(escaped, SCREE_YAML_ESCAPED, "%s%c", c == '"' || c == '\\' ? "\\" : "", c);
 }
 
+void scree_yaml_put_text(const char *text, FILE *stream) {
+  char escaped[SCREE_YAML_ESCAPED];
+  putc('"', stream);
+  for (; *text; text++) {
+    scree_yaml_escape(*text, escaped);
+    fputs(escaped, stream);
+  }
+  putc('"', stream);
+}
+
 const scree_yaml *scree_yaml_find(const scree_yaml *mapping, const char *key) {
   for (size_t i = 0; i < mapping->item_count; i++)
     if (mapping->items[i].key && !strcmp(mapping->items[i].key, key)) return &mapping->items[i];

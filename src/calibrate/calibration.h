@@ -125,6 +125,8 @@ struct scree_calibration {
   bool checked; /* the last round is this file's check: runs at the answer, unknown to the model */
 };
 
+SCREE_DEFINE_DROP(scree_calibration)
+
 /* read.c: the value at a coordinate as the scene takes it, in the arena; NULL: memory is out. The
  * coordinate of a value; NAN: it is none of the parameter's list. */
 const char *scree_parameter_text(const scree_plan_parameter *parameter, double x,
@@ -141,9 +143,7 @@ size_t scree_calibration_start(const scree_calibration *c, size_t experiment);
 scree_status scree_quantity_read_curve(scree_calibration *c, scree_quantity *quantity,
                                        const char *path, scree_error *error);
 
-/* rounds.c: FOLDER/NAME in a buffer. */
-char *scree_calibration_path(const scree_calibration *c, const char *name);
-/* Reads all rounds of the folder. */
+/* rounds.c: reads all rounds of the folder. */
 scree_status scree_rounds_read(scree_calibration *c, scree_error *error);
 /* Writes one more, whole or not at all. */
 scree_status scree_rounds_add(scree_calibration *c, const scree_place_pick *picks, size_t count,
@@ -176,6 +176,9 @@ typedef struct scree_answers {
 } scree_answers;
 scree_status scree_gather(const scree_calibration *c, scree_answers *gathered, scree_error *error);
 void scree_answers_free(scree_answers *gathered);
+/* work.c */
+scree_calibration_progress scree_calibration_stands(const scree_calibration *c,
+                                                    const scree_answers *gathered);
 
 /* curve.c: the shapes in which curves vary. centre: point_count; basis: component_count x
  * point_count, of root mean square 1. */
@@ -192,13 +195,13 @@ double scree_curve_score(const scree_curve_basis *basis, size_t component, const
 /* The model of all quantities, from the first `round_count` rounds. */
 typedef struct scree_calibration_model {
   scree_model model;
-  size_t *first, *count;    /* responses of each quantity */
-  scree_curve_basis *bases; /* of each quantity; empty where it is no curve */
+  size_t quantity_count, *first, *count; /* responses of each quantity */
+  scree_curve_basis *bases;              /* of each quantity; empty where it is no curve */
 } scree_calibration_model;
 scree_status scree_calibration_fit(const scree_calibration *c, const scree_answers *gathered,
                                    size_t round_count, scree_calibration_model *model,
                                    scree_error *error);
-void scree_calibration_model_free(const scree_calibration *c, scree_calibration_model *model);
+void scree_calibration_model_free(scree_calibration_model *model);
 
 /* posterior.c: samples of the parameters' coordinates, *count x parameters, to be freed; `effort` 0
  * for planning, 1 for the answer. */

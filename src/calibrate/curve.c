@@ -71,27 +71,21 @@ static void add_up(const double *curves, size_t count, size_t n, double *centre,
 scree_status scree_curve_basis_make(const double *curves, size_t count, size_t point_count,
                                     scree_curve_basis *basis, scree_error *error) {
   size_t n = point_count;
-  scree_curve_basis b = {.point_count = n};
-  double *covariance = scree_alloc(n * n, sizeof *covariance), *next = scree_alloc(n, sizeof *next);
-  b.centre = scree_alloc(n, sizeof *b.centre);
-  b.basis = scree_alloc(SCREE_MOST_COMPONENTS * n, sizeof *b.basis);
-  bool good = covariance && next && b.centre && b.basis;
-  if (good) {
-    double whole = 0;
-    add_up(curves, count, n, b.centre, covariance);
-    for (size_t i = 0; i < n; i++) whole += covariance[i * n + i] / (double)n;
-    for (; b.component_count < SCREE_MOST_COMPONENTS; b.component_count++) {
-      double *shape = b.basis + b.component_count * n, variance = lead(covariance, n, shape, next);
-      if (b.component_count > 0 && !(variance > least_share * whole)) break;
-      for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++) covariance[i * n + j] -= variance * shape[i] * shape[j];
-    }
+  SCREE_CLEANUP(scree_curve_basis_free) scree_curve_basis b = {.point_count = n};
+  SCREE_SCRATCH(double, covariance, n *n, error);
+  SCREE_SCRATCH(double, next, n, error);
+  SCREE_TRY_ALLOC(b.centre, n, error);
+  SCREE_TRY_ALLOC(b.basis, SCREE_MOST_COMPONENTS * n, error);
+  double whole = 0;
+  add_up(curves, count, n, b.centre, covariance);
+  for (size_t i = 0; i < n; i++) whole += covariance[i * n + i] / (double)n;
+  for (; b.component_count < SCREE_MOST_COMPONENTS; b.component_count++) {
+    double *shape = b.basis + b.component_count * n, variance = lead(covariance, n, shape, next);
+    if (b.component_count > 0 && !(variance > least_share * whole)) break;
+    for (size_t i = 0; i < n; i++)
+      for (size_t j = 0; j < n; j++) covariance[i * n + j] -= variance * shape[i] * shape[j];
   }
-  scree_free(covariance);
-  scree_free(next);
-  if (good)
-    *basis = b;
-  else
-    scree_curve_basis_free(&b);
-  return good ? SCREE_OK : scree_fail_memory(error, n * n * sizeof *covariance, "curves");
+  *basis = b;
+  b = (scree_curve_basis){0};
+  return SCREE_OK;
 }

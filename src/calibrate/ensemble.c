@@ -56,19 +56,14 @@ static void draw_start(const scree_ensemble *e, const double *points, double *de
 static scree_status start(const scree_ensemble *e, double *place, double *density,
                           scree_error *error) {
   size_t d = e->dimension_count;
-  double *points = scree_alloc(START_POINTS * d, sizeof *points);
-  double *densities = scree_alloc(START_POINTS, sizeof *densities);
-  bool good = points && densities;
-  if (good) {
-    scree_design_sobol(e->seed, START_POINTS, d, points);
-    for (size_t i = 0; i < START_POINTS * d; i++) points[i] = 2 * points[i] - 1;
-    walk w = {.e = e, .place = points, .density = densities};
-    scree_parallel_for(START_POINTS, 16, look_at_start, &w);
-    draw_start(e, points, densities, place, density);
-  }
-  scree_free(points);
-  scree_free(densities);
-  return good ? SCREE_OK : scree_fail_memory(error, 0, "walkers");
+  SCREE_SCRATCH(double, points, START_POINTS *d, error);
+  SCREE_SCRATCH(double, densities, START_POINTS, error);
+  scree_design_sobol(e->seed, START_POINTS, d, points);
+  for (size_t i = 0; i < START_POINTS * d; i++) points[i] = 2 * points[i] - 1;
+  walk w = {.e = e, .place = points, .density = densities};
+  scree_parallel_for(START_POINTS, 16, look_at_start, &w);
+  draw_start(e, points, densities, place, density);
+  return SCREE_OK;
 }
 
 /* One stretch move of each walker of a half. */
@@ -99,18 +94,15 @@ static void move(void *context, size_t begin, size_t end, size_t block, int work
 scree_status scree_ensemble_sample(const scree_ensemble *e, double *samples, scree_error *error) {
   size_t d = e->dimension_count, kept = 0;
   SCREE_ASSERT(d > 0 && d <= 16 && e->walker_count % 2 == 0 && e->walker_count >= 2 * d + 2);
-  walk w = {.e = e};
-  w.place = scree_alloc(e->walker_count * d, sizeof *w.place);
-  w.density = scree_alloc(e->walker_count, sizeof *w.density);
-  scree_status status = w.place && w.density ? start(e, w.place, w.density, error)
-                                             : scree_fail_memory(error, 0, "walkers");
-  for (w.step = 0; status == SCREE_OK && w.step < e->first_steps + e->steps; w.step++) {
+  SCREE_SCRATCH(double, place, e->walker_count *d, error);
+  SCREE_SCRATCH(double, density, e->walker_count, error);
+  walk w = {.e = e, .place = place, .density = density};
+  SCREE_TRY(start(e, place, density, error));
+  for (; w.step < e->first_steps + e->steps; w.step++) {
     for (w.half = 0; w.half < 2; w.half++) scree_parallel_for(e->walker_count / 2, 4, move, &w);
     if (w.step < e->first_steps || (w.step - e->first_steps + 1) % e->thin != 0) continue;
     memcpy(samples + kept * d, w.place, e->walker_count * d * sizeof *samples);
     kept += e->walker_count;
   }
-  scree_free(w.place);
-  scree_free(w.density);
-  return status;
+  return SCREE_OK;
 }

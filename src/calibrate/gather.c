@@ -29,11 +29,10 @@ static scree_status note_failure(scree_answers *g, const char *reason, scree_err
   for (size_t i = 0; i < g->failure_count; i++)
     if (!strcmp(g->failures[i], reason)) return SCREE_OK;
   char **more = scree_resize(g->failures, g->failure_count + 1, sizeof *more);
-  if (!more) return scree_fail_memory(error, 0, "failures");
-  g->failures = more;
-  char *copy = scree_strdup(reason);
-  if (!copy) return scree_fail_memory(error, 0, "failures");
-  g->failures[g->failure_count++] = copy;
+  if (more) g->failures = more;
+  if (!more || !(more[g->failure_count] = scree_strdup(reason)))
+    return scree_fail_memory(error, 0, "failures");
+  g->failure_count++;
   return SCREE_OK;
 }
 
@@ -44,59 +43,49 @@ static double work_of(const scree_study_record *r) {
 
 static scree_status take_record(scree_answers *g, size_t experiment, const scree_study *study,
                                 size_t run, double *work, scree_error *error) {
-  scree_study_record record;
+  SCREE_CLEANUP(scree_study_record_free) scree_study_record record = {0};
   char mark[SCREE_CHECKSUM_TEXT];
   double *answers = g->answers[experiment] + run * study->answer_count;
   const char *path = SCREE_STUDY_PATH(study, "results", study->keys[run], ".yaml");
   bool there = scree_path_exists(path);
   scree_status status = there ? scree_study_record_read(path, &record, error) : SCREE_OK;
   if (status == SCREE_BAD_FILE) there = false; /* the next worker puts it aside */
-  if (there && status == SCREE_OK && !record.failed) {
-    scree_study_answers_mark(study, mark);
-    there = !strcmp(mark, record.answered); /* or takes its answers anew */
-    if (!there) scree_study_record_free(&record);
-  }
-  if (!there) {
+  if (there) SCREE_TRY(status);
+  scree_study_answers_mark(study, mark); /* or takes its answers anew */
+  if (!there || (!record.failed && strcmp(mark, record.answered) != 0)) {
     g->open++;
     return SCREE_OK;
   }
-  if (status != SCREE_OK) return status;
   for (size_t a = 0; !record.failed && a < study->answer_count; a++)
     if (a < record.answer_count) answers[a] = record.answers[a];
   g->seconds += record.costs.processor_seconds;
   *work += work_of(&record);
-  if (record.failed)
-    status = note_failure(g, record.reason, error);
-  else
-    g->done++;
-  scree_study_record_free(&record);
-  return status;
+  if (record.failed) return note_failure(g, record.reason, error);
+  g->done++;
+  return SCREE_OK;
 }
 
 static scree_status gather_experiment(const scree_calibration *c, size_t e, scree_answers *g,
                                       scree_error *error) {
-  scree_study *study;
-  scree_status status = scree_rounds_study(c, e, &study, error);
-  if (status != SCREE_OK || !study) return status;
+  SCREE_CLEANUP(scree_study_drop) scree_study *study = NULL;
+  SCREE_TRY(scree_rounds_study(c, e, &study, error));
+  if (!study) return SCREE_OK;
   size_t count = scree_study_run_count(study), n = 0, d = c->parameter_count;
   double work = 0;
-  g->x[e] = scree_alloc(count * d, sizeof *g->x[e]);
-  g->answers[e] = scree_alloc(count * study->answer_count, sizeof *g->answers[e]);
+  SCREE_TRY_ALLOC(g->x[e], count * d, error);
+  SCREE_TRY_ALLOC(g->answers[e], count * study->answer_count, error);
   g->run_counts[e] = count;
-  if (!g->x[e] || !g->answers[e]) status = scree_fail_memory(error, 0, "answers");
-  for (size_t i = 0; status == SCREE_OK && i < count * study->answer_count; i++)
-    g->answers[e][i] = NAN;
-  for (size_t i = 0; status == SCREE_OK && i < c->run_count; i++) {
+  for (size_t i = 0; i < count * study->answer_count; i++) g->answers[e][i] = NAN;
+  for (size_t i = 0; i < c->run_count; i++) {
     if (c->runs[i].experiment != e) continue;
     memcpy(g->x[e] + n * d, c->runs[i].x, d * sizeof(double));
     size_t open = g->open;
-    status = take_record(g, e, study, n, &work, error);
+    SCREE_TRY(take_record(g, e, study, n, &work, error));
     if (c->runs[i].round < scree_rounds_fitted(c)) g->waiting[e] += g->open - open;
     n++;
   }
   g->costs[e] = work > 0 ? work / (double)count : 1;
-  scree_study_free(study);
-  return status;
+  return SCREE_OK;
 }
 
 /* Costs as the file has them; where it has none of a command, nothing is known of any. */
@@ -112,32 +101,24 @@ static void settle_costs(const scree_calibration *c, scree_answers *g) {
 }
 
 scree_status scree_gather(const scree_calibration *c, scree_answers *gathered, scree_error *error) {
-  scree_answers g = {.experiment_count = c->experiment_count};
-  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_CLEANUP(scree_answers_free) scree_answers g = {.experiment_count = c->experiment_count};
   size_t n = c->experiment_count;
-  g.run_counts = scree_alloc_zero(n, sizeof *g.run_counts);
-  g.waiting = scree_alloc_zero(n, sizeof *g.waiting);
-  g.x = scree_alloc_zero(n, sizeof *g.x);
-  g.answers = scree_alloc_zero(n, sizeof *g.answers);
-  g.costs = scree_alloc_zero(n, sizeof *g.costs);
-  if (g.run_counts && g.waiting && g.x && g.answers && g.costs)
-    status = SCREE_OK;
-  else
-    scree_fail_memory(error, 0, "answers");
-  for (size_t e = 0; status == SCREE_OK && e < n; e++) status = gather_experiment(c, e, &g, error);
-  if (status == SCREE_OK) {
-    settle_costs(c, &g);
-    *gathered = g;
-  } else {
-    scree_answers_free(&g);
-  }
-  return status;
+  SCREE_TRY_ALLOC_ZERO(g.run_counts, n, error);
+  SCREE_TRY_ALLOC_ZERO(g.waiting, n, error);
+  SCREE_TRY_ALLOC_ZERO(g.x, n, error);
+  SCREE_TRY_ALLOC_ZERO(g.answers, n, error);
+  SCREE_TRY_ALLOC_ZERO(g.costs, n, error);
+  for (size_t e = 0; e < n; e++) SCREE_TRY(gather_experiment(c, e, &g, error));
+  settle_costs(c, &g);
+  *gathered = g;
+  g = (scree_answers){0};
+  return SCREE_OK;
 }
 
 /* ---- the model ---- */
 
-void scree_calibration_model_free(const scree_calibration *c, scree_calibration_model *m) {
-  for (size_t q = 0; m->bases && q < c->quantity_count; q++) scree_curve_basis_free(&m->bases[q]);
+void scree_calibration_model_free(scree_calibration_model *m) {
+  for (size_t q = 0; m->bases && q < m->quantity_count; q++) scree_curve_basis_free(&m->bases[q]);
   scree_free(m->bases);
   scree_free(m->first);
   scree_free(m->count);
@@ -186,8 +167,7 @@ static scree_status take_answers(fitting *f, size_t quantity, size_t component, 
                                  scree_error *error) {
   const scree_quantity *q = &f->c->quantities[quantity];
   size_t all = f->c->experiments[q->experiment].answer_count, n = f->run_counts[q->experiment];
-  *y = scree_alloc(n, sizeof **y);
-  if (!*y) return scree_fail_memory(error, 0, "answers");
+  SCREE_TRY_ALLOC(*y, n, error);
   for (size_t i = 0; i < n; i++) {
     const double *answers = f->g->answers[q->experiment] + i * all + q->first_answer;
     (*y)[i] = q->x ? scree_curve_score(&f->m->bases[quantity], component, answers) : answers[0];
@@ -198,15 +178,11 @@ static scree_status take_answers(fitting *f, size_t quantity, size_t component, 
 static scree_status make_basis(fitting *f, size_t quantity, scree_error *error) {
   const scree_quantity *q = &f->c->quantities[quantity];
   size_t all = f->c->experiments[q->experiment].answer_count, n = f->run_counts[q->experiment];
-  double *curves = scree_alloc(n * q->answer_count, sizeof *curves);
-  if (!curves) return scree_fail_memory(error, 0, "curves");
+  SCREE_SCRATCH(double, curves, n * q->answer_count, error);
   for (size_t i = 0; i < n; i++)
     memcpy(curves + i * q->answer_count, f->g->answers[q->experiment] + i * all + q->first_answer,
            q->answer_count * sizeof *curves);
-  scree_status status =
-      scree_curve_basis_make(curves, n, q->answer_count, &f->m->bases[quantity], error);
-  scree_free(curves);
-  return status;
+  return scree_curve_basis_make(curves, n, q->answer_count, &f->m->bases[quantity], error);
 }
 
 /* Responses without their processes, and their answers. */
@@ -243,9 +219,8 @@ static scree_status tell(const fitting *f, size_t response, scree_error *error) 
 
 static scree_status fit_all(fitting *f, scree_error *error) {
   scree_model *model = &f->m->model;
-  f->status = scree_alloc_zero(model->count, sizeof *f->status);
-  f->errors = scree_alloc_zero(model->count, sizeof *f->errors);
-  if (!f->status || !f->errors) return scree_fail_memory(error, 0, "a model");
+  SCREE_TRY_ALLOC_ZERO(f->status, model->count, error);
+  SCREE_TRY_ALLOC_ZERO(f->errors, model->count, error);
   scree_parallel_for(model->count, 1, fit_some, f);
   for (size_t i = 0; i < model->count; i++)
     if (f->status[i] != SCREE_OK) return tell(f, i, error);
@@ -253,32 +228,33 @@ static scree_status fit_all(fitting *f, scree_error *error) {
                                (const double *const *)f->y, error);
 }
 
+static void free_fitting(fitting *f) {
+  for (size_t i = 0; f->y && i < f->m->quantity_count * SCREE_MOST_COMPONENTS; i++)
+    scree_free(f->y[i]);
+  scree_free(f->y);
+  scree_free(f->run_counts);
+  scree_free(f->status);
+  scree_free(f->errors);
+}
+
 scree_status scree_calibration_fit(const scree_calibration *c, const scree_answers *gathered,
                                    size_t round_count, scree_calibration_model *model,
                                    scree_error *error) {
-  size_t most = c->quantity_count * SCREE_MOST_COMPONENTS;
-  *model = (scree_calibration_model){.model.dimension_count = c->parameter_count};
-  fitting f = {.c = c, .g = gathered, .m = model};
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  model->model.items = scree_alloc_zero(most, sizeof *model->model.items);
-  model->first = scree_alloc_zero(c->quantity_count, sizeof *model->first);
-  model->count = scree_alloc_zero(c->quantity_count, sizeof *model->count);
-  model->bases = scree_alloc_zero(c->quantity_count, sizeof *model->bases);
-  f.run_counts = scree_alloc_zero(c->experiment_count, sizeof *f.run_counts);
-  f.y = scree_alloc_zero(most, sizeof *f.y);
-  if (model->model.items && model->first && model->count && model->bases && f.run_counts && f.y) {
-    for (size_t e = 0; e < c->experiment_count; e++)
-      f.run_counts[e] = scree_rounds_until(c, e, round_count);
-    status = lay_out(&f, error);
-    if (status == SCREE_OK) status = fit_all(&f, error);
-  } else {
-    scree_fail_memory(error, 0, "a model");
-  }
-  for (size_t i = 0; f.y && i < most; i++) scree_free(f.y[i]);
-  scree_free(f.y);
-  scree_free(f.run_counts);
-  scree_free(f.status);
-  scree_free(f.errors);
-  if (status != SCREE_OK) scree_calibration_model_free(c, model);
-  return status;
+  size_t n = c->quantity_count, most = n * SCREE_MOST_COMPONENTS;
+  SCREE_CLEANUP(scree_calibration_model_free)
+  scree_calibration_model m = {.model.dimension_count = c->parameter_count, .quantity_count = n};
+  SCREE_CLEANUP(free_fitting) fitting f = {.c = c, .g = gathered, .m = &m};
+  SCREE_TRY_ALLOC_ZERO(m.model.items, most, error);
+  SCREE_TRY_ALLOC_ZERO(m.first, n, error);
+  SCREE_TRY_ALLOC_ZERO(m.count, n, error);
+  SCREE_TRY_ALLOC_ZERO(m.bases, n, error);
+  SCREE_TRY_ALLOC_ZERO(f.run_counts, c->experiment_count, error);
+  SCREE_TRY_ALLOC_ZERO(f.y, most, error);
+  for (size_t e = 0; e < c->experiment_count; e++)
+    f.run_counts[e] = scree_rounds_until(c, e, round_count);
+  SCREE_TRY(lay_out(&f, error));
+  SCREE_TRY(fit_all(&f, error));
+  *model = m;
+  m = (scree_calibration_model){.quantity_count = n};
+  return SCREE_OK;
 }

@@ -242,14 +242,10 @@ static double density(const scree_gp *gp, const double *s, double *factor, doubl
 }
 
 double scree_gp_log_density(const scree_gp *gp, const double *settings, double *gradient) {
-  double *factor = scree_alloc(gp->n * gp->n, 2 * sizeof *factor);
-  double *weights = scree_alloc(gp->n, sizeof *weights);
-  double answer = -INFINITY;
-  if (factor && weights)
-    answer = density(gp, settings, factor, factor + gp->n * gp->n, weights, gradient);
-  scree_free(factor);
-  scree_free(weights);
-  return answer;
+  size_t square = gp->n * gp->n;
+  SCREE_CLEANUP(scree_free_at) double *factor = scree_alloc(2 * square + gp->n, sizeof *factor);
+  if (!factor) return -INFINITY;
+  return density(gp, settings, factor, factor + square, factor + 2 * square, gradient);
 }
 
 /* ---- the search ---- */
@@ -362,13 +358,11 @@ static scree_status gather(scree_gp *gp, const scree_gp_runs *runs, scree_error 
 }
 
 static scree_status allocate(scree_gp *gp, size_t runs, scree_error *error) {
-  SCREE_ALLOC_OR(gp->x, runs * gp->d + 1, error, fail);
-  SCREE_ALLOC_OR(gp->mean, runs, error, fail);
-  SCREE_ALLOC_OR(gp->squares, runs, error, fail);
-  SCREE_ALLOC_OR(gp->count, runs, error, fail);
+  SCREE_TRY_ALLOC(gp->x, runs * gp->d + 1, error);
+  SCREE_TRY_ALLOC(gp->mean, runs, error);
+  SCREE_TRY_ALLOC(gp->squares, runs, error);
+  SCREE_TRY_ALLOC(gp->count, runs, error);
   return SCREE_OK;
-fail:
-  return SCREE_OUT_OF_MEMORY;
 }
 
 /* The Cholesky factor of the curvature of the log density at the most probable settings, from
@@ -419,11 +413,12 @@ static void draw_members(scree_gp *gp, search *q) {
 
 static scree_status find_settings(scree_gp *gp, scree_error *error) {
   search best = {0}, q = {.gp = gp, .m = setting_count(gp)};
-  SCREE_ALLOC_OR(q.factor, gp->n * gp->n, error, fail);
+  SCREE_SCRATCH(double, factor, gp->n * gp->n, error);
   for (size_t k = 0; k < MEMBERS; k++) {
-    SCREE_ALLOC_OR(gp->members[k].inverse, gp->n * gp->n, error, fail);
-    SCREE_ALLOC_OR(gp->members[k].weights, gp->n, error, fail);
+    SCREE_TRY_ALLOC(gp->members[k].inverse, gp->n * gp->n, error);
+    SCREE_TRY_ALLOC(gp->members[k].weights, gp->n, error);
   }
+  q.factor = factor;
   q.inverse = gp->members[0].inverse;
   q.weights = gp->members[0].weights;
   best.value = -INFINITY;
@@ -431,37 +426,29 @@ static scree_status find_settings(scree_gp *gp, scree_error *error) {
     climb(&q, scree_log(start_lengths[i]));
     if (q.value > best.value) best = q;
   }
-  if (isfinite(best.value)) draw_members(gp, &best);
-  scree_free(q.factor);
-  return isfinite(best.value)
-             ? SCREE_OK
-             : scree_fail(error, SCREE_BAD_ARGUMENT, "the answers' covariance cannot be inverted");
-fail:
-  scree_free(q.factor);
-  return SCREE_OUT_OF_MEMORY;
+  if (!isfinite(best.value))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "the answers' covariance cannot be inverted");
+  draw_members(gp, &best);
+  return SCREE_OK;
 }
 
 scree_status scree_gp_fit(const scree_gp_runs *runs, scree_gp **gp, scree_error *error) {
-  scree_gp *made = scree_alloc_zero(1, sizeof *made);
-  if (!made) return scree_fail_memory(error, sizeof *made, "a Gaussian process");
+  SCREE_CLEANUP(scree_gp_drop) scree_gp *made = NULL;
+  SCREE_TRY_ALLOC_ZERO(made, 1, error);
   SCREE_ASSERT(runs->active_count <= SCREE_MOST_PARAMETERS);
   made->d = runs->active_count;
   made->dimension_count = runs->dimension_count;
   for (size_t k = 0; k < made->d; k++) made->active[k] = runs->active[k];
-  scree_status status = allocate(made, runs->run_count, error);
-  if (status == SCREE_OK) {
-    standardise(made, runs);
-    status = gather(made, runs, error);
-    if (status == SCREE_OK && made->n < 2)
-      status = scree_fail(error, SCREE_BAD_ARGUMENT, "%zu of %zu runs gave this answer",
-                          made->run_count, runs->run_count);
-  }
-  if (status == SCREE_OK) status = find_settings(made, error);
-  if (status == SCREE_OK)
-    *gp = made;
-  else
-    scree_gp_free(made);
-  return status;
+  SCREE_TRY(allocate(made, runs->run_count, error));
+  standardise(made, runs);
+  SCREE_TRY(gather(made, runs, error));
+  if (made->n < 2)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "%zu of %zu runs gave this answer",
+                      made->run_count, runs->run_count);
+  SCREE_TRY(find_settings(made, error));
+  *gp = made;
+  made = NULL;
+  return SCREE_OK;
 }
 
 void scree_gp_free(scree_gp *gp) {
@@ -542,14 +529,13 @@ scree_gp_value scree_gp_at(const scree_gp *gp, const double *x) {
 scree_status scree_gp_covariance(const scree_gp *gp, const double *x, size_t count, double *answer,
                                  scree_error *error) {
   size_t n = gp->n, d = gp->d;
-  double *places = scree_alloc(count * d + 1, sizeof *places);
-  double *k = scree_alloc(count * n, sizeof *k), *ki = scree_alloc(n, sizeof *ki);
-  double *means = scree_alloc(count * MEMBERS, sizeof *means);
-  bool good = places && k && ki && means;
+  SCREE_SCRATCH(double, places, count *d + 1, error);
+  SCREE_SCRATCH(double, k, count *n, error);
+  SCREE_SCRATCH(double, ki, n, error);
+  SCREE_SCRATCH(double, means, count *MEMBERS, error);
   memset(answer, 0, count * count * sizeof *answer);
-  for (size_t a = 0; good && a < count; a++)
-    choose_active(gp, x + a * gp->dimension_count, places + a * d);
-  for (size_t m = 0; good && m < MEMBERS; m++) {
+  for (size_t a = 0; a < count; a++) choose_active(gp, x + a * gp->dimension_count, places + a * d);
+  for (size_t m = 0; m < MEMBERS; m++) {
     const member *one = &gp->members[m];
     for (size_t a = 0; a < count; a++)
       means[a * MEMBERS + m] = reach(gp, one, places + a * d, k + a * n);
@@ -562,7 +548,7 @@ scree_status scree_gp_covariance(const scree_gp *gp, const double *x, size_t cou
       }
     }
   }
-  for (size_t a = 0; good && a < count; a++)
+  for (size_t a = 0; a < count; a++)
     for (size_t b = 0; b <= a; b++) {
       double both = 0, first = 0, second = 0;
       for (size_t m = 0; m < MEMBERS; m++) {
@@ -574,9 +560,5 @@ scree_status scree_gp_covariance(const scree_gp *gp, const double *x, size_t cou
       double sum = answer[a * count + b] + both - first * second;
       answer[a * count + b] = answer[b * count + a] = sum * gp->scale * gp->scale;
     }
-  scree_free(places);
-  scree_free(k);
-  scree_free(ki);
-  scree_free(means);
-  return good ? SCREE_OK : scree_fail_memory(error, count * n * sizeof *k, "covariances");
+  return SCREE_OK;
 }

@@ -87,12 +87,11 @@ scree_status scree_model_correlate(scree_model *model, const double *const *x,
                                    scree_error *error) {
   size_t n = model->count, d = model->dimension_count, total = 0;
   for (size_t i = 0; i < n; i++) total += run_counts[model->items[i].experiment];
-  double *residual = scree_alloc(total, sizeof *residual);
-  size_t *begin = scree_alloc(n, sizeof *begin);
+  SCREE_SCRATCH(double, residual, total, error);
+  SCREE_SCRATCH(size_t, begin, n, error);
   scree_free(model->correlation);
-  model->correlation = scree_alloc_zero(n * n, sizeof *model->correlation);
-  bool good = residual && begin && model->correlation;
-  for (size_t i = 0, used = 0; good && i < n; i++) {
+  SCREE_TRY_ALLOC_ZERO(model->correlation, n * n, error);
+  for (size_t i = 0, used = 0; i < n; i++) {
     const scree_response *r = &model->items[i];
     begin[i] = used;
     for (size_t run = 0; run < run_counts[r->experiment]; run++) {
@@ -101,7 +100,7 @@ scree_status scree_model_correlate(scree_model *model, const double *const *x,
           (y[i][run] - scree_gp_mean(r->gp, place)) / sqrt(scree_gp_noise(r->gp, place));
     }
   }
-  for (size_t i = 0; good && i < n; i++)
+  for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++) {
       bool same = model->items[i].experiment == model->items[j].experiment;
       model->correlation[i * n + j] = i == j ? 1
@@ -109,9 +108,7 @@ scree_status scree_model_correlate(scree_model *model, const double *const *x,
                                                          run_counts[model->items[i].experiment])
                                              : 0;
     }
-  scree_free(residual);
-  scree_free(begin);
-  return good ? SCREE_OK : scree_fail_memory(error, 0, "correlations");
+  return SCREE_OK;
 }
 
 /* ---- the next runs ---- */
@@ -124,13 +121,18 @@ typedef struct outlook {
   double *noise, *weight; /* of single runs at each candidate; 1 / whole variance at each sample */
 } outlook;
 
-static void outlook_free(outlook *all, size_t count) {
-  for (size_t i = 0; all && i < count; i++) {
-    scree_free(all[i].covariance);
-    scree_free(all[i].noise);
-    scree_free(all[i].weight);
+typedef struct outlooks {
+  outlook *items;
+  size_t count;
+} outlooks;
+
+static void free_outlooks(outlooks *all) {
+  for (size_t i = 0; all->items && i < all->count; i++) {
+    scree_free(all->items[i].covariance);
+    scree_free(all->items[i].noise);
+    scree_free(all->items[i].weight);
   }
-  scree_free(all);
+  scree_free(all->items);
 }
 
 static const double *candidate(const scree_next_question *q, size_t experiment, size_t index,
@@ -143,24 +145,18 @@ static scree_status look_out(const scree_model *model, const scree_response *r,
                              const scree_next_question *q, outlook *o, scree_error *error) {
   size_t d = model->dimension_count, e = r->experiment;
   *o = (outlook){.response = r, .count = q->sample_count + q->place_counts[e]};
-  o->covariance = scree_alloc(o->count * o->count, sizeof *o->covariance);
-  o->noise = scree_alloc(o->count, sizeof *o->noise);
-  o->weight = scree_alloc(q->sample_count, sizeof *o->weight);
-  double *x = scree_alloc(o->count * d, sizeof *x);
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  if (o->covariance && o->noise && o->weight && x) {
-    for (size_t i = 0; i < o->count; i++) memcpy(x + i * d, candidate(q, e, i, d), d * sizeof *x);
-    status = scree_gp_covariance(r->gp, x, o->count, o->covariance, error);
-    for (size_t i = 0; i < o->count; i++) o->noise[i] = scree_gp_noise(r->gp, x + i * d);
-    for (size_t s = 0; s < q->sample_count; s++) {
-      scree_gp_value value = {0, o->covariance[s * o->count + s], o->noise[s]};
-      o->weight[s] = 1 / scree_response_variance(r, &value, r->repeat_count);
-    }
-  } else {
-    scree_fail_memory(error, 0, "the next runs");
+  SCREE_TRY_ALLOC(o->covariance, o->count * o->count, error);
+  SCREE_TRY_ALLOC(o->noise, o->count, error);
+  SCREE_TRY_ALLOC(o->weight, q->sample_count, error);
+  SCREE_SCRATCH(double, x, o->count *d, error);
+  for (size_t i = 0; i < o->count; i++) memcpy(x + i * d, candidate(q, e, i, d), d * sizeof *x);
+  SCREE_TRY(scree_gp_covariance(r->gp, x, o->count, o->covariance, error));
+  for (size_t i = 0; i < o->count; i++) o->noise[i] = scree_gp_noise(r->gp, x + i * d);
+  for (size_t s = 0; s < q->sample_count; s++) {
+    scree_gp_value value = {0, o->covariance[s * o->count + s], o->noise[s]};
+    o->weight[s] = 1 / scree_response_variance(r, &value, r->repeat_count);
   }
-  scree_free(x);
-  return status;
+  return SCREE_OK;
 }
 
 static double gain_of(const outlook *o, size_t c, size_t sample_count) {
@@ -220,17 +216,13 @@ static void pick_one(const scree_model *model, const scree_next_question *q, out
 scree_status scree_model_next(const scree_model *model, const scree_next_question *question,
                               size_t count, scree_place_pick *picks, double *left,
                               scree_error *error) {
-  outlook *all = scree_alloc_zero(model->count, sizeof *all);
-  if (!all) return scree_fail_memory(error, 0, "the next runs");
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < model->count; i++)
-    status = look_out(model, &model->items[i], question, &all[i], error);
-  if (status == SCREE_OK) {
-    *left = share_left(all, model->count, question->sample_count);
-    for (size_t i = 0; i < count; i++) pick_one(model, question, all, &picks[i]);
-  }
-  outlook_free(all, model->count);
-  return status;
+  SCREE_CLEANUP(free_outlooks) outlooks all = {.count = model->count};
+  SCREE_TRY_ALLOC_ZERO(all.items, model->count, error);
+  for (size_t i = 0; i < model->count; i++)
+    SCREE_TRY(look_out(model, &model->items[i], question, &all.items[i], error));
+  *left = share_left(all.items, model->count, question->sample_count);
+  for (size_t i = 0; i < count; i++) pick_one(model, question, all.items, &picks[i]);
+  return SCREE_OK;
 }
 
 /* ---- another measurement ---- */
@@ -288,31 +280,23 @@ scree_status scree_model_expect(const scree_model *model, const double *samples,
                                 size_t sample_count, const size_t *chosen, size_t chosen_count,
                                 double repeat_count, double *sd, scree_error *error) {
   size_t n = sample_count, d = model->dimension_count;
-  expectation w = {
-      .model = model, .samples = samples, .sample_count = n, .chosen_count = chosen_count};
-  w.mean = scree_alloc(chosen_count * n, sizeof *w.mean);
-  w.variance = scree_alloc(chosen_count * n, sizeof *w.variance);
-  w.log_weight = scree_alloc(TRUTHS * n, sizeof *w.log_weight);
-  w.spread = scree_alloc(TRUTHS * d, sizeof *w.spread);
-  bool good = w.mean && w.variance && w.log_weight && w.spread;
-  for (size_t c = 0; good && c < chosen_count; c++)
+  SCREE_SCRATCH(double, mean, chosen_count *n, error);
+  SCREE_SCRATCH(double, variance, chosen_count *n, error);
+  SCREE_SCRATCH(double, log_weight, TRUTHS *n, error);
+  SCREE_SCRATCH(double, spread, TRUTHS *d, error);
+  expectation w = {model, samples, n, chosen_count, mean, variance, log_weight, spread};
+  for (size_t c = 0; c < chosen_count; c++)
     for (size_t s = 0; s < n; s++) {
       const scree_response *r = &model->items[chosen[c]];
       scree_gp_value value = scree_gp_at(r->gp, samples + s * d);
-      w.mean[c * n + s] = value.mean;
-      w.variance[c * n + s] = scree_response_variance(r, &value, repeat_count);
+      mean[c * n + s] = value.mean;
+      variance[c * n + s] = scree_response_variance(r, &value, repeat_count);
     }
-  if (good) {
-    scree_parallel_for(TRUTHS, 1, expect_truths, &w);
-    for (size_t k = 0; k < d; k++) {
-      double sum = 0;
-      for (size_t t = 0; t < TRUTHS; t++) sum += w.spread[t * d + k];
-      sd[k] = sqrt(sum / TRUTHS);
-    }
+  scree_parallel_for(TRUTHS, 1, expect_truths, &w);
+  for (size_t k = 0; k < d; k++) {
+    double sum = 0;
+    for (size_t t = 0; t < TRUTHS; t++) sum += spread[t * d + k];
+    sd[k] = sqrt(sum / TRUTHS);
   }
-  scree_free(w.mean);
-  scree_free(w.variance);
-  scree_free(w.log_weight);
-  scree_free(w.spread);
-  return good ? SCREE_OK : scree_fail_memory(error, 0, "expected intervals");
+  return SCREE_OK;
 }

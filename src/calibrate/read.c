@@ -6,6 +6,7 @@
 #include "base/number.h"
 #include "base/platform.h"
 #include "calibrate/calibration.h"
+#include "scene/scene.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -129,21 +130,23 @@ static scree_status check_experiment(const reader *r, const scree_plan_experimen
 static scree_status read_scene(const reader *r, const scree_experiment_plan *e,
                                scree_scene_file **file) {
   scree_error error;
-  scree_status status = scree_scene_file_read(e->scene_path, file, &error);
-  if (status != SCREE_OK) return scree_fail_place(&r->in, &e->plan->place, "%s", error.message);
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *made = NULL;
   const scree_yaml *set = e->plan->set;
-  for (size_t i = 0; status == SCREE_OK && set && i < set->item_count; i++) {
+  if (scree_scene_file_read(e->scene_path, &made, &error) != SCREE_OK)
+    return scree_fail_place(&r->in, &e->plan->place, "%s", error.message);
+  for (size_t i = 0; set && i < set->item_count; i++) {
     const scree_yaml *item = &set->items[i];
     scree_place place = {NULL, e->plan->place.path, item->line, item->column};
     if (item->kind != SCREE_YAML_SCALAR)
-      status = scree_fail_place(&r->in, &place, "set.%s: must be one value", item->key);
-    else if (scree_scene_file_set(*file, item->key, item->text, &error) != SCREE_OK)
-      status = scree_fail_place(&r->in, &place, "set.%s: %s", item->key, error.message);
+      return scree_fail_place(&r->in, &place, "set.%s: must be one value", item->key);
+    if (scree_scene_file_set(made, item->key, item->text, &error) != SCREE_OK)
+      return scree_fail_place(&r->in, &place, "set.%s: %s", item->key, error.message);
   }
-  if (status == SCREE_OK && scree_scene_file_check(*file, &error) != SCREE_OK)
-    status = scree_fail_place(&r->in, &e->plan->place, "%s", error.message);
-  if (status != SCREE_OK) scree_scene_file_free(*file);
-  return status;
+  if (scree_scene_file_check(made, &error) != SCREE_OK)
+    return scree_fail_place(&r->in, &e->plan->place, "%s", error.message);
+  *file = made;
+  made = NULL;
+  return SCREE_OK;
 }
 
 /* Whether the scene takes a parameter's ends; else why not. */
@@ -161,45 +164,34 @@ static bool takes(scree_scene_file *file, const scree_plan_parameter *p, scree_a
   return any;
 }
 
-static bool command_takes(const scree_plan_experiment *e, const char *name) {
-  char braces[140];
-  snprintf(braces, sizeof braces, "{%.130s}", name);
-  for (size_t i = 0; i < e->command.count; i++)
-    if (strstr(e->command.items[i], braces)) return true;
-  return false;
-}
-
 static scree_status find_active(const reader *r, scree_error *why, bool *anywhere) {
   scree_calibration *c = r->c;
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < c->experiment_count; i++) {
+  for (size_t i = 0; i < c->experiment_count; i++) {
     scree_experiment_plan *e = &c->experiments[i];
-    scree_scene_file *file = NULL;
-    if (!is_command(e->plan)) status = read_scene(r, e, &file);
-    for (size_t p = 0; status == SCREE_OK && p < c->parameter_count; p++) {
+    SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
+    if (!is_command(e->plan)) SCREE_TRY(read_scene(r, e, &file));
+    for (size_t p = 0; p < c->parameter_count; p++) {
       const scree_plan_parameter *parameter = &c->parameters[p];
       if (!(file ? takes(file, parameter, &c->arena, &why[p])
-                 : command_takes(e->plan, parameter->place.name)))
+                 : scree_command_has(&e->plan->command, parameter->place.name)))
         continue;
       e->active[e->active_count++] = p;
       anywhere[p] = true;
     }
-    if (status == SCREE_OK) scree_scene_file_free(file);
-    if (status == SCREE_OK && e->active_count == 0)
-      status = scree_fail_place(&r->in, &e->plan->place,
-                                is_command(e->plan)
-                                    ? "none of its words has a parameter, as in {friction}"
-                                    : "has none of the parameters' fields");
+    if (e->active_count == 0)
+      return scree_fail_place(&r->in, &e->plan->place,
+                              is_command(e->plan)
+                                  ? "none of its words has a parameter, as in {friction}"
+                                  : "has none of the parameters' fields");
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status read_experiments(const reader *r) {
   scree_calibration *c = r->c;
   scree_error why[SCREE_MOST_PARAMETERS] = {0};
   bool anywhere[SCREE_MOST_PARAMETERS] = {false};
-  c->experiments = scree_arena_take(&c->arena, c->experiment_count, sizeof *c->experiments);
-  if (!c->experiments) return fail_memory(r);
+  SCREE_TRY_TAKE(c->experiments, &c->arena, c->experiment_count, r->in.error);
   for (size_t i = 0; i < c->experiment_count; i++) {
     scree_experiment_plan *e = &c->experiments[i];
     *e = (scree_experiment_plan){.plan = &c->plan.experiments.items[i]};
@@ -297,20 +289,18 @@ static scree_status check_answer(const reader *r, const scree_quantity *q) {
     return scree_fail_place(&r->in, &p->place,
                             "take is over the sensor's window: without at, from, until, curve");
   if (outline) return SCREE_OK;
-  scree_scene_file *file;
-  char name[96] = "?";
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
+  char name[96];
   enum { MOST_NAMES = 400 };
   const char *names[MOST_NAMES];
   size_t count = 0;
-  bool found = false;
   SCREE_TRY(read_scene(r, e, &file));
-  while (!found && count < MOST_NAMES &&
-         scree_scene_file_column(file, count, name, NULL, NULL) == SCREE_OK && *name) {
-    found = !strcmp(name, p->answer);
-    if (!(names[count++] = scree_arena_text(&r->c->arena, name))) break;
+  while (count < MOST_NAMES && scree_scene_file_column(file, count, name, NULL, NULL) == SCREE_OK &&
+         *name) {
+    if (!strcmp(name, p->answer)) return SCREE_OK;
+    if (!(names[count++] = scree_arena_text(&r->c->arena, name))) return fail_memory(r);
   }
-  scree_scene_file_free(file);
-  return found ? SCREE_OK : scree_fail_name(&r->in, &p->place, "column", p->answer, names, count);
+  return scree_fail_name(&r->in, &p->place, "column", p->answer, names, count);
 }
 
 /* Its lines in the study of its experiment. */
@@ -342,12 +332,7 @@ static scree_status add_answers(const reader *r, scree_quantity *q) {
   e->answer_count += q->answer_count;
   bool good = !ferror(stream);
   good = scree_memory_close(stream) && good;
-  e->answers = NULL;
-  if (good) {
-    char *kept = scree_arena_take(&r->c->arena, size + 1, 1);
-    if (kept) memcpy(kept, text, size + 1);
-    e->answers = kept;
-  }
+  e->answers = good ? scree_arena_text(&r->c->arena, text) : NULL;
   free(text);
   return e->answers ? SCREE_OK : fail_memory(r);
 }
@@ -373,8 +358,7 @@ static scree_status read_quantities(const reader *r) {
   const scree_plan_calibration *p = &c->plan;
   const scree_plan_quantity *sought = p->minimise ? p->minimise : p->maximise;
   size_t most = p->targets.count + p->predict.count + p->limits.count + 1;
-  c->quantities = scree_arena_take(&c->arena, most, sizeof *c->quantities);
-  if (!c->quantities) return fail_memory(r);
+  SCREE_TRY_TAKE(c->quantities, &c->arena, most, r->in.error);
   list_quantities(c, SCREE_QUANTITY_SOUGHT, sought, sought != NULL);
   list_quantities(c, SCREE_QUANTITY_LIMIT, p->limits.items, p->limits.count);
   list_quantities(c, SCREE_QUANTITY_TARGET, p->targets.items, p->targets.count);
@@ -464,22 +448,17 @@ static scree_status read_all(scree_calibration *c, scree_error *error) {
 
 scree_status scree_calibration_read(const char *path, scree_calibration **calibration,
                                     scree_error *error) {
-  scree_calibration *c = scree_alloc_zero(1, sizeof *c);
-  if (!c) return scree_fail_memory(error, sizeof *c, "a calibration");
-  char *bytes = NULL;
-  scree_status status = scree_file_read(path, LARGEST_FILE, &bytes, &c->text_size, error);
-  if (status == SCREE_OK) {
-    c->text = scree_arena_text(&c->arena, bytes);
-    c->path = scree_arena_text(&c->arena, path);
-    if (!c->text || !c->path) status = scree_fail_memory(error, c->text_size, path);
-  }
-  scree_free(bytes);
-  if (status == SCREE_OK) status = read_all(c, error);
-  if (status == SCREE_OK)
-    *calibration = c;
-  else
-    scree_calibration_free(c);
-  return status;
+  SCREE_CLEANUP(scree_calibration_drop) scree_calibration *c = NULL;
+  SCREE_CLEANUP(scree_free_at) char *bytes = NULL;
+  SCREE_TRY_ALLOC_ZERO(c, 1, error);
+  SCREE_TRY(scree_file_read(path, LARGEST_FILE, &bytes, &c->text_size, error));
+  c->text = scree_arena_text(&c->arena, bytes);
+  c->path = scree_arena_text(&c->arena, path);
+  if (!c->text || !c->path) return scree_fail_memory(error, c->text_size, path);
+  SCREE_TRY(read_all(c, error));
+  *calibration = c;
+  c = NULL;
+  return SCREE_OK;
 }
 
 void scree_calibration_free(scree_calibration *c) {
@@ -525,19 +504,15 @@ static void thin_curve(scree_quantity *q, double *x, double *y, size_t count) {
 scree_status scree_quantity_read_curve(scree_calibration *c, scree_quantity *q, const char *path,
                                        scree_error *error) {
   bool outline = !strcmp(q->plan->answer, "outline");
-  scree_curve_file read;
+  SCREE_CLEANUP(scree_curve_file_free) scree_curve_file read = {0};
+  double *x, *y;
   SCREE_TRY(scree_curve_file_read(path, &read, error));
-  scree_status status = scree_curve_file_convert(&read, 0, outline ? "m" : "s", 1, path, error);
-  if (status == SCREE_OK && outline)
-    status = scree_curve_file_convert(&read, 1, "m", 1, path, error);
-  double *x = scree_arena_take(&c->arena, read.count, sizeof *x);
-  double *y = scree_arena_take(&c->arena, read.count, sizeof *y);
-  if (status == SCREE_OK && (!x || !y)) status = scree_fail_memory(error, read.count, path);
-  if (status == SCREE_OK) {
-    memcpy(x, read.x, read.count * sizeof *x);
-    memcpy(y, read.y, read.count * sizeof *y);
-    thin_curve(q, x, y, read.count);
-  }
-  scree_curve_file_free(&read);
-  return status;
+  SCREE_TRY(scree_curve_file_convert(&read, 0, outline ? "m" : "s", 1, path, error));
+  if (outline) SCREE_TRY(scree_curve_file_convert(&read, 1, "m", 1, path, error));
+  SCREE_TRY_TAKE(x, &c->arena, read.count, error);
+  SCREE_TRY_TAKE(y, &c->arena, read.count, error);
+  memcpy(x, read.x, read.count * sizeof *x);
+  memcpy(y, read.y, read.count * sizeof *y);
+  thin_curve(q, x, y, read.count);
+  return SCREE_OK;
 }

@@ -125,9 +125,8 @@ static void judge(analysis *a, size_t k, scree_parameter_result *out) {
 static scree_status describe_parameters(analysis *a) {
   const scree_calibration *c = a->c;
   size_t d = c->parameter_count, n = a->r->sample_count;
-  a->r->parameters = scree_arena_take(&a->arena, d, sizeof *a->r->parameters);
-  a->r->samples = scree_arena_take(&a->arena, n * d + 1, sizeof *a->r->samples);
-  if (!a->r->parameters || !a->r->samples) return fail_memory(a);
+  SCREE_TRY_TAKE(a->r->parameters, &a->arena, d, a->error);
+  SCREE_TRY_TAKE(a->r->samples, &a->arena, n * d + 1, a->error);
   a->r->parameter_count = d;
   for (size_t k = 0; k < d; k++) {
     const scree_plan_parameter *p = &c->parameters[k];
@@ -218,12 +217,8 @@ static void find_ends(const analysis *a, const pair *pairs, scree_trade *trade) 
 
 static scree_status find_trades(analysis *a) {
   size_t d = a->c->parameter_count, n = a->r->sample_count;
-  a->r->trades = scree_arena_take(&a->arena, d * d, sizeof *a->r->trades);
-  pair *pairs = scree_alloc(n, sizeof *pairs);
-  if (!a->r->trades || !pairs) {
-    scree_free(pairs);
-    return fail_memory(a);
-  }
+  SCREE_TRY_TAKE(a->r->trades, &a->arena, d * d, a->error);
+  SCREE_SCRATCH(pair, pairs, n, a->error);
   for (size_t i = 0; i < d; i++)
     for (size_t j = i + 1; j < d; j++) {
       scree_trade trade = {.a = i, .b = j};
@@ -237,7 +232,6 @@ static scree_status find_trades(analysis *a) {
       find_ends(a, pairs, &trade);
       a->r->trades[a->r->trade_count++] = trade;
     }
-  scree_free(pairs);
   return SCREE_OK;
 }
 
@@ -288,12 +282,9 @@ static scree_status describe_curve(analysis *a, size_t quantity, draws *d,
   const scree_quantity *q = &a->c->quantities[quantity];
   const scree_curve_basis *b = &a->model.bases[quantity];
   size_t n = a->r->sample_count, points = q->answer_count, outside = 0;
-  double *scores = scree_alloc(n * b->component_count, sizeof *scores), left = 0;
-  double *room = scree_arena_take(&a->arena, 5 * points, sizeof *room);
-  if (!scores || !room) {
-    scree_free(scores);
-    return fail_memory(a);
-  }
+  double *room, left = 0;
+  SCREE_SCRATCH(double, scores, n * b->component_count, a->error);
+  SCREE_TRY_TAKE(room, &a->arena, 5 * points, a->error);
   out->point_count = points;
   out->x = memcpy(room, q->x, points * sizeof *room);
   out->y = memcpy(room + points, q->y, points * sizeof *room);
@@ -323,7 +314,6 @@ static scree_status describe_curve(analysis *a, size_t quantity, draws *d,
       known += scree_curve_score(b, k, q->y) * b->basis[k * points + p];
     left += (q->y[p] - known) * (q->y[p] - known);
   }
-  scree_free(scores);
   out->unexplained = sqrt(left / (double)points);
   out->inside = (double)outside <= 2 * (1 - a->r->confidence) * (double)points;
   return SCREE_OK;
@@ -400,18 +390,12 @@ static scree_status describe_answer(analysis *a, size_t quantity, draws *d) {
 
 static scree_status describe_answers(analysis *a) {
   size_t n = a->r->sample_count + 1;
-  draws d = {scree_alloc(n, sizeof(double)), scree_alloc(n, sizeof(double)),
-             scree_alloc(n, sizeof(double))};
+  SCREE_SCRATCH(double, room, 3 * n, a->error);
+  draws d = {room, room + n, room + 2 * n};
   a->r->answer_count = a->c->quantity_count;
-  a->r->answers = scree_arena_take(&a->arena, a->c->quantity_count, sizeof *a->r->answers);
-  scree_status status =
-      d.mean && d.single && d.measured && a->r->answers ? SCREE_OK : fail_memory(a);
-  for (size_t q = 0; status == SCREE_OK && q < a->c->quantity_count; q++)
-    status = describe_answer(a, q, &d);
-  scree_free(d.mean);
-  scree_free(d.single);
-  scree_free(d.measured);
-  return status;
+  SCREE_TRY_TAKE(a->r->answers, &a->arena, a->c->quantity_count, a->error);
+  for (size_t q = 0; q < a->c->quantity_count; q++) SCREE_TRY(describe_answer(a, q, &d));
+  return SCREE_OK;
 }
 
 /* ---- advice ---- */
@@ -444,23 +428,21 @@ static scree_status advise(analysis *a, size_t quantity, const double *thinned, 
                            const double *now) {
   static const size_t repeats[] = {16, 8, 4, 2, 1};
   size_t d = a->c->parameter_count;
-  scree_advice best = {.narrowed = scree_arena_take(&a->arena, d, sizeof(double))};
-  scree_advice tried = {.narrowed = scree_arena_take(&a->arena, d, sizeof(double))};
-  if (!best.narrowed || !tried.narrowed) return fail_memory(a);
-  scree_status status = expect(a, quantity, repeats[0], thinned, count, now, &best);
+  scree_advice best = {0}, tried = {0};
+  SCREE_TRY_TAKE(best.narrowed, &a->arena, d, a->error);
+  SCREE_TRY_TAKE(tried.narrowed, &a->arena, d, a->error);
+  SCREE_TRY(expect(a, quantity, repeats[0], thinned, count, now, &best));
   double limit = 1.1 * mean_of(best.narrowed, d);
-  for (size_t i = 1; status == SCREE_OK && i < sizeof repeats / sizeof *repeats; i++) {
-    status = expect(a, quantity, repeats[i], thinned, count, now, &tried);
-    if (status != SCREE_OK || tried.identified < best.identified ||
-        mean_of(tried.narrowed, d) > limit)
-      break;
+  for (size_t i = 1; i < sizeof repeats / sizeof *repeats; i++) {
+    SCREE_TRY(expect(a, quantity, repeats[i], thinned, count, now, &tried));
+    if (tried.identified < best.identified || mean_of(tried.narrowed, d) > limit) break;
     scree_advice swap = best;
     best = tried;
     tried = swap;
   }
   best.name = a->r->answers[quantity].name;
   a->r->advice[a->r->advice_count++] = best;
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status advise_all(analysis *a) {
@@ -468,19 +450,18 @@ static scree_status advise_all(analysis *a) {
   size_t d = c->parameter_count, n = a->r->sample_count,
          count = n < MOST_ADVISED ? n : MOST_ADVISED;
   double now[SCREE_MOST_PARAMETERS] = {0};
-  double *thinned = scree_alloc(count * d, sizeof *thinned);
-  a->r->advice = scree_arena_take(&a->arena, c->quantity_count, sizeof *a->r->advice);
-  scree_status status = thinned && a->r->advice ? SCREE_OK : fail_memory(a);
-  for (size_t i = 0; status == SCREE_OK && i < count; i++)
+  SCREE_SCRATCH(double, thinned, count *d, a->error);
+  SCREE_TRY_TAKE(a->r->advice, &a->arena, c->quantity_count, a->error);
+  for (size_t i = 0; i < count; i++)
     memcpy(thinned + i * d, a->samples + i * n / count * d, d * sizeof *thinned);
-  for (size_t k = 0; status == SCREE_OK && k < d; k++) {
+  for (size_t k = 0; k < d; k++) {
     for (size_t i = 0; i < count; i++) a->column[i] = thinned[i * d + k];
     now[k] = summarise(a->column, count, a->r->confidence).sd;
   }
-  for (size_t q = 0; status == SCREE_OK && q < c->quantity_count; q++)
-    if (c->quantities[q].kind == SCREE_QUANTITY_TARGET) status = advise(a, q, thinned, count, now);
-  scree_free(thinned);
-  for (size_t i = 1; status == SCREE_OK && i < a->r->advice_count; i++) /* the best first */
+  for (size_t q = 0; q < c->quantity_count; q++)
+    if (c->quantities[q].kind == SCREE_QUANTITY_TARGET)
+      SCREE_TRY(advise(a, q, thinned, count, now));
+  for (size_t i = 1; i < a->r->advice_count; i++) /* the best first */
     for (size_t j = i;
          j > 0 && mean_of(a->r->advice[j].narrowed, d) < mean_of(a->r->advice[j - 1].narrowed, d);
          j--) {
@@ -488,7 +469,7 @@ static scree_status advise_all(analysis *a) {
       a->r->advice[j] = a->r->advice[j - 1];
       a->r->advice[j - 1] = swap;
     }
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- history ---- */
@@ -496,27 +477,21 @@ static scree_status advise_all(analysis *a) {
 /* What was known after some rounds: their number, then the widths. */
 static scree_status look_back(analysis *a, size_t rounds, double *row) {
   size_t d = a->c->parameter_count, count;
-  scree_calibration_model model;
-  double *samples = NULL, *scratch = NULL;
+  SCREE_CLEANUP(scree_calibration_model_free) scree_calibration_model model = {0};
+  SCREE_CLEANUP(scree_free_at) double *samples = NULL;
   SCREE_TRY(scree_calibration_fit(a->c, &a->gathered, rounds, &model, a->error));
-  scree_status status = scree_calibration_sample(a->c, &model.model, 0, &samples, &count, a->error);
-  if (status == SCREE_OK && !(scratch = scree_alloc(count, sizeof *scratch)))
-    status = fail_memory(a);
-  row[0] = 0;
+  SCREE_TRY(scree_calibration_sample(a->c, &model.model, 0, &samples, &count, a->error));
+  SCREE_SCRATCH(double, scratch, count, a->error);
   for (size_t i = 0; i < a->c->run_count; i++) row[0] += a->c->runs[i].round < rounds;
-  for (size_t k = 0; status == SCREE_OK && k < d; k++)
+  for (size_t k = 0; k < d; k++)
     row[1 + k] = narrowed(samples, count, d, k, a->r->confidence, scratch);
-  scree_free(samples);
-  scree_free(scratch);
-  scree_calibration_model_free(a->c, &model);
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status describe_history(analysis *a) {
   size_t rounds = scree_rounds_fitted(a->c), d = a->c->parameter_count;
   size_t steps = rounds < MOST_HISTORY ? rounds : MOST_HISTORY;
-  a->r->history = scree_arena_take(&a->arena, steps * (1 + d), sizeof *a->r->history);
-  if (!a->r->history) return fail_memory(a);
+  SCREE_TRY_TAKE(a->r->history, &a->arena, steps * (1 + d), a->error);
   for (size_t i = 0; i < steps; i++) {
     size_t until = steps > 1 ? 1 + i * (rounds - 1) / (steps - 1) : 1;
     scree_status status = look_back(a, until, a->r->history + a->r->history_count * (1 + d));
@@ -529,44 +504,35 @@ static scree_status describe_history(analysis *a) {
 /* ---- the whole ---- */
 
 static scree_status start(analysis *a, scree_calibration *c) {
-  scree_status status = scree_rounds_read(c, a->error);
-  if (status == SCREE_OK) status = scree_gather(c, &a->gathered, a->error);
-  if (status == SCREE_OK && c->round_count == 0)
-    status = scree_fail(a->error, SCREE_BAD_ARGUMENT, "%s: no run has been made yet", c->folder);
-  if (status == SCREE_OK)
-    status = scree_calibration_fit(c, &a->gathered, scree_rounds_fitted(c), &a->model, a->error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_rounds_read(c, a->error));
+  SCREE_TRY(scree_gather(c, &a->gathered, a->error));
+  if (c->round_count == 0)
+    return scree_fail(a->error, SCREE_BAD_ARGUMENT, "%s: no run has been made yet", c->folder);
+  SCREE_TRY(scree_calibration_fit(c, &a->gathered, scree_rounds_fitted(c), &a->model, a->error));
   const char *end;
   scree_calibration_result *r = a->r;
-  status = scree_rounds_end(c, &end, a->error);
-  r->progress = (scree_calibration_progress){.rounds = c->round_count,
-                                             .run_count = c->run_count,
-                                             .done = a->gathered.done,
-                                             .failed = a->gathered.failed,
-                                             .budget = c->plan.budget->runs,
-                                             .seconds = a->gathered.seconds,
-                                             .planning_seconds = scree_rounds_seconds(c)};
+  SCREE_TRY(scree_rounds_end(c, &end, a->error));
+  r->progress = scree_calibration_stands(c, &a->gathered);
   r->title = scree_arena_text(&a->arena, c->plan.title ? c->plan.title : c->path);
   r->version = scree_version();
-  r->stopped =
-      status == SCREE_OK && *end && a->gathered.open == 0 ? scree_arena_text(&a->arena, end) : NULL;
+  r->stopped = *end && a->gathered.open == 0 ? scree_arena_text(&a->arena, end) : NULL;
   r->is_search = scree_calibration_is_search(c);
   r->maximise = c->plan.maximise != NULL;
   r->confidence = c->plan.confidence;
   r->seed = c->plan.seed;
   r->failure_count = a->gathered.failure_count;
-  r->failures = scree_arena_take(&a->arena, r->failure_count + 1, sizeof *r->failures);
-  if (!r->title || !r->failures) return fail_memory(a);
+  SCREE_TRY_TAKE(r->failures, &a->arena, r->failure_count + 1, a->error);
+  if (!r->title) return fail_memory(a);
   for (size_t i = 0; i < r->failure_count; i++)
     if (!(r->failures[i] = scree_arena_text(&a->arena, a->gathered.failures[i])))
       return fail_memory(a);
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status calibrate(analysis *a) {
   SCREE_TRY(scree_calibration_sample(a->c, &a->model.model, 1, &a->samples, &a->r->sample_count,
                                      a->error));
-  if (!(a->column = scree_alloc(a->r->sample_count, sizeof *a->column))) return fail_memory(a);
+  SCREE_TRY_ALLOC(a->column, a->r->sample_count, a->error);
   a->unanswered = find_unanswered(a);
   SCREE_TRY(describe_parameters(a));
   SCREE_TRY(find_trades(a));
@@ -581,28 +547,29 @@ static scree_status search(analysis *a) {
   return scree_search_describe(a->c, &a->model, &a->gathered, &a->arena, a->r, a->error);
 }
 
+static void free_analysis(analysis *a) {
+  scree_calibration_model_free(&a->model);
+  scree_answers_free(&a->gathered);
+  scree_free(a->samples);
+  scree_free(a->column);
+  scree_arena_free(&a->arena);
+}
+
 scree_status scree_calibration_analyse(scree_calibration *calibration,
                                        scree_calibration_result *result, scree_error *error) {
   scree_calibration_result made = {0};
-  analysis a = {.c = calibration, .r = &made, .error = error};
+  SCREE_CLEANUP(free_analysis) analysis a = {.c = calibration, .r = &made, .error = error};
   if (!calibration->folder)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "the calibration is not opened");
-  scree_status status = start(&a, calibration);
-  if (status == SCREE_OK) status = made.is_search ? search(&a) : calibrate(&a);
-  scree_calibration_model_free(calibration, &a.model);
-  scree_answers_free(&a.gathered);
-  scree_free(a.samples);
-  scree_free(a.column);
-  scree_arena *kept = status == SCREE_OK ? scree_alloc(1, sizeof *kept) : NULL;
-  if (status == SCREE_OK && !kept) status = scree_fail_memory(error, sizeof *kept, "a result");
-  if (status == SCREE_OK) {
-    *kept = a.arena;
-    made.memory = kept;
-    *result = made;
-  } else {
-    scree_arena_free(&a.arena);
-  }
-  return status;
+  SCREE_TRY(start(&a, calibration));
+  SCREE_TRY(made.is_search ? search(&a) : calibrate(&a));
+  scree_arena *kept;
+  SCREE_TRY_ALLOC(kept, 1, error);
+  *kept = a.arena;
+  a.arena = (scree_arena){0};
+  made.memory = kept;
+  *result = made;
+  return SCREE_OK;
 }
 
 void scree_calibration_result_free(scree_calibration_result *result) {

@@ -18,53 +18,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-char *scree_calibration_path(const scree_calibration *c, const char *name) {
-  size_t size = strlen(c->folder) + strlen(name) + 2;
-  char *path = scree_alloc(size, 1);
-  if (path) snprintf(path, size, "%s/%s", c->folder, name);
-  return path;
-}
+/* A file of the folder, until the end of the block. */
+#define PATH(c, name) SCREE_PATH_IN((c)->folder, name)
 
 /* ---- opening ---- */
 
 static const char origin_mark[] = "# calibration of ";
 
-static scree_status write_text(const scree_calibration *c, const char *name, const char *text,
-                               size_t size, scree_error *error) {
-  char *path = scree_calibration_path(c, name), *old = NULL;
-  size_t old_size = 0;
-  if (!path) return scree_fail_memory(error, 0, "a path");
-  scree_status status = SCREE_OK;
-  bool same = scree_path_exists(path) &&
-              scree_file_read(path, 0, &old, &old_size, NULL) == SCREE_OK && old_size == size &&
-              !memcmp(old, text, size);
-  scree_free(old);
-  if (!same) {
-    scree_output output;
-    status = scree_output_open(path, true, &output, error);
-    if (status == SCREE_OK) {
-      fwrite(text, 1, size, output.stream);
-      status = scree_output_commit(&output, error);
-    }
-  }
-  scree_free(path);
-  return status;
-}
-
 /* The file's text, and where the original lies, beside which its scenes and curves are. */
 static scree_status keep_copy(const scree_calibration *c, scree_error *error) {
-  char full[4096], *text = NULL;
-  size_t size = 0;
+  char full[4096];
+  SCREE_CLEANUP(scree_free_at) char *text = NULL;
   if (!scree_path_full(c->path, full, sizeof full))
     return scree_fail(error, SCREE_IO, "%s: cannot be found", c->path);
-  FILE *stream = scree_memory_open(&text, &size);
-  if (!stream) return scree_fail_memory(error, 0, "a copy");
-  fprintf(stream, "%s%s\n%s", origin_mark, full, c->text);
-  scree_status status = scree_memory_close(stream)
-                            ? write_text(c, "calibrate.yaml", text, size, error)
-                            : scree_fail_memory(error, 0, "a copy");
-  free(text);
-  return status;
+  size_t size = sizeof origin_mark + strlen(full) + strlen(c->text) + 2;
+  SCREE_TRY_ALLOC(text, size, error);
+  snprintf(text, size, "%s%s\n%s", origin_mark, full, c->text);
+  return scree_study_keep_text(text, PATH(c, "calibrate.yaml"), error);
 }
 
 scree_status scree_calibration_open(scree_calibration *c, const char *folder, scree_error *error) {
@@ -72,34 +42,28 @@ scree_status scree_calibration_open(scree_calibration *c, const char *folder, sc
   if (!copy) return scree_fail_memory(error, strlen(folder), "a path");
   scree_free(c->folder);
   c->folder = copy;
-  char *rounds = scree_calibration_path(c, "rounds");
-  scree_status status =
-      rounds ? scree_folder_create(folder, error) : scree_fail_memory(error, 0, "a path");
-  if (status == SCREE_OK) status = scree_folder_create(rounds, error);
-  scree_free(rounds);
-  if (status == SCREE_OK) status = scree_rounds_read(c, error);
-  return status == SCREE_OK ? keep_copy(c, error) : status;
+  SCREE_TRY(scree_folder_create(folder, error));
+  SCREE_TRY(scree_folder_create(PATH(c, "rounds"), error));
+  SCREE_TRY(scree_rounds_read(c, error));
+  return keep_copy(c, error);
 }
 
 scree_status scree_calibration_open_folder(const char *folder, scree_calibration **calibration,
                                            scree_error *error) {
-  char path[4200], original[4096], *bytes;
+  char original[4096] = "";
+  const char *path = SCREE_PATH_IN(folder, "calibrate.yaml");
+  SCREE_CLEANUP(scree_free_at) char *bytes = NULL;
   size_t size;
-  snprintf(path, sizeof path, "%.4100s/calibrate.yaml", folder);
   if (!scree_path_exists(path))
     return scree_fail(error, SCREE_IO, "%s: is no folder of a calibration: no calibrate.yaml in it",
                       folder);
-  scree_status status = scree_file_read(path, 2 << 20, &bytes, &size, error);
-  if (status != SCREE_OK) return status;
-  original[0] = 0;
+  SCREE_TRY(scree_file_read(path, 2 << 20, &bytes, &size, error));
   if (!strncmp(bytes, origin_mark, sizeof origin_mark - 1))
     snprintf(original, sizeof original, "%.*s",
              (int)strcspn(bytes, "\n") - (int)sizeof origin_mark + 1,
              bytes + sizeof origin_mark - 1);
-  scree_free(bytes);
-  status = scree_calibration_read(original[0] ? original : path, calibration, error);
-  if (status != SCREE_OK) return status;
-  status = scree_calibration_open(*calibration, folder, error);
+  SCREE_TRY(scree_calibration_read(original[0] ? original : path, calibration, error));
+  scree_status status = scree_calibration_open(*calibration, folder, error);
   if (status != SCREE_OK) scree_calibration_free(*calibration);
   return status;
 }
@@ -111,11 +75,13 @@ static void mark_of(const scree_calibration *c, char mark[SCREE_CHECKSUM_TEXT]) 
   scree_checksum_text(scree_checksum_of(c->text, c->text_size), mark);
 }
 
-static char *round_path(const scree_calibration *c, size_t number) {
+static const char *round_path(const scree_calibration *c, size_t number,
+                              char path[SCREE_PATH_BYTES]) {
   char name[40];
   snprintf(name, sizeof name, "rounds/%04zu.yaml", number);
-  return scree_calibration_path(c, name);
+  return scree_path_put(path, c->folder, name);
 }
+#define ROUND_PATH(c, number) round_path(c, number, (char[SCREE_PATH_BYTES]){0})
 
 static scree_status refuse(const char *path, scree_error *error) {
   return scree_fail(error, SCREE_BAD_FILE,
@@ -175,40 +141,31 @@ static scree_status read_run(scree_calibration *c, const char *path, const scree
 }
 
 static scree_status read_round(scree_calibration *c, const char *path, scree_error *error) {
-  scree_yaml root;
+  SCREE_CLEANUP(scree_yaml_free) scree_yaml root = {0};
   char mark[SCREE_CHECKSUM_TEXT];
-  scree_status status = scree_yaml_read(path, &root, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_yaml_read(path, &root, error));
   bool mapping = root.kind == SCREE_YAML_MAPPING;
   const scree_yaml *runs = mapping ? scree_yaml_find(&root, "runs") : NULL;
-  if (!runs || runs->kind != SCREE_YAML_SEQUENCE)
-    status = refuse(path, error);
-  else
-    status = check_names(c, path, scree_yaml_find(&root, "parameters"), error);
-  for (size_t i = 0; status == SCREE_OK && i < runs->item_count; i++)
-    status = read_run(c, path, &runs->items[i], error);
-  const char *check = status == SCREE_OK ? text_of(&root, "check") : NULL;
+  c->checked = false;
+  if (!runs || runs->kind != SCREE_YAML_SEQUENCE) return refuse(path, error);
+  SCREE_TRY(check_names(c, path, scree_yaml_find(&root, "parameters"), error));
+  for (size_t i = 0; i < runs->item_count; i++)
+    SCREE_TRY(read_run(c, path, &runs->items[i], error));
+  const char *check = text_of(&root, "check");
   mark_of(c, mark);
   c->checked = check && !strcmp(check, mark);
-  scree_yaml_free(&root);
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_rounds_read(scree_calibration *c, scree_error *error) {
-  scree_status status = SCREE_OK;
   scree_arena_free(&c->run_arena);
   c->run_count = c->round_count = 0;
   c->checked = false;
-  while (status == SCREE_OK) {
-    char *path = round_path(c, c->round_count + 1);
-    if (!path) return scree_fail_memory(error, 0, "a path");
-    bool there = scree_path_exists(path);
-    if (there) status = read_round(c, path, error);
-    scree_free(path);
-    if (!there) break;
-    c->round_count++;
+  for (;; c->round_count++) {
+    const char *path = ROUND_PATH(c, c->round_count + 1);
+    if (!scree_path_exists(path)) return SCREE_OK;
+    SCREE_TRY(read_round(c, path, error));
   }
-  return status;
 }
 
 size_t scree_rounds_fitted(const scree_calibration *c) {
@@ -222,23 +179,10 @@ size_t scree_rounds_until(const scree_calibration *c, size_t experiment, size_t 
   return count;
 }
 
-static void put_text(FILE *stream, const char *text) {
-  putc('"', stream);
-  for (; *text; text++) {
-    if (*text == '"' || *text == '\\') putc('\\', stream);
-    putc(*text, stream);
-  }
-  putc('"', stream);
-}
-
 scree_status scree_rounds_add(scree_calibration *c, const scree_place_pick *picks, size_t count,
                               bool check, double seconds, scree_error *error) {
-  char *path = round_path(c, c->round_count + 1);
-  if (!path) return scree_fail_memory(error, 0, "a path");
   scree_output output;
-  scree_status status = scree_output_open(path, true, &output, error);
-  scree_free(path);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_output_open(ROUND_PATH(c, c->round_count + 1), true, &output, error));
   FILE *s = output.stream;
   fprintf(s, "seconds: %.3f\n", seconds);
   if (check) {
@@ -249,17 +193,17 @@ scree_status scree_rounds_add(scree_calibration *c, const scree_place_pick *pick
   fputs("parameters: [", s);
   for (size_t p = 0; p < c->parameter_count; p++) {
     fputs(p ? ", " : "", s);
-    put_text(s, c->parameters[p].place.name);
+    scree_yaml_put_text(c->parameters[p].place.name, s);
   }
   fputs("]\nruns:\n", s);
   for (size_t i = 0; i < count; i++) {
     fputs("  - {experiment: ", s);
-    put_text(s, c->experiments[picks[i].experiment].plan->place.name);
+    scree_yaml_put_text(c->experiments[picks[i].experiment].plan->place.name, s);
     fprintf(s, ", seed: %" PRIu64 ", values: [", c->plan.seed + c->run_count + i);
     for (size_t p = 0; p < c->parameter_count; p++) {
       const char *value = scree_parameter_text(&c->parameters[p], picks[i].x[p], &c->run_arena);
       fputs(p ? ", " : "", s);
-      put_text(s, value ? value : "");
+      scree_yaml_put_text(value ? value : "", s);
     }
     fputs("]}\n", s);
   }
@@ -272,48 +216,37 @@ scree_status scree_rounds_stop(scree_calibration *c, const char *reason, double 
                                scree_error *error) {
   char text[400], mark[SCREE_CHECKSUM_TEXT];
   mark_of(c, mark);
-  int size = snprintf(text, sizeof text, "seconds: %.3f\nfile: \"%s\"\nreason: \"%s\"\n", seconds,
-                      mark, reason);
-  return write_text(c, "rounds/end.yaml", text, (size_t)size, error);
+  snprintf(text, sizeof text, "seconds: %.3f\nfile: \"%s\"\nreason: \"%s\"\n", seconds, mark,
+           reason);
+  return scree_study_keep_text(text, PATH(c, "rounds/end.yaml"), error);
 }
 
 scree_status scree_rounds_end(scree_calibration *c, const char **reason, scree_error *error) {
-  char *path = scree_calibration_path(c, "rounds/end.yaml"), mark[SCREE_CHECKSUM_TEXT];
-  scree_yaml root;
+  const char *path = PATH(c, "rounds/end.yaml");
+  char mark[SCREE_CHECKSUM_TEXT];
+  SCREE_CLEANUP(scree_yaml_free) scree_yaml root = {0};
   *reason = "";
-  if (!path) return scree_fail_memory(error, 0, "a path");
-  bool there = scree_path_exists(path);
-  scree_status status = there ? scree_yaml_read(path, &root, error) : SCREE_OK;
-  scree_free(path);
-  if (!there || status != SCREE_OK) return status;
+  if (!scree_path_exists(path)) return SCREE_OK;
+  SCREE_TRY(scree_yaml_read(path, &root, error));
   mark_of(c, mark);
   const char *file = root.kind == SCREE_YAML_MAPPING ? text_of(&root, "file") : NULL;
   const char *said = file ? text_of(&root, "reason") : NULL;
   if (said && !strcmp(file, mark)) *reason = scree_arena_text(&c->run_arena, said);
-  scree_yaml_free(&root);
   return *reason ? SCREE_OK : scree_fail_memory(error, 0, "an end");
 }
 
-static double seconds_in(const scree_calibration *c, const char *name) {
-  char *path = scree_calibration_path(c, name);
-  scree_yaml root;
+static double seconds_in(const char *path) {
+  SCREE_CLEANUP(scree_yaml_free) scree_yaml root = {0};
   double seconds = 0;
-  if (path && scree_path_exists(path) && scree_yaml_read(path, &root, NULL) == SCREE_OK) {
-    const char *text = root.kind == SCREE_YAML_MAPPING ? text_of(&root, "seconds") : NULL;
-    if (text) scree_number_read(text, &seconds);
-    scree_yaml_free(&root);
-  }
-  scree_free(path);
+  if (!scree_path_exists(path) || scree_yaml_read(path, &root, NULL) != SCREE_OK) return 0;
+  const char *text = root.kind == SCREE_YAML_MAPPING ? text_of(&root, "seconds") : NULL;
+  if (text) scree_number_read(text, &seconds);
   return seconds;
 }
 
 double scree_rounds_seconds(const scree_calibration *c) {
-  double sum = seconds_in(c, "rounds/end.yaml");
-  for (size_t i = 1; i <= c->round_count; i++) {
-    char name[40];
-    snprintf(name, sizeof name, "rounds/%04zu.yaml", i);
-    sum += seconds_in(c, name);
-  }
+  double sum = seconds_in(PATH(c, "rounds/end.yaml"));
+  for (size_t i = 1; i <= c->round_count; i++) sum += seconds_in(ROUND_PATH(c, i));
   return sum;
 }
 
@@ -329,20 +262,20 @@ static void put_word(const scree_calibration *c, FILE *stream, const char *word)
   char text[8192];
   if (here)
     snprintf(text, sizeof text, "%.*s%s%s", (int)(here - word), word, slash ? full : ".", here + 6);
-  put_text(stream, here ? text : word);
+  scree_yaml_put_text(here ? text : word, stream);
 }
 
 static void put_factor(const scree_calibration *c, FILE *s, size_t experiment, const char *key,
                        size_t parameter) {
   bool first = true;
   fputs("  ", s);
-  put_text(s, key);
+  scree_yaml_put_text(key, s);
   fputs(": [", s);
   for (size_t i = 0; i < c->run_count; i++) {
     if (c->runs[i].experiment != experiment) continue;
     fputs(first ? "" : ", ", s);
     if (parameter < c->parameter_count)
-      put_text(s, c->runs[i].values[parameter]);
+      scree_yaml_put_text(c->runs[i].values[parameter], s);
     else
       fprintf(s, "%" PRIu64, c->runs[i].seed);
     first = false;
@@ -365,7 +298,7 @@ static void put_parameter(const scree_calibration *c, FILE *s, size_t experiment
 static void put_study(const scree_calibration *c, size_t experiment, FILE *s) {
   const scree_experiment_plan *e = &c->experiments[experiment];
   fputs("name: ", s);
-  put_text(s, e->plan->place.name);
+  scree_yaml_put_text(e->plan->place.name, s);
   if (e->plan->command.count) {
     fputs("\nbase:\n  command: [", s);
     for (size_t i = 0; i < e->plan->command.count; i++) {
@@ -375,13 +308,13 @@ static void put_study(const scree_calibration *c, size_t experiment, FILE *s) {
     fputs("]\n", s);
   } else {
     fputs("\nbase:\n  scene: ", s);
-    put_text(s, e->scene_path);
+    scree_yaml_put_text(e->scene_path, s);
     putc('\n', s);
     for (size_t i = 0; e->plan->set && i < e->plan->set->item_count; i++) {
       fputs("  ", s);
-      put_text(s, e->plan->set->items[i].key);
+      scree_yaml_put_text(e->plan->set->items[i].key, s);
       fputs(": ", s);
-      put_text(s, e->plan->set->items[i].text);
+      scree_yaml_put_text(e->plan->set->items[i].text, s);
       putc('\n', s);
     }
   }
@@ -392,41 +325,30 @@ static void put_study(const scree_calibration *c, size_t experiment, FILE *s) {
 
 static scree_status write_study(const scree_calibration *c, size_t experiment, const char *folder,
                                 scree_error *error) {
-  char *text = NULL, name[200];
+  char *text = NULL;
   size_t size = 0;
   FILE *stream = scree_memory_open(&text, &size);
   if (!stream) return scree_fail_memory(error, 0, "a study");
   put_study(c, experiment, stream);
   scree_status status = scree_memory_close(stream) ? scree_folder_create(folder, error)
                                                    : scree_fail_memory(error, 0, "a study");
-  snprintf(name, sizeof name, "%.150s/study.yaml", c->experiments[experiment].plan->place.name);
-  if (status == SCREE_OK) status = write_text(c, name, text, size, error);
+  if (status == SCREE_OK)
+    status = scree_study_keep_text(text, SCREE_PATH_IN(folder, "study.yaml"), error);
   free(text);
   return status;
 }
 
 scree_status scree_rounds_study(const scree_calibration *c, size_t experiment, scree_study **study,
                                 scree_error *error) {
-  bool any = false;
+  const char *folder = PATH(c, c->experiments[experiment].plan->place.name);
+  SCREE_CLEANUP(scree_study_drop) scree_study *made = NULL;
   *study = NULL;
-  for (size_t i = 0; i < c->run_count; i++) any = any || c->runs[i].experiment == experiment;
-  if (!any) return SCREE_OK;
-  char *folder = scree_calibration_path(c, c->experiments[experiment].plan->place.name);
-  char *path = folder ? scree_alloc(strlen(folder) + 16, 1) : NULL;
-  scree_study *made = NULL;
-  scree_status status = path ? SCREE_OK : scree_fail_memory(error, 0, "a path");
-  if (status == SCREE_OK) status = write_study(c, experiment, folder, error);
-  if (status == SCREE_OK) {
-    snprintf(path, strlen(folder) + 16, "%s/study.yaml", folder);
-    status = scree_study_read(path, &made, error);
-  }
-  if (status == SCREE_OK) status = scree_study_open(made, folder, error);
-  if (status == SCREE_OK) status = scree_study_prepare(made, NULL, NULL, error);
-  scree_free(folder);
-  scree_free(path);
-  if (status == SCREE_OK)
-    *study = made;
-  else
-    scree_study_free(made);
-  return status;
+  if (!scree_rounds_until(c, experiment, SIZE_MAX)) return SCREE_OK;
+  SCREE_TRY(write_study(c, experiment, folder, error));
+  SCREE_TRY(scree_study_read(SCREE_PATH_IN(folder, "study.yaml"), &made, error));
+  SCREE_TRY(scree_study_open(made, folder, error));
+  SCREE_TRY(scree_study_prepare(made, NULL, NULL, error));
+  *study = made;
+  made = NULL;
+  return SCREE_OK;
 }

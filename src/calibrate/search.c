@@ -103,14 +103,19 @@ typedef struct field {
   double *x, *mean, *allowed, *covariance, *noise;
 } field;
 
+static void free_field(field *f) {
+  scree_free(f->x);
+  scree_free(f->mean);
+  scree_free(f->covariance);
+}
+
 static scree_status make_field(const scree_calibration *c, const scree_calibration_model *m,
                                const double *best, field *f, scree_error *error) {
   size_t d = c->parameter_count;
   const scree_gp *gp = response_of(m, sought(c))->gp;
-  f->x = scree_alloc(CANDIDATES * d, sizeof *f->x);
-  f->mean = scree_alloc(3 * CANDIDATES, sizeof *f->mean);
-  f->covariance = scree_alloc(CANDIDATES * CANDIDATES, sizeof *f->covariance);
-  if (!f->x || !f->mean || !f->covariance) return scree_fail_memory(error, 0, "candidates");
+  SCREE_TRY_ALLOC(f->x, CANDIDATES * d, error);
+  SCREE_TRY_ALLOC(f->mean, 3 * CANDIDATES, error);
+  SCREE_TRY_ALLOC(f->covariance, CANDIDATES * CANDIDATES, error);
   f->allowed = f->mean + CANDIDATES;
   f->noise = f->allowed + CANDIDATES;
   list_candidates(c, best, f->x);
@@ -153,14 +158,14 @@ scree_status scree_search_next(const scree_calibration *c, const scree_calibrati
                                double *left, scree_error *error) {
   size_t d = c->parameter_count, made = 0;
   const double *place = g->x[0];
-  field f = {0};
+  SCREE_CLEANUP(free_field) field f = {0};
   double best = find_best(c, m, g, &place), low = INFINITY, high = -INFINITY, first = 0;
-  scree_status status = make_field(c, m, place, &f, error);
-  for (size_t i = 0; status == SCREE_OK && i < CANDIDATES; i++) {
+  SCREE_TRY(make_field(c, m, place, &f, error));
+  for (size_t i = 0; i < CANDIDATES; i++) {
     low = fmin(low, f.mean[i]);
     high = fmax(high, f.mean[i]);
   }
-  while (status == SCREE_OK && made < count) {
+  while (made < count) {
     double gain;
     size_t chosen = take_best(&f, best, &gain);
     if (made == 0) first = gain;
@@ -170,10 +175,7 @@ scree_status scree_search_next(const scree_calibration *c, const scree_calibrati
     }
   }
   *left = first > settled_gain * (high - low) ? 1 : 0;
-  scree_free(f.x);
-  scree_free(f.mean);
-  scree_free(f.covariance);
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- what it says ---- */

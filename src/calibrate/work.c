@@ -43,16 +43,13 @@ scree_status scree_calibration_sample(const scree_calibration *c, const scree_mo
                       .thin = effort ? 10 : 20,
                       .seed = c->plan.seed};
   *count = scree_ensemble_count(&e);
-  *samples = scree_alloc(*count * d, sizeof **samples);
-  if (!*samples) return scree_fail_memory(error, 0, "samples");
-  scree_status status = scree_ensemble_sample(&e, *samples, error);
-  for (size_t i = 0; status == SCREE_OK && i < *count * d; i++)
-    (*samples)[i] = scree_parameter_snap(&c->parameters[i % d], (*samples)[i]);
-  if (status != SCREE_OK) {
-    scree_free(*samples);
-    *samples = NULL;
-  }
-  return status;
+  SCREE_SCRATCH(double, made, *count *d, error);
+  SCREE_TRY(scree_ensemble_sample(&e, made, error));
+  for (size_t i = 0; i < *count * d; i++)
+    made[i] = scree_parameter_snap(&c->parameters[i % d], made[i]);
+  *samples = made;
+  made = NULL;
+  return SCREE_OK;
 }
 
 /* ---- planning ---- */
@@ -60,10 +57,9 @@ scree_status scree_calibration_sample(const scree_calibration *c, const scree_mo
 /* Points of Sobol's sequence, every second one twice: the replicates tell the scatter. */
 static scree_status plan_start(scree_calibration *c, scree_error *error) {
   size_t d = c->parameter_count, count = 0;
-  scree_place_pick *picks = scree_alloc(SCREE_GP_MOST_PLACES * 2, sizeof *picks);
-  double *unit = scree_alloc(SCREE_GP_MOST_PLACES * d, sizeof *unit);
-  scree_status status = picks && unit ? SCREE_OK : scree_fail_memory(error, 0, "the first runs");
-  for (size_t e = 0; status == SCREE_OK && e < c->experiment_count; e++) {
+  SCREE_SCRATCH(scree_place_pick, picks, SCREE_GP_MOST_PLACES * 2, error);
+  SCREE_SCRATCH(double, unit, SCREE_GP_MOST_PLACES *d, error);
+  for (size_t e = 0; e < c->experiment_count; e++) {
     size_t points = scree_calibration_start(c, e);
     scree_design_sobol(c->plan.seed + e, points, d, unit);
     for (size_t i = 0; i < points; i++)
@@ -73,17 +69,14 @@ static scree_status plan_start(scree_calibration *c, scree_error *error) {
         count++;
       }
   }
-  if (status == SCREE_OK) status = scree_rounds_add(c, picks, count, false, 0, error);
-  scree_free(picks);
-  scree_free(unit);
-  return status;
+  return scree_rounds_add(c, picks, count, false, 0, error);
 }
 
 static scree_status ask(const scree_calibration *c, const scree_calibration_model *m,
                         const scree_answers *g, size_t count, scree_place_pick *picks, double *left,
                         scree_error *error) {
   size_t d = c->parameter_count, sample_count;
-  double *samples;
+  SCREE_CLEANUP(scree_free_at) double *samples = NULL;
   SCREE_TRY(scree_calibration_sample(c, &m->model, 0, &samples, &sample_count, error));
   if (sample_count > REFERENCE) { /* those of the last steps, which have forgotten the start */
     memmove(samples, samples + (sample_count - REFERENCE) * d, REFERENCE * d * sizeof *samples);
@@ -95,9 +88,7 @@ static scree_status ask(const scree_calibration *c, const scree_calibration_mode
                            .places = (const double *const *)g->x,
                            .place_counts = g->run_counts,
                            .costs = g->costs};
-  scree_status status = scree_model_next(&m->model, &q, count, picks, left, error);
-  scree_free(samples);
-  return status;
+  return scree_model_next(&m->model, &q, count, picks, left, error);
 }
 
 /* The coordinate of the mean over the posterior, of a list of the value nearest to it. */
@@ -119,20 +110,14 @@ static double answer_at(const scree_calibration *c, size_t k, const double *samp
 static scree_status plan_check(scree_calibration *c, const scree_calibration_model *m, double begun,
                                scree_error *error) {
   size_t d = c->parameter_count, sample_count, count = CHECKS * c->experiment_count;
-  double *samples;
-  scree_status status = scree_calibration_sample(c, &m->model, 1, &samples, &sample_count, error);
-  if (status != SCREE_OK) return status;
-  scree_place_pick *picks = scree_alloc(count, sizeof *picks);
-  if (!picks) status = scree_fail_memory(error, 0, "the check at the answer");
-  for (size_t i = 0; status == SCREE_OK && i < count; i++) {
+  SCREE_CLEANUP(scree_free_at) double *samples = NULL;
+  SCREE_TRY(scree_calibration_sample(c, &m->model, 1, &samples, &sample_count, error));
+  SCREE_SCRATCH(scree_place_pick, picks, count, error);
+  for (size_t i = 0; i < count; i++) {
     picks[i].experiment = i / CHECKS;
     for (size_t k = 0; k < d; k++) picks[i].x[k] = answer_at(c, k, samples, sample_count);
   }
-  if (status == SCREE_OK)
-    status = scree_rounds_add(c, picks, count, true, scree_processor_time() - begun, error);
-  scree_free(picks);
-  scree_free(samples);
-  return status;
+  return scree_rounds_add(c, picks, count, true, scree_processor_time() - begun, error);
 }
 
 static scree_status plan_next(scree_calibration *c, const scree_answers *g, size_t batch,
@@ -145,29 +130,22 @@ static scree_status plan_next(scree_calibration *c, const scree_answers *g, size
        last = c->checked || scree_calibration_is_search(c);
   const char *reason = spent ? "the budget is spent" : NULL;
   if (spent && last) return scree_rounds_stop(c, reason, 0, error);
-  scree_calibration_model m;
+  SCREE_CLEANUP(scree_calibration_model_free) scree_calibration_model m = {0};
   scree_error why;
   scree_status status = scree_calibration_fit(c, g, scree_rounds_fitted(c), &m, &why);
   if (status != SCREE_OK)
     return scree_fail(error, status, "%.400s%s%.500s", why.message,
                       g->failure_count ? "; of those that failed: " : "",
                       g->failure_count ? g->failures[0] : "");
-  scree_place_pick *picks = scree_alloc(count + 1, sizeof *picks);
-  if (!picks)
-    status = scree_fail_memory(error, 0, "the next runs");
-  else if (scree_calibration_is_search(c))
-    status = scree_search_next(c, &m, g, count, picks, &left, error);
+  SCREE_SCRATCH(scree_place_pick, picks, count + 1, error);
+  if (scree_calibration_is_search(c))
+    SCREE_TRY(scree_search_next(c, &m, g, count, picks, &left, error));
   else if (!spent)
-    status = ask(c, &m, g, count, picks, &left, error);
+    SCREE_TRY(ask(c, &m, g, count, picks, &left, error));
   if (left < settled_share && !spent) reason = "more runs would tell no more";
   double seconds = scree_processor_time() - begun;
-  if (status == SCREE_OK && !reason)
-    status = scree_rounds_add(c, picks, count, false, seconds, error);
-  else if (status == SCREE_OK)
-    status = last ? scree_rounds_stop(c, reason, seconds, error) : plan_check(c, &m, begun, error);
-  scree_free(picks);
-  scree_calibration_model_free(c, &m);
-  return status;
+  if (!reason) return scree_rounds_add(c, picks, count, false, seconds, error);
+  return last ? scree_rounds_stop(c, reason, seconds, error) : plan_check(c, &m, begun, error);
 }
 
 /* Under the lease, if nobody else has it; what others have planned by now is left as it is. */
@@ -176,14 +154,11 @@ static scree_status plan(scree_calibration *c, size_t batch, const scree_study_o
   char worker[SCREE_LEASE_NAME];
   scree_lease lease;
   size_t rounds = c->round_count;
-  char *folder = scree_calibration_path(c, "rounds");
-  if (!folder) return scree_fail_memory(error, 0, "a path");
   scree_lease_default_worker(worker);
-  scree_status status = scree_lease_take(folder, "plan", o->lease_s, o->worker ? o->worker : worker,
-                                         taken, &lease, error);
-  scree_free(folder);
-  if (status != SCREE_OK || !*taken) return status;
-  status = scree_rounds_read(c, error);
+  SCREE_TRY(scree_lease_take(SCREE_PATH_IN(c->folder, "rounds"), "plan", o->lease_s,
+                             o->worker ? o->worker : worker, taken, &lease, error));
+  if (!*taken) return SCREE_OK;
+  scree_status status = scree_rounds_read(c, error);
   if (status == SCREE_OK && c->round_count == rounds)
     status = rounds == 0 ? plan_start(c, error) : plan_next(c, g, batch, error);
   scree_lease_release(&lease);
@@ -196,16 +171,13 @@ static scree_status plan(scree_calibration *c, size_t batch, const scree_study_o
 static scree_status work_on_runs(const scree_calibration *c, const scree_study_options *o,
                                  const scree_progress *progress, scree_error *error) {
   scree_study_options options = *o;
-  scree_status status = SCREE_OK;
   options.wait = false;
-  for (size_t e = 0; status == SCREE_OK && e < c->experiment_count; e++) {
-    scree_study *study;
-    status = scree_rounds_study(c, e, &study, error);
-    if (status == SCREE_OK && study)
-      status = scree_study_work(study, &options, progress, NULL, error);
-    scree_study_free(study);
+  for (size_t e = 0; e < c->experiment_count; e++) {
+    SCREE_CLEANUP(scree_study_drop) scree_study *study = NULL;
+    SCREE_TRY(scree_rounds_study(c, e, &study, error));
+    if (study) SCREE_TRY(scree_study_work(study, &options, progress, NULL, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status pause(const scree_study_options *o, const scree_progress *p,
@@ -226,37 +198,37 @@ scree_status scree_calibration_work(scree_calibration *c, size_t batch,
   if (batch < c->plan.batch) batch = c->plan.batch;
   for (;;) {
     const char *end;
-    scree_answers g = {0};
+    SCREE_CLEANUP(scree_answers_free) scree_answers g = {0};
     bool planned = false;
-    scree_status status = scree_rounds_read(c, error);
-    if (status == SCREE_OK) status = work_on_runs(c, o, progress, error);
-    if (status == SCREE_OK) status = scree_gather(c, &g, error);
-    if (status == SCREE_OK) status = scree_rounds_end(c, &end, error);
-    bool ended = status == SCREE_OK && g.open == 0 && *end;
-    if (status == SCREE_OK && !ended && g.open == 0)
-      status = plan(c, batch, o, &g, &planned, error);
-    bool others = g.open > 0 || !planned;
-    scree_answers_free(&g);
-    if (status != SCREE_OK || ended || (others && !o->wait)) return status;
-    if (others) status = pause(o, progress, error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(scree_rounds_read(c, error));
+    SCREE_TRY(work_on_runs(c, o, progress, error));
+    SCREE_TRY(scree_gather(c, &g, error));
+    SCREE_TRY(scree_rounds_end(c, &end, error));
+    if (g.open == 0 && *end) return SCREE_OK;
+    if (g.open == 0) SCREE_TRY(plan(c, batch, o, &g, &planned, error));
+    if (planned) continue;
+    if (!o->wait) return SCREE_OK;
+    SCREE_TRY(pause(o, progress, error));
   }
 }
 
 scree_status scree_calibration_look(scree_calibration *c, scree_calibration_progress *progress,
                                     scree_error *error) {
-  scree_answers g;
+  SCREE_CLEANUP(scree_answers_free) scree_answers g = {0};
   if (!c->folder) return scree_fail(error, SCREE_BAD_ARGUMENT, "the calibration is not opened");
-  scree_status status = scree_rounds_read(c, error);
-  if (status == SCREE_OK) status = scree_gather(c, &g, error);
-  if (status != SCREE_OK) return status;
-  *progress = (scree_calibration_progress){.rounds = c->round_count,
-                                           .run_count = c->run_count,
-                                           .done = g.done,
-                                           .failed = g.failed,
-                                           .budget = c->plan.budget->runs,
-                                           .seconds = g.seconds,
-                                           .planning_seconds = scree_rounds_seconds(c)};
-  scree_answers_free(&g);
+  SCREE_TRY(scree_rounds_read(c, error));
+  SCREE_TRY(scree_gather(c, &g, error));
+  *progress = scree_calibration_stands(c, &g);
   return SCREE_OK;
+}
+
+scree_calibration_progress scree_calibration_stands(const scree_calibration *c,
+                                                    const scree_answers *g) {
+  return (scree_calibration_progress){.rounds = c->round_count,
+                                      .run_count = c->run_count,
+                                      .done = g->done,
+                                      .failed = g->failed,
+                                      .budget = c->plan.budget->runs,
+                                      .seconds = g->seconds,
+                                      .planning_seconds = scree_rounds_seconds(c)};
 }

@@ -81,22 +81,13 @@ scree_status scree_scene_wind_belts(const scree_plan_belt *belt, scree_pieces *p
                                     const bool *solid, scree_error *error) {
   const vec3 axis = vec3_unit(vec3_load(belt->axis));
   const size_t count = pieces->mesh.triangle_count;
-  scree_adjacency adjacency;
-  scree_status status = scree_adjacency_build(&pieces->mesh, &adjacency, error);
-  if (status != SCREE_OK) return status;
-  uint32_t *strip_of = scree_alloc(count, sizeof *strip_of);
-  strip *strips = scree_alloc_zero(count, sizeof *strips);
-  if (strip_of && strips) {
-    for (uint32_t t = 0; t < count; t++) strip_of[t] = t;
-    join_strips(&pieces->mesh, &adjacency, axis, strip_of);
-    measure(&pieces->mesh, axis, strip_of, strips);
-  } else {
-    status = scree_fail_memory(error, count * sizeof *strips, "a belt");
-  }
-  for (size_t i = 0; status == SCREE_OK && i < pieces->count; i++)
-    status = wind(pieces, i, solid[i], strips, error);
-  scree_free(strip_of);
-  scree_free(strips);
-  scree_adjacency_free(&adjacency);
-  return status;
+  SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
+  SCREE_TRY(scree_adjacency_build(&pieces->mesh, &adjacency, error));
+  SCREE_SCRATCH(uint32_t, strip_of, count, error);
+  SCREE_SCRATCH_ZERO(strip, strips, count, error);
+  for (uint32_t t = 0; t < count; t++) strip_of[t] = t;
+  join_strips(&pieces->mesh, &adjacency, axis, strip_of);
+  measure(&pieces->mesh, axis, strip_of, strips);
+  for (size_t i = 0; i < pieces->count; i++) SCREE_TRY(wind(pieces, i, solid[i], strips, error));
+  return SCREE_OK;
 }

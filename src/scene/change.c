@@ -45,6 +45,8 @@ static const char *const changeable[] = {"title",
                                          "phases.*.*"};
 /* What was written so far lies at these intervals. */
 static const char *const fixed[] = {"output.frames", "output.series"};
+/* What may differ in the file of a run that goes on without changes. */
+static const char *const not_compared[] = {"title", "time", "stop", "output"};
 static const char offer[] =
     "a run may go on with other motions and surface velocities of geometry, friction and "
     "restitution, gravity, forces, inlets, outlets, sensors, times, stop and output";
@@ -75,7 +77,6 @@ typedef struct comparison {
   scree_scene *scene; /* whose arena has the texts */
   const char *folder; /* where its files lie */
   scree_scene_change_list list;
-  scree_status status;
   scree_error *error;
 } comparison;
 
@@ -95,29 +96,27 @@ static void print_node(FILE *stream, const scree_yaml *node) {
   putc(ends[1], stream);
 }
 
-static const char *keep_text(comparison *c, const char *text) {
-  char *kept = scree_arena_take(&c->scene->arena, strlen(text) + 1, 1);
-  if (kept)
-    memcpy(kept, text, strlen(text) + 1);
-  else
-    c->status = scree_fail_memory(c->error, strlen(text), "a change");
-  return kept;
+/* In the scene's arena. */
+static scree_status keep_text(const comparison *c, const char *text, const char **kept) {
+  char *copy;
+  if (!text) return SCREE_OK;
+  SCREE_TRY_TAKE(copy, &c->scene->arena, strlen(text) + 1, c->error);
+  *kept = memcpy(copy, text, strlen(text) + 1);
+  return SCREE_OK;
 }
 
 /* NULL where it is not there. */
-static const char *text_of(comparison *c, const scree_yaml *node) {
-  char *text = NULL;
+static scree_status text_of(const comparison *c, const scree_yaml *node, const char **text) {
+  char *printed = NULL;
   size_t size;
-  if (!node || c->status != SCREE_OK) return NULL;
-  FILE *stream = scree_memory_open(&text, &size);
+  if (!node) return SCREE_OK;
+  FILE *stream = scree_memory_open(&printed, &size);
   if (stream) print_node(stream, node);
-  const char *kept = NULL;
-  if (stream && scree_memory_close(stream))
-    kept = keep_text(c, text);
-  else
-    c->status = scree_fail_memory(c->error, 0, "a change");
-  free(text);
-  return kept;
+  bool good = stream && scree_memory_close(stream);
+  scree_status status =
+      good ? keep_text(c, printed, text) : scree_fail_memory(c->error, 0, "a change");
+  free(printed);
+  return status;
 }
 
 static bool are_alike(const scree_yaml *a, const scree_yaml *b) {
@@ -130,10 +129,11 @@ static bool are_alike(const scree_yaml *a, const scree_yaml *b) {
   return true;
 }
 
-static void compare(comparison *c, const scree_yaml *was, const scree_yaml *is, const char *path);
+static scree_status compare(comparison *c, const scree_yaml *was, const scree_yaml *is,
+                            const char *path);
 
-static void compare_items(comparison *c, const scree_yaml *was, const scree_yaml *is,
-                          const char *path) {
+static scree_status compare_items(comparison *c, const scree_yaml *was, const scree_yaml *is,
+                                  const char *path) {
   char below[PATH_BYTES];
   const char *point = *path ? "." : "";
   bool list = was->kind == SCREE_YAML_SEQUENCE;
@@ -143,39 +143,56 @@ static void compare_items(comparison *c, const scree_yaml *was, const scree_yaml
       snprintf(below, sizeof below, "%.200s%s%zu", path, point, i);
     else
       snprintf(below, sizeof below, "%.200s%s%.90s", path, point, item->key);
-    compare(c, item, list ? &is->items[i] : scree_yaml_find(is, item->key), below);
+    SCREE_TRY(compare(c, item, list ? &is->items[i] : scree_yaml_find(is, item->key), below));
   }
   for (size_t i = 0; !list && i < is->item_count; i++) {
     if (scree_yaml_find(was, is->items[i].key)) continue;
     snprintf(below, sizeof below, "%.200s%s%.90s", path, point, is->items[i].key);
-    compare(c, NULL, &is->items[i], below);
+    SCREE_TRY(compare(c, NULL, &is->items[i], below));
   }
+  return SCREE_OK;
 }
 
 /* Lists of groups are compared one by one, others as one value. */
-static void compare(comparison *c, const scree_yaml *was, const scree_yaml *is, const char *path) {
-  if (c->status != SCREE_OK || (was && is && are_alike(was, is))) return;
+static scree_status compare(comparison *c, const scree_yaml *was, const scree_yaml *is,
+                            const char *path) {
+  if (was && is && are_alike(was, is)) return SCREE_OK;
   bool both = was && is && was->kind == is->kind;
   bool groups = both && was->kind == SCREE_YAML_SEQUENCE && was->item_count == is->item_count &&
                 was->items[0].kind == SCREE_YAML_MAPPING;
-  if (groups || (both && was->kind == SCREE_YAML_MAPPING)) {
-    compare_items(c, was, is, path);
-    return;
-  }
-  scree_scene_change_entry change = {scree_world_time(c->scene->world), keep_text(c, path),
-                                     text_of(c, was), text_of(c, is)};
-  if (c->status == SCREE_OK && !SCREE_PUSH(&c->list, change))
-    c->status = scree_fail_memory(c->error, sizeof change, "changes");
+  if (groups || (both && was->kind == SCREE_YAML_MAPPING)) return compare_items(c, was, is, path);
+  scree_scene_change_entry change = {.time = scree_world_time(c->scene->world)};
+  SCREE_TRY(keep_text(c, path, &change.field));
+  SCREE_TRY(text_of(c, was, &change.was));
+  SCREE_TRY(text_of(c, is, &change.is));
+  return SCREE_PUSH(&c->list, change) ? SCREE_OK
+                                      : scree_fail_memory(c->error, sizeof change, "changes");
 }
 
 static scree_status compare_texts(comparison *c, const char *was, const char *is) {
-  scree_yaml trees[2] = {{.kind = SCREE_YAML_MAPPING}, {.kind = SCREE_YAML_MAPPING}};
-  c->status = scree_yaml_parse(was, strlen(was), c->scene->name, &trees[0], c->error);
-  if (c->status == SCREE_OK)
-    c->status = scree_yaml_parse(is, strlen(is), c->scene->name, &trees[1], c->error);
-  if (c->status == SCREE_OK) compare(c, &trees[0], &trees[1], "");
-  for (int i = 0; i < 2; i++) scree_yaml_free(&trees[i]);
-  return c->status;
+  SCREE_CLEANUP(scree_yaml_free) scree_yaml old = {.kind = SCREE_YAML_MAPPING};
+  SCREE_CLEANUP(scree_yaml_free) scree_yaml new = {.kind = SCREE_YAML_MAPPING};
+  SCREE_TRY(scree_yaml_parse(was, strlen(was), c->scene->name, &old, c->error));
+  SCREE_TRY(scree_yaml_parse(is, strlen(is), c->scene->name, &new, c->error));
+  return compare(c, &old, &new, "");
+}
+
+static void free_comparison(comparison *c) {
+  scree_free(c->list.items);
+}
+
+scree_status scree_scene_check_same(scree_scene *scene, const char *text, const char *path,
+                                    scree_error *error) {
+  SCREE_CLEANUP(free_comparison) comparison c = {.scene = scene, .error = error};
+  SCREE_TRY(compare_texts(&c, scene->text, text));
+  for (size_t i = 0; i < c.list.count; i++) {
+    const scree_scene_change_entry *d = &c.list.items[i];
+    if (IS_AMONG(d->field, not_compared) && !IS_AMONG(d->field, fixed)) continue;
+    return scree_fail(error, SCREE_BAD_ARGUMENT,
+                      "%s: is of another scene: %.150s is %.80s there and %.80s here", path,
+                      d->field, d->was ? d->was : "not given", d->is ? d->is : "not given");
+  }
+  return SCREE_OK;
 }
 
 static bool has_changed(const comparison *c, const char *group, const char *name) {
@@ -363,24 +380,21 @@ static void take_lists(scree_scene *was, scree_scene *is) {
 /* ---- what the world must know ---- */
 
 static scree_status set_pairs(scree_scene *scene, scree_error *error) {
-  scree_world *fresh; /* of the new materials */
-  scree_status status = scree_scene_make_world(scene, scene->time_step, &fresh, error);
-  if (status != SCREE_OK) return status;
+  SCREE_CLEANUP(scree_world_drop) scree_world *fresh = NULL; /* of the new materials */
+  SCREE_TRY(scree_scene_make_world(scene, scene->time_step, &fresh, error));
   size_t count = scene->plan.materials.count;
-  for (size_t a = 0; status == SCREE_OK && a < count; a++)
-    for (size_t b = a; status == SCREE_OK && b < count; b++) {
+  for (size_t a = 0; a < count; a++)
+    for (size_t b = a; b < count; b++) {
       scree_material_contact contact;
-      status = scree_world_get_pair(fresh, a, b, &contact, error);
-      if (status == SCREE_OK) status = scree_world_set_pair(scene->world, a, b, &contact, error);
+      SCREE_TRY(scree_world_get_pair(fresh, a, b, &contact, error));
+      SCREE_TRY(scree_world_set_pair(scene->world, a, b, &contact, error));
     }
-  scree_world_free(fresh);
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status set_geometry(const comparison *c, scree_scene *scene, scree_error *error) {
   static const double still[3] = {0, 0, 0};
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < scene->plan.geometry.count; i++) {
+  for (size_t i = 0; i < scene->plan.geometry.count; i++) {
     const scree_plan_geometry *g = &scene->plan.geometry.items[i];
     const scree_scene_geometry *made = &scene->geometry[i];
     if (!has_changed(c, "geometry", g->place.name)) continue;
@@ -388,12 +402,11 @@ static scree_status set_geometry(const comparison *c, scree_scene *scene, scree_
     double loop[3];
     scree_scene_belt_loop(g, loop);
     for (size_t w = made->first_wall; w < made->first_wall + made->wall_count; w++)
-      if (status == SCREE_OK)
-        status = scree_world_set_wall_surface(scene->world, w, surface, still, loop, error);
-    if (status == SCREE_OK) status = scree_scene_read_paths(scene, i, c->folder, error);
-    if (status == SCREE_OK) status = scree_scene_set_motions(scene, i, scene->world, error);
+      SCREE_TRY(scree_world_set_wall_surface(scene->world, w, surface, still, loop, error));
+    SCREE_TRY(scree_scene_read_paths(scene, i, c->folder, error));
+    SCREE_TRY(scree_scene_set_motions(scene, i, scene->world, error));
   }
-  return status == SCREE_OK ? scree_scene_lead_by_phase(scene, error) : status;
+  return scree_scene_lead_by_phase(scene, error);
 }
 
 static scree_status set_world(const comparison *c, scree_scene *scene, scree_error *error) {
@@ -411,19 +424,19 @@ static scree_status set_world(const comparison *c, scree_scene *scene, scree_err
 
 /* ---- the change ---- */
 
-static scree_status keep_history(comparison *c, scree_scene *is, scree_error *error) {
+static scree_status keep_history(comparison *c, scree_scene *is) {
   const scree_scene_change_list *lists[] = {&c->scene->changes, &c->list};
   c->scene = is;
   for (int l = 0; l < 2; l++)
-    for (size_t i = 0; i < lists[l]->count && c->status == SCREE_OK; i++) {
+    for (size_t i = 0; i < lists[l]->count; i++) {
       scree_scene_change_entry change = lists[l]->items[i];
-      change.field = keep_text(c, change.field);
-      if (change.was) change.was = keep_text(c, change.was);
-      if (change.is) change.is = keep_text(c, change.is);
+      SCREE_TRY(keep_text(c, change.field, &change.field));
+      SCREE_TRY(keep_text(c, change.was, &change.was));
+      SCREE_TRY(keep_text(c, change.is, &change.is));
       if (!SCREE_PUSH(&is->changes, change))
-        c->status = scree_fail_memory(error, sizeof change, "changes");
+        return scree_fail_memory(c->error, sizeof change, "changes");
     }
-  return c->status;
+  return SCREE_OK;
 }
 
 static scree_status take_over(comparison *c, scree_scene *is, scree_error *error) {
@@ -444,33 +457,31 @@ static scree_status take_over(comparison *c, scree_scene *is, scree_error *error
   return set_world(c, is, error);
 }
 
+/* One whose world is another's. */
+static void free_without_world(scree_scene **scene) {
+  if (*scene) (*scene)->world = (*scene)->gallery = NULL;
+  scree_scene_free(*scene);
+}
+
 static scree_status change_to(scree_scene **scene, const scree_scene_file *file,
                               scree_error *error) {
-  scree_scene *was = *scene, *is = NULL;
+  scree_scene *was = *scene;
+  SCREE_CLEANUP(free_comparison)
   comparison c = {.scene = was, .folder = file->folder, .error = error};
-  char *text;
+  SCREE_CLEANUP(scree_free_at) char *text = NULL;
   SCREE_TRY(scree_scene_file_text(file, &text, error));
-  scree_status status = compare_texts(&c, was->text, text);
-  scree_free(text);
-  if (status == SCREE_OK) status = refuse_others(&c, error);
-  if (status == SCREE_OK && c.list.count && !(is = scree_alloc_zero(1, sizeof *is)))
-    status = scree_fail_memory(error, sizeof *is, "a scene");
-  if (status != SCREE_OK || !is) {
-    scree_free(c.list.items);
-    return status;
-  }
-  status = scree_scene_take_file(is, file, error);
-  if (status == SCREE_OK) status = take_over(&c, is, error);
-  if (status == SCREE_OK) status = keep_history(&c, is, error);
-  if (status == SCREE_OK) {
-    take_lists(was, is);
-    *scene = is;
-    is = was;
-  }
-  is->world = is->gallery = NULL; /* of the other */
-  scree_scene_free(is);
-  scree_free(c.list.items);
-  return status;
+  SCREE_TRY(compare_texts(&c, was->text, text));
+  SCREE_TRY(refuse_others(&c, error));
+  if (!c.list.count) return SCREE_OK;
+  SCREE_CLEANUP(free_without_world) scree_scene *is = NULL;
+  SCREE_TRY_ALLOC_ZERO(is, 1, error);
+  SCREE_TRY(scree_scene_take_file(is, file, error));
+  SCREE_TRY(take_over(&c, is, error));
+  SCREE_TRY(keep_history(&c, is));
+  take_lists(was, is);
+  *scene = is;
+  is = was;
+  return SCREE_OK;
 }
 
 /* ---- from fields and files ---- */
@@ -488,42 +499,36 @@ static scree_status apply_field(scree_scene_file *file, const char *change, cons
 
 /* What is wrong is of the changes, which have their own lines. */
 static scree_status apply_file(scree_scene_file *file, const char *path, scree_error *error) {
-  scree_yaml over;
+  SCREE_CLEANUP(scree_yaml_free) scree_yaml over = {0};
   SCREE_TRY(scree_yaml_read(path, &over, error));
-  char *name = scree_strdup(path);
-  if (!name || over.kind != SCREE_YAML_MAPPING) {
-    scree_yaml_free(&over);
-    scree_free(name);
-    return name ? scree_fail(error, SCREE_BAD_FILE, "%s: changes are `key: value` lines", path)
-                : scree_fail_memory(error, strlen(path), path);
-  }
+  if (over.kind != SCREE_YAML_MAPPING)
+    return scree_fail(error, SCREE_BAD_FILE, "%s: changes are `key: value` lines", path);
+  SCREE_CLEANUP(scree_free_at) char *name = scree_strdup(path);
+  if (!name) return scree_fail_memory(error, strlen(path), path);
   char *kept = file->name;
   file->name = name;
   scree_status status = scree_yaml_merge(&file->root, &over, error);
   if (status == SCREE_OK) status = scree_scene_file_check(file, error);
   file->name = kept;
-  scree_free(name);
   return status;
 }
 
 scree_status scree_scene_change(scree_scene **scene, const char *const *changes, size_t count,
                                 scree_error *error) {
-  scree_scene_file *file;
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
   const char *text = (*scene)->text;
   if ((*scene)->is_frame)
     return scree_fail(error, SCREE_UNSUPPORTED, "a frame has no contacts: nothing goes on from it");
-  scree_status status = scree_scene_file_parse(text, strlen(text), (*scene)->name, &file, error);
-  if (status != SCREE_OK) return status;
-  for (size_t i = 0; status == SCREE_OK && i < count; i++) {
+  SCREE_TRY(scree_scene_file_parse(text, strlen(text), (*scene)->name, &file, error));
+  for (size_t i = 0; i < count; i++) {
     const char *equals = strchr(changes[i], '=');
-    status =
+    scree_status status =
         equals ? apply_field(file, changes[i], equals, error) : apply_file(file, changes[i], error);
-    if (status == SCREE_BAD_FILE && equals && i + 1 < count) status = SCREE_OK; /* with others */
+    bool others_may_mend = status == SCREE_BAD_FILE && equals && i + 1 < count;
+    if (!others_may_mend) SCREE_TRY(status);
   }
-  if (status == SCREE_OK) status = scree_scene_file_check(file, error);
-  if (status == SCREE_OK) status = change_to(scene, file, error);
-  scree_scene_file_free(file);
-  return status;
+  SCREE_TRY(scree_scene_file_check(file, error));
+  return change_to(scene, file, error);
 }
 
 size_t scree_scene_change_count(const scree_scene *scene) {

@@ -194,69 +194,13 @@ static scree_status go_on(work *w, scree_error *error) {
 
 /* ---- beginning, or going on ---- */
 
-/* The next line of a printed file, without what may differ: title, time, stop and output. */
-static const char *next_line(const char **text, size_t *length) {
-  static const char *const free_keys[] = {"title:", "time:", "stop:", "output:"};
-  bool skip = false;
-  while (**text) {
-    const char *line = *text;
-    *length = strcspn(line, "\n");
-    *text += *length + (line[*length] == '\n');
-    if (*line != ' ') {
-      skip = false;
-      for (size_t i = 0; i < 4; i++)
-        skip = skip || !strncmp(line, free_keys[i], strlen(free_keys[i]));
-    }
-    if (!skip) return line;
-  }
-  return NULL;
-}
-
-/* Characters of a line before its comment. */
-static int shown(const char *line, size_t length) {
-  const char *comment = strstr(line, "  # ");
-  size_t blanks = strspn(line, " ");
-  return (int)((comment && comment < line + length ? (size_t)(comment - line) : length) - blanks);
-}
-
-static scree_status compare_texts(const char *here, const char *there, const char *path,
-                                  scree_error *error) {
-  for (;;) {
-    size_t m = 0, n = 0;
-    const char *a = next_line(&here, &m), *b = next_line(&there, &n);
-    if (!a && !b) return SCREE_OK;
-    if (a && b && m == n && !strncmp(a, b, m)) continue;
-    return scree_fail(error, SCREE_BAD_ARGUMENT,
-                      "%s: is of another scene: '%.*s' there and '%.*s' here", path,
-                      b ? shown(b, n) : 7, b ? b + strspn(b, " ") : "nothing", a ? shown(a, m) : 7,
-                      a ? a + strspn(a, " ") : "nothing");
-  }
-}
-
-/* What was written so far lies at these intervals, and is numbered by them. */
-static scree_status compare_intervals(const scree_scene *scene, const scree_plan_output *now,
-                                      const char *path, scree_error *error) {
-  const scree_plan_output *was = scene->plan.output;
-  bool series = now->series != was->series;
-  if (!series && now->frames == was->frames) return SCREE_OK;
-  return scree_fail(error, SCREE_BAD_ARGUMENT,
-                    "%s: is of another scene: output.%s is %g there and %g here", path,
-                    series ? "series" : "frames", series ? was->series : was->frames,
-                    series ? now->series : now->frames);
-}
-
 static scree_status take_over(scree_scene *scene, const scree_scene_file *file, const char *path,
                               scree_error *error) {
   scree_plan plan;
-  char *text;
+  SCREE_CLEANUP(scree_free_at) char *text = NULL;
   SCREE_TRY(scree_scene_file_text(file, &text, error));
-  scree_status status = compare_texts(text, scene->text, path, error);
-  if (status == SCREE_OK) status = scree_scene_file_plan(file, &scene->arena, &plan, error);
-  if (status == SCREE_OK) status = compare_intervals(scene, plan.output, path, error);
-  if (status != SCREE_OK) {
-    scree_free(text);
-    return status;
-  }
+  SCREE_TRY(scree_scene_check_same(scene, text, path, error));
+  SCREE_TRY(scree_scene_file_plan(file, &scene->arena, &plan, error));
   scree_scene_reopen(scene, &plan);
   scene->plan.title = plan.title;
   scene->plan.time = plan.time;
@@ -264,17 +208,16 @@ static scree_status take_over(scree_scene *scene, const scree_scene_file *file, 
   scene->plan.output = plan.output;
   scree_free(scene->text);
   scene->text = text;
+  text = NULL;
   return SCREE_OK;
 }
 
 scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *file,
                                    const char *path, scree_error *error) {
-  scree_scene_file *shrunk;
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *shrunk = NULL;
   if (!scree_scene_file_shrinks(file)) return take_over(scene, file, path, error);
   SCREE_TRY(scree_scene_file_shrink(file, scree_scene_largest(scene), &shrunk, error));
-  scree_status status = take_over(scene, shrunk, path, error);
-  scree_scene_file_free(shrunk);
-  return status;
+  return take_over(scene, shrunk, path, error);
 }
 
 static scree_status check_found(work *w, const char *path, scree_error *error) {

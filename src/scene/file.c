@@ -55,21 +55,18 @@ scree_status scree_scene_file_plan(const scree_scene_file *file, scree_arena *ar
 }
 
 scree_status scree_scene_file_check(const scree_scene_file *file, scree_error *error) {
-  scree_arena arena = {0};
+  SCREE_CLEANUP(scree_arena_free) scree_arena arena = {0};
   scree_plan plan;
-  scree_status status = scree_scene_file_plan(file, &arena, &plan, error);
-  scree_arena_free(&arena);
-  return status;
+  return scree_scene_file_plan(file, &arena, &plan, error);
 }
 
 scree_status scree_scene_file_print(const scree_scene_file *file, FILE *stream,
                                     scree_error *error) {
-  scree_arena arena = {0};
+  SCREE_CLEANUP(scree_arena_free) scree_arena arena = {0};
   scree_plan plan;
-  scree_status status = scree_scene_file_plan(file, &arena, &plan, error);
-  if (status == SCREE_OK) scree_record_print(&scree_plan_record, &plan, 0, true, stream);
-  scree_arena_free(&arena);
-  return status;
+  SCREE_TRY(scree_scene_file_plan(file, &arena, &plan, error));
+  scree_record_print(&scree_plan_record, &plan, 0, true, stream);
+  return SCREE_OK;
 }
 
 scree_status scree_scene_file_text(const scree_scene_file *file, char **text, scree_error *error) {
@@ -105,16 +102,16 @@ static const char *input_at(const scree_plan *plan, size_t index) {
 
 scree_status scree_scene_file_find_input(const scree_scene_file *file, size_t index, char *path,
                                          size_t size, scree_error *error) {
-  scree_arena arena = {0};
+  SCREE_CLEANUP(scree_arena_free) scree_arena arena = {0};
   scree_plan plan;
-  scree_status status = scree_scene_file_plan(file, &arena, &plan, error);
-  const char *name = status == SCREE_OK ? input_at(&plan, index) : NULL;
+  *path = 0;
+  SCREE_TRY(scree_scene_file_plan(file, &arena, &plan, error));
+  const char *name = input_at(&plan, index);
   const char *folder = name && *name != '/' ? file->folder : "";
   if ((size_t)snprintf(path, size, "%s%s", folder, name ? name : "") >= size)
-    status = scree_fail(error, SCREE_BAD_FILE, "%s: the path of file %zu is longer than %zu bytes",
-                        file->name, index + 1, size - 1);
-  scree_arena_free(&arena);
-  return status;
+    return scree_fail(error, SCREE_BAD_FILE, "%s: the path of file %zu is longer than %zu bytes",
+                      file->name, index + 1, size - 1);
+  return SCREE_OK;
 }
 
 bool scree_scene_file_input(const scree_scene_file *file, size_t index, char *path, size_t size) {

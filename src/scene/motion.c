@@ -91,6 +91,18 @@ static scree_status fail_write(const scree_motion_file *file, scree_error *error
   return scree_fail(error, SCREE_IO, "%s: cannot write: %s", file->path, strerror(errno));
 }
 
+static void free_bytes(scree_codec *c) {
+  scree_free(c->bytes);
+}
+
+static scree_status write_bytes(const scree_motion_file *file, const scree_codec *c,
+                                scree_error *error) {
+  if (!scree_codec_good(c)) return scree_fail_memory(error, c->count, "a motion");
+  if (fwrite(c->bytes, 1, c->count, file->stream) != c->count || fflush(file->stream) != 0)
+    return fail_write(file, error);
+  return SCREE_OK;
+}
+
 /* Cuts off what comes after `time`, and a last moment that was none of the interval's: where it
  * was stopped. Without a stream where nothing can be kept. */
 static scree_status keep_frames(scree_motion_file *file, double time, scree_error *error) {
@@ -119,7 +131,7 @@ static scree_status keep_frames(scree_motion_file *file, double time, scree_erro
 }
 
 static scree_status begin(scree_motion_file *file, scree_error *error) {
-  scree_codec c = {0};
+  SCREE_CLEANUP(free_bytes) scree_codec c = {0};
   char name[8];
   uint32_t version_order[2] = {VERSION, BYTE_ORDER_MARK};
   file->last = -INFINITY;
@@ -127,13 +139,7 @@ static scree_status begin(scree_motion_file *file, scree_error *error) {
   if (!file->stream) return fail_write(file, error);
   memcpy(name, magic, sizeof name);
   code_header(&c, name, version_order);
-  scree_status status = SCREE_OK;
-  if (!scree_codec_good(&c))
-    status = scree_fail_memory(error, HEADER, "a header");
-  else if (fwrite(c.bytes, 1, c.count, file->stream) != c.count || fflush(file->stream) != 0)
-    status = fail_write(file, error);
-  scree_free(c.bytes);
-  return status;
+  return write_bytes(file, &c, error);
 }
 
 scree_status scree_motion_open(scree_motion_file *file, const char *path, double interval,
@@ -182,23 +188,17 @@ scree_status scree_motion_put(scree_motion_file *file, const scree_world *world,
   frame_header f = {.time = scree_world_time(world), .body_count = scree_world_body_count(world)};
   while (f.time >= scree_motion_next(file)) file->count++;
   if (!file->stream || f.time <= file->last) return SCREE_OK;
-  scree_codec bodies = {0}, frame = {0};
+  SCREE_CLEANUP(free_bytes) scree_codec bodies = {0};
+  SCREE_CLEANUP(free_bytes) scree_codec frame = {0};
   code_walls(&bodies, world);
   code_bodies(&bodies, world, (size_t)f.body_count);
   f.body_count += scree_world_wall_count(world);
   f.sum = scree_checksum_of(bodies.bytes, bodies.count);
   code_frame(&frame, &f);
   scree_code_bytes(&frame, bodies.bytes, bodies.count);
-  scree_status status = SCREE_OK;
-  if (!scree_codec_good(&bodies) || !scree_codec_good(&frame))
-    status = scree_fail_memory(error, bodies.count, "a frame of the motion");
-  else if (fwrite(frame.bytes, 1, frame.count, file->stream) != frame.count ||
-           fflush(file->stream) != 0)
-    status = fail_write(file, error);
+  frame.out_of_memory = frame.out_of_memory || bodies.out_of_memory;
   file->last = f.time;
-  scree_free(bodies.bytes);
-  scree_free(frame.bytes);
-  return status;
+  return write_bytes(file, &frame, error);
 }
 
 void scree_motion_close(scree_motion_file *file) {
@@ -228,12 +228,8 @@ static scree_status fill(const char *name, const char *bytes, size_t count, scre
   if (frames > LARGEST_GROWTH * count / (bodies * 7 * sizeof *m->poses + 1))
     return scree_fail(error, SCREE_BAD_FILE, "%s: frames of very different numbers of bodies",
                       name);
-  SCREE_ALLOC_OR(m->time, frames, error, out_of_memory);
-  m->poses = scree_alloc(frames, bodies * 7 * sizeof *m->poses);
-  if (!m->poses) {
-    scree_fail_memory(error, frames * bodies * 7 * sizeof *m->poses, "a motion");
-    goto out_of_memory;
-  }
+  SCREE_TRY_ALLOC(m->time, frames, error);
+  SCREE_TRY_ALLOC(m->poses, frames * bodies * 7, error);
   walk_start(&w, bytes, count);
   for (size_t f = 0; f < frames && walk_next(&w); f++) {
     scree_codec c = {
@@ -246,24 +242,19 @@ static scree_status fill(const char *name, const char *bytes, size_t count, scre
     }
   }
   return SCREE_OK;
-out_of_memory:
-  scree_motion_free(m);
-  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_motion_read(const char *path, scree_motion *motion, scree_error *error) {
-  char *bytes;
+  SCREE_CLEANUP(scree_free_at) char *bytes = NULL;
+  SCREE_CLEANUP(scree_motion_free) scree_motion made = {0};
   size_t count;
   walk w;
-  scree_motion made = {0};
-  scree_status status = scree_file_read(path, 0, &bytes, &count, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_file_read(path, 0, &bytes, &count, error));
   if (!walk_start(&w, bytes, count) || !walk_next(&w))
-    status =
-        scree_fail(error, SCREE_BAD_FILE, "%s: is no motion of a run that this scree reads", path);
-  else
-    status = fill(path, bytes, count, &made, error);
-  scree_free(bytes);
-  if (status == SCREE_OK) *motion = made;
-  return status;
+    return scree_fail(error, SCREE_BAD_FILE, "%s: is no motion of a run that this scree reads",
+                      path);
+  SCREE_TRY(fill(path, bytes, count, &made, error));
+  *motion = made;
+  made = (scree_motion){0};
+  return SCREE_OK;
 }

@@ -90,14 +90,12 @@ static scree_status add_materials(const scree_scene *scene, scree_world *world,
 scree_status scree_scene_make_world(const scree_scene *scene, double time_step, scree_world **world,
                                     scree_error *error) {
   scree_world_options o = world_options(scene, time_step);
-  scree_world *made;
+  SCREE_CLEANUP(scree_world_drop) scree_world *made = NULL;
   SCREE_TRY(scree_world_create(&o, &made, error));
-  scree_status status = add_materials(scene, made, error);
-  if (status == SCREE_OK)
-    *world = made;
-  else
-    scree_world_free(made);
-  return status;
+  SCREE_TRY(add_materials(scene, made, error));
+  *world = made;
+  made = NULL;
+  return SCREE_OK;
 }
 
 scree_status scree_scene_fail(const scree_scene *scene, const scree_place *place,
@@ -201,16 +199,14 @@ static void plan_ticks(scree_scene *scene) {
       scene->plan.tick ? scene->plan.tick : (uint64_t)fmax(1, floor(interval / scene->time_step));
 }
 
-static scree_status allocate_inlets(scree_scene *scene) {
+static scree_status allocate_inlets(scree_scene *scene, scree_error *error) {
   const scree_plan *plan = &scene->plan;
   for (size_t i = 0; i < plan->inlets.count; i++) {
     scree_scene_inlet *inlet = &scene->inlets[i];
     inlet->plan = &plan->inlets.items[i];
     size_t count = inlet->plan->shapes.count;
-    inlet->shapes = scree_arena_take(&scene->arena, count, sizeof *inlet->shapes);
-    inlet->counts = scree_arena_take(&scene->arena, count, sizeof *inlet->counts);
-    if (!inlet->shapes || !inlet->counts) return SCREE_OUT_OF_MEMORY;
-    memset(inlet->counts, 0, count * sizeof *inlet->counts);
+    SCREE_TRY_TAKE(inlet->shapes, &scene->arena, count, error);
+    SCREE_TRY_TAKE(inlet->counts, &scene->arena, count, error);
     for (size_t k = 0; k < count; k++)
       inlet->shapes[k] = SCREE_PLAN_FIND(plan->shapes, inlet->plan->shapes.names[k]);
   }
@@ -220,44 +216,33 @@ static scree_status allocate_inlets(scree_scene *scene) {
 scree_status scree_scene_prepare(scree_scene *scene, scree_error *error) {
   const scree_plan *plan = &scene->plan;
   SCREE_TRY(scree_plan_expand(&scene->plan, &scene->arena, error));
-  const struct {
-    void **items;
-    size_t count, size;
-  } arrays[] = {
-      {(void **)&scene->shapes, plan->shapes.count, sizeof *scene->shapes},
-      {(void **)&scene->geometry, plan->geometry.count, sizeof *scene->geometry},
-      {(void **)&scene->inlets, plan->inlets.count, sizeof *scene->inlets},
-      {(void **)&scene->outlets, plan->outlets.count + 1, sizeof *scene->outlets},
-      {(void **)&scene->sensors, plan->sensors.count, sizeof *scene->sensors},
-  };
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-    *arrays[i].items = scree_arena_take(&scene->arena, arrays[i].count, arrays[i].size);
-    if (!*arrays[i].items) return scree_fail_memory(error, 0, "a scene");
-    memset(*arrays[i].items, 0, arrays[i].count * arrays[i].size);
-  }
+  SCREE_TRY_TAKE(scene->shapes, &scene->arena, plan->shapes.count, error);
+  SCREE_TRY_TAKE(scene->geometry, &scene->arena, plan->geometry.count, error);
+  SCREE_TRY_TAKE(scene->inlets, &scene->arena, plan->inlets.count, error);
+  SCREE_TRY_TAKE(scene->outlets, &scene->arena, plan->outlets.count + 1, error);
+  SCREE_TRY_TAKE(scene->sensors, &scene->arena, plan->sensors.count, error);
   scene->still_since = NAN;
   for (int k = 0; k < 3; k++) scene->table_low[k] = INFINITY, scene->table_high[k] = -INFINITY;
   scene->costs.piece_count = 1;
   SCREE_TRY(scree_scene_plan_forces(scene, error));
   SCREE_TRY(scree_scene_plan_parts(scene, error));
-  if (allocate_inlets(scene) != SCREE_OK) return scree_fail_memory(error, 0, "inlets");
+  SCREE_TRY(allocate_inlets(scene, error));
   return scree_scene_plan_columns(scene, error);
 }
 
 scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_error *error) {
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) scree_scene_measure_shape(scene, i);
-  scree_status status = scree_scene_complete_plan(scene, error);
-  if (status == SCREE_OK) status = make_gallery(scene, folder, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_complete_plan(scene, error));
+  SCREE_TRY(make_gallery(scene, folder, error));
   scree_error why; /* a time step that is too long */
-  status = scree_world_step(scene->gallery, 0, &why);
+  scree_status status = scree_world_step(scene->gallery, 0, &why);
   SCREE_TRY(scree_scene_blame(scene, &scene->plan.contact->place, status, &why, error));
   scene->time_step = scree_world_time_step(scene->gallery, NULL);
   plan_ticks(scene);
-  status = scree_scene_make_world(scene, scene->time_step, &scene->world, error);
-  if (status == SCREE_OK) status = scree_scene_add_geometry(scene, folder, scene->world, error);
-  if (status == SCREE_OK) scree_world_share_walls(scene->world, scene->gallery);
-  return status;
+  SCREE_TRY(scree_scene_make_world(scene, scene->time_step, &scene->world, error));
+  SCREE_TRY(scree_scene_add_geometry(scene, folder, scene->world, error));
+  scree_world_share_walls(scene->world, scene->gallery);
+  return SCREE_OK;
 }
 
 /* The walls' files are there: to be known before shapes are made, which may take minutes. */
@@ -300,8 +285,7 @@ static scree_status note_densities(scree_scene *scene, const scree_scene_file *f
                                    scree_error *error) {
   const scree_yaml *materials = scree_yaml_find(&file->root, "materials");
   size_t count = scene->plan.materials.count;
-  scene->usual_density = scree_arena_take(&scene->arena, count, sizeof *scene->usual_density);
-  if (!scene->usual_density) return scree_fail_memory(error, count, "materials");
+  SCREE_TRY_TAKE(scene->usual_density, &scene->arena, count, error);
   for (size_t i = 0; i < count; i++)
     scene->usual_density[i] = !scree_yaml_find(&materials->items[i], "density");
   return SCREE_OK;
@@ -320,22 +304,20 @@ scree_status scree_scene_take_file(scree_scene *scene, const scree_scene_file *f
 static scree_status create(const scree_scene_file *file, scree_shape_store *store,
                            const scree_progress *progress, scree_scene **scene,
                            scree_error *error) {
-  scree_scene *made = scree_alloc_zero(1, sizeof *made);
-  if (!made) return scree_fail_memory(error, sizeof *made, "a scene");
-  scree_status status = scree_scene_take_file(made, file, error);
-  if (status == SCREE_OK) status = make_particles(made, file->folder, store, progress, error);
-  if (status == SCREE_OK) status = scree_scene_set_up(made, file->folder, error);
-  if (status == SCREE_OK) status = scree_scene_plan_maps(made, error);
-  if (status == SCREE_OK) status = scree_scene_check_inlets(made, error);
-  if (status == SCREE_OK) status = scree_scene_plan_layers(made, error);
-  if (status == SCREE_OK) status = scree_scene_check_softness(made, error);
-  if (status == SCREE_OK) status = scree_scene_read_bodies(made, file->folder, error);
-  if (status == SCREE_OK) status = scree_scene_begin_phases(made, error);
-  if (status == SCREE_OK)
-    *scene = made;
-  else
-    scree_scene_free(made);
-  return status;
+  SCREE_CLEANUP(scree_scene_drop) scree_scene *made = NULL;
+  SCREE_TRY_ALLOC_ZERO(made, 1, error);
+  SCREE_TRY(scree_scene_take_file(made, file, error));
+  SCREE_TRY(make_particles(made, file->folder, store, progress, error));
+  SCREE_TRY(scree_scene_set_up(made, file->folder, error));
+  SCREE_TRY(scree_scene_plan_maps(made, error));
+  SCREE_TRY(scree_scene_check_inlets(made, error));
+  SCREE_TRY(scree_scene_plan_layers(made, error));
+  SCREE_TRY(scree_scene_check_softness(made, error));
+  SCREE_TRY(scree_scene_read_bodies(made, file->folder, error));
+  SCREE_TRY(scree_scene_begin_phases(made, error));
+  *scene = made;
+  made = NULL;
+  return SCREE_OK;
 }
 
 double scree_scene_largest(const scree_scene *scene) {
@@ -351,13 +333,12 @@ double scree_scene_largest(const scree_scene *scene) {
 scree_status scree_scene_file_largest(const scree_scene_file *file, scree_shape_store *store,
                                       const scree_progress *progress, double *diameter,
                                       scree_error *error) {
-  scree_scene *made = scree_alloc_zero(1, sizeof *made);
-  if (!made) return scree_fail_memory(error, sizeof *made, "a scene");
-  scree_status status = scree_scene_take_file(made, file, error);
-  if (status == SCREE_OK) status = make_particles(made, file->folder, store, progress, error);
-  if (status == SCREE_OK) *diameter = scree_scene_largest(made);
-  scree_scene_free(made);
-  return status;
+  SCREE_CLEANUP(scree_scene_drop) scree_scene *made = NULL;
+  SCREE_TRY_ALLOC_ZERO(made, 1, error);
+  SCREE_TRY(scree_scene_take_file(made, file, error));
+  SCREE_TRY(make_particles(made, file->folder, store, progress, error));
+  *diameter = scree_scene_largest(made);
+  return SCREE_OK;
 }
 
 /* How large its shapes are is only known once they are made: they wait in a store. */
@@ -365,17 +346,14 @@ scree_status scree_scene_create_from(const scree_scene_file *file, scree_shape_s
                                      const scree_progress *progress, scree_scene **scene,
                                      scree_error *error) {
   if (!scree_scene_file_shrinks(file)) return create(file, store, progress, scene, error);
-  scree_shape_store *own = NULL;
-  scree_scene_file *shrunk = NULL;
+  SCREE_CLEANUP(scree_shape_store_drop) scree_shape_store *own = NULL;
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *shrunk = NULL;
   double largest;
-  scree_status status = store ? SCREE_OK : scree_shape_store_create(&own, error);
+  if (!store) SCREE_TRY(scree_shape_store_create(&own, error));
   if (own) store = own;
-  if (status == SCREE_OK) status = scree_scene_file_largest(file, store, progress, &largest, error);
-  if (status == SCREE_OK) status = scree_scene_file_shrink(file, largest, &shrunk, error);
-  if (status == SCREE_OK) status = create(shrunk, store, progress, scene, error);
-  scree_scene_file_free(shrunk);
-  scree_shape_store_free(own);
-  return status;
+  SCREE_TRY(scree_scene_file_largest(file, store, progress, &largest, error));
+  SCREE_TRY(scree_scene_file_shrink(file, largest, &shrunk, error));
+  return create(shrunk, store, progress, scene, error);
 }
 
 scree_status scree_scene_create(const scree_scene_file *file, const scree_progress *progress,
@@ -385,16 +363,14 @@ scree_status scree_scene_create(const scree_scene_file *file, const scree_progre
 
 scree_status scree_scene_file_column(const scree_scene_file *file, size_t index, char name[96],
                                      const char **unit, scree_error *error) {
-  scree_scene *made = scree_alloc_zero(1, sizeof *made);
-  if (!made) return scree_fail_memory(error, sizeof *made, "a scene");
-  scree_status status = scree_scene_file_plan(file, &made->arena, &made->plan, error);
-  if (status == SCREE_OK) status = scree_scene_prepare(made, error);
-  if (status == SCREE_OK)
-    snprintf(name, 96, "%s", index < made->columns.count ? made->columns.items[index].name : "");
-  if (status == SCREE_OK && unit)
-    *unit = index < made->columns.count ? made->columns.items[index].unit : NULL; /* static */
-  scree_scene_free(made);
-  return status;
+  SCREE_CLEANUP(scree_scene_drop) scree_scene *made = NULL;
+  SCREE_TRY_ALLOC_ZERO(made, 1, error);
+  SCREE_TRY(scree_scene_file_plan(file, &made->arena, &made->plan, error));
+  SCREE_TRY(scree_scene_prepare(made, error));
+  bool there = index < made->columns.count;
+  snprintf(name, 96, "%s", there ? made->columns.items[index].name : "");
+  if (unit) *unit = there ? made->columns.items[index].unit : NULL; /* static */
+  return SCREE_OK;
 }
 
 void scree_scene_free(scree_scene *scene) {
@@ -464,13 +440,10 @@ static int find_end(scree_scene *scene) {
 }
 
 static scree_status tick(scree_scene *scene, scree_error *error) {
-  scree_status status = scree_scene_watch_flows(scene, error);
-  if (status == SCREE_OK) {
-    scree_scene_empty(scene);
-    status = scree_scene_fill(scene, error);
-  }
   scene->next_tick += scene->tick_steps;
-  return status;
+  SCREE_TRY(scree_scene_watch_flows(scene, error));
+  scree_scene_empty(scene);
+  return scree_scene_fill(scene, error);
 }
 
 static double next_row(const scree_scene *scene) {
@@ -497,29 +470,26 @@ static size_t steps_to_decision(const scree_scene *scene, size_t wanted) {
 scree_status scree_scene_decide(scree_scene *scene, scree_error *error) {
   bool ticks = scree_world_step_count(scene->world) >= scene->next_tick;
   if (scree_world_time(scene->world) >= next_row(scene)) scree_scene_take_lost(scene);
-  scree_status status = scree_scene_watch_maps(scene, error);
-  if (status == SCREE_OK) status = scree_scene_watch_impacts(scene, error);
-  if (status == SCREE_OK) status = scree_scene_watch_grids(scene, error);
-  if (status == SCREE_OK && ticks) status = tick(scene, error);
-  if (status == SCREE_OK) status = scree_scene_turn_phase(scene, ticks, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_watch_maps(scene, error));
+  SCREE_TRY(scree_scene_watch_impacts(scene, error));
+  SCREE_TRY(scree_scene_watch_grids(scene, error));
+  if (ticks) SCREE_TRY(tick(scene, error));
+  SCREE_TRY(scree_scene_turn_phase(scene, ticks, error));
   scene->end = find_over(scene);
   if (!scene->end && ticks) scene->end = find_end(scene);
-  if (!scene->end) status = scree_scene_enter_layers(scene, error);
+  if (!scene->end) SCREE_TRY(scree_scene_enter_layers(scene, error));
   bool row = scree_world_time(scene->world) >= next_row(scene) || scene->end;
-  return status == SCREE_OK && row ? scree_scene_record(scene, error) : status;
+  return row ? scree_scene_record(scene, error) : SCREE_OK;
 }
 
 static scree_status advance(scree_scene *scene, size_t step_count, scree_error *error) {
   while (step_count > 0 && !scene->end) {
-    scree_status status = scree_scene_decide(scene, error);
-    if (status != SCREE_OK || scene->end) return status;
+    SCREE_TRY(scree_scene_decide(scene, error));
+    if (scene->end) break;
     bool anew = scene->has_parts || scene->plan.forces.count; /* what acts in each step */
     size_t steps = anew ? 1 : steps_to_decision(scene, step_count);
-    if (scene->has_parts) status = scree_scene_move_parts(scene, error);
-    if (status == SCREE_OK && scene->plan.forces.count)
-      status = scree_scene_apply_forces(scene, error);
-    if (status != SCREE_OK) return status;
+    if (scene->has_parts) SCREE_TRY(scree_scene_move_parts(scene, error));
+    if (scene->plan.forces.count) SCREE_TRY(scree_scene_apply_forces(scene, error));
     SCREE_TRY(scree_world_step(scene->world, steps, error));
     scene->costs.body_steps +=
         steps * (scene->world->bodies.count - scene->world->bodies.removed_count);

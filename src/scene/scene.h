@@ -6,6 +6,7 @@
 #include "scene/plan.h"
 #include "world/world.h"
 
+SCREE_DEFINE_DROP(scree_shape_store)
 SCREE_DEFINE_DROP(scree_world)
 SCREE_DEFINE_DROP(scree_scene)
 SCREE_DEFINE_DROP(scree_scene_file)

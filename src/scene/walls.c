@@ -191,13 +191,11 @@ static bool is_hidden(const division *d, size_t piece) {
 static scree_status gather(const division *d, const bool *chosen, scree_mesh *mesh,
                            scree_error *error) {
   const scree_mesh *all = &d->pieces.mesh;
-  scree_mesh made = {0};
-  uint32_t *number = scree_alloc(all->vertex_count, sizeof *number);
-  if (!number) return scree_fail_memory(error, all->vertex_count * sizeof *number, "a wall");
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh made = {0};
+  SCREE_SCRATCH(uint32_t, number, all->vertex_count, error);
   memset(number, 0xff, all->vertex_count * sizeof *number);
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(made.positions, 3 * all->vertex_count, error, done);
-  SCREE_ALLOC_OR(made.triangles, 3 * all->triangle_count, error, done);
+  SCREE_TRY_ALLOC(made.positions, 3 * all->vertex_count, error);
+  SCREE_TRY_ALLOC(made.triangles, 3 * all->triangle_count, error);
   for (size_t i = 0; i < d->pieces.count; i++) {
     if (!chosen[i]) continue;
     const scree_piece *piece = &d->pieces.items[i];
@@ -215,30 +213,23 @@ static scree_status gather(const division *d, const bool *chosen, scree_mesh *me
     made.triangles[c] = number[made.triangles[c]];
   *mesh = made;
   made = (scree_mesh){0};
-  status = SCREE_OK;
-done:
-  scree_mesh_free(&made);
-  scree_free(number);
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status make_walls(division *d, const scree_plan_belt *belt, scree_scene_walls *walls,
                                scree_error *error) {
   size_t count = d->pieces.count, solids = 0, open = 0;
-  bool *chosen = scree_alloc_zero(count, sizeof *chosen);
-  if (!chosen) return scree_fail_memory(error, count, "a wall's pieces");
+  SCREE_SCRATCH_ZERO(bool, chosen, count, error);
   for (size_t i = 0; i < count; i++) solids += chosen[i] = is_solid(d, i);
-  scree_status status = belt ? scree_scene_wind_belts(belt, &d->pieces, chosen, error) : SCREE_OK;
-  if (status == SCREE_OK && solids) status = gather(d, chosen, &walls->solid, error);
+  if (belt) SCREE_TRY(scree_scene_wind_belts(belt, &d->pieces, chosen, error));
+  if (solids) SCREE_TRY(gather(d, chosen, &walls->solid, error));
   for (size_t i = 0; i < count; i++) {
     bool hidden = !d->pieces.items[i].closed && solids && is_hidden(d, i);
     chosen[i] = !is_solid(d, i) && !hidden;
     d->hidden += hidden;
     open += chosen[i];
   }
-  if (status == SCREE_OK && open) status = gather(d, chosen, &walls->sheet, error);
-  scree_free(chosen);
-  return status;
+  return open ? gather(d, chosen, &walls->sheet, error) : SCREE_OK;
 }
 
 /* ---- what is told ---- */
@@ -317,33 +308,26 @@ static scree_status refuse_open(const scree_plan_geometry *g, const scree_mesh *
 scree_status scree_scene_make_walls(const scree_scene *scene, const scree_plan_geometry *g,
                                     const scree_mesh *mesh, scree_scene_walls *walls,
                                     scree_error *error) {
-  division d = {.hidden = 0};
-  scree_scene_walls made = {.is_plain = true};
-  scree_status status = scree_pieces_make(mesh, &d.pieces, error);
-  if (status != SCREE_OK) return status;
+  SCREE_CLEANUP(free_division) division d = {.hidden = 0};
+  SCREE_CLEANUP(scree_scene_walls_free) scree_scene_walls made = {.is_plain = true};
+  SCREE_TRY(scree_pieces_make(mesh, &d.pieces, error));
   size_t count = d.pieces.count, closed = 0;
   for (size_t i = 0; i < count; i++) closed += d.pieces.items[i].closed;
-  d.parent = scree_alloc_zero(count, sizeof *d.parent);
-  d.level = scree_alloc_zero(count, sizeof *d.level);
-  d.side = scree_alloc_zero(count, sizeof *d.side);
-  d.bodies = scree_alloc_zero(count + 1, sizeof *d.bodies);
-  if (!d.parent || !d.level || !d.side || !d.bodies)
-    status = scree_fail_memory(error, count * sizeof *d.parent, "a wall's pieces");
-  else if (g->side && !closed)
-    status = refuse_open(g, &d.pieces.mesh, error);
-  if (status == SCREE_OK && closed) {
+  SCREE_TRY_ALLOC_ZERO(d.parent, count, error);
+  SCREE_TRY_ALLOC_ZERO(d.level, count, error);
+  SCREE_TRY_ALLOC_ZERO(d.side, count, error);
+  SCREE_TRY_ALLOC_ZERO(d.bodies, count + 1, error);
+  if (g->side && !closed) return refuse_open(g, &d.pieces.mesh, error);
+  if (closed) {
     nest(&d);
     mark_bodies(scene, g, &d);
     decide_sides(&d);
   }
-  if (status == SCREE_OK) status = make_walls(&d, g->belt, &made, error);
-  if (status == SCREE_OK) describe(&d, &made);
-  free_division(&d);
-  if (status == SCREE_OK)
-    *walls = made;
-  else
-    scree_scene_walls_free(&made);
-  return status;
+  SCREE_TRY(make_walls(&d, g->belt, &made, error));
+  describe(&d, &made);
+  *walls = made;
+  made = (scree_scene_walls){0};
+  return SCREE_OK;
 }
 
 void scree_scene_walls_free(scree_scene_walls *walls) {

@@ -28,8 +28,7 @@ scree_status scree_study_read_command(scree_study *study, const scree_yaml *comm
                                       scree_error *error) {
   bool list = command->kind == SCREE_YAML_SEQUENCE;
   size_t most = list ? command->item_count : command->text ? strlen(command->text) : 0;
-  study->command.items = scree_arena_take(&study->arena, most, sizeof *study->command.items);
-  if (!study->command.items) return scree_fail_memory(error, most, "a command");
+  SCREE_TRY_TAKE(study->command.items, &study->arena, most, error);
   for (size_t i = 0; list && i < most; i++) {
     const char *text = command->items[i].text;
     SCREE_TRY(command->items[i].kind == SCREE_YAML_SCALAR
@@ -51,11 +50,11 @@ scree_status scree_study_read_command(scree_study *study, const scree_yaml *comm
   return SCREE_OK;
 }
 
-bool scree_study_command_has(const scree_study *study, const char *key) {
+bool scree_command_has(const scree_texts *command, const char *key) {
   char braces[140];
   snprintf(braces, sizeof braces, "{%.130s}", key);
-  for (size_t i = 0; i < study->command.count; i++)
-    if (strstr(study->command.items[i], braces)) return true;
+  for (size_t i = 0; i < command->count; i++)
+    if (strstr(command->items[i], braces)) return true;
   return false;
 }
 
@@ -99,24 +98,18 @@ scree_status scree_study_command_word(const scree_study *study, size_t run, size
 static scree_status start(const scree_study *study, size_t run, const char *folder,
                           const char *output, long *process, scree_error *error) {
   size_t count = study->command.count;
-  const char **words = scree_alloc(count + 1, sizeof *words);
-  char *texts = scree_alloc(count, LONGEST_WORD);
-  scree_status status = words && texts ? SCREE_OK : scree_fail_memory(error, 0, "a command");
-  for (size_t i = 0; status == SCREE_OK && i < count; i++) {
-    words[i] = texts + i * LONGEST_WORD;
-    status = scree_study_command_word(study, run, i, folder, texts + i * LONGEST_WORD, LONGEST_WORD,
-                                      error);
+  SCREE_SCRATCH(const char *, words, count + 1, error);
+  SCREE_SCRATCH(char, texts, LONGEST_WORD *count, error);
+  for (size_t i = 0; i < count; i++) {
+    char *text = texts + i * LONGEST_WORD;
+    words[i] = text;
+    SCREE_TRY(scree_study_command_word(study, run, i, folder, text, LONGEST_WORD, error));
   }
-  if (status == SCREE_OK) {
-    words[count] = NULL;
-    int code = scree_process_run(words, output, process);
-    if (code != 0)
-      status = scree_fail(error, SCREE_BAD_ARGUMENT, "command: cannot start %s: %s", words[0],
-                          strerror(code));
-  }
-  scree_free(words);
-  scree_free(texts);
-  return status;
+  words[count] = NULL;
+  int code = scree_process_run(words, output, process);
+  if (code == 0) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_ARGUMENT, "command: cannot start %s: %s", words[0],
+                    strerror(code));
 }
 
 /* Looks more seldom the longer it takes: what ends at once is not waited for. */
@@ -166,24 +159,18 @@ static bool find_answer(const char *text, const char *name, double *value) {
 
 scree_status scree_study_answer_command(const scree_study *study, const char *folder,
                                         scree_study_record *record, scree_error *error) {
-  char output[4200], *text;
+  SCREE_CLEANUP(scree_free_at) char *text = NULL;
   size_t size, count = study->answer_count;
-  snprintf(output, sizeof output, "%.4100s/output.txt", folder);
-  scree_status status = scree_file_read(output, LARGEST_OUTPUT, &text, &size, error);
-  if (status != SCREE_OK) return status;
-  double *answers = scree_alloc(count, sizeof *answers);
-  if (!answers) status = scree_fail_memory(error, 0, "a run's answers");
-  for (size_t i = 0; status == SCREE_OK && i < count; i++)
+  SCREE_TRY(
+      scree_file_read(SCREE_PATH_IN(folder, "output.txt"), LARGEST_OUTPUT, &text, &size, error));
+  SCREE_SCRATCH(double, answers, count, error);
+  for (size_t i = 0; i < count; i++)
     if (!find_answer(text, study->answers[i].column, &answers[i]))
-      status = scree_fail(error, SCREE_BAD_ARGUMENT, "the command printed no line '%s: NUMBER'",
-                          study->answers[i].column);
-  scree_free(text);
-  if (status != SCREE_OK) {
-    scree_free(answers);
-    return status;
-  }
+      return scree_fail(error, SCREE_BAD_ARGUMENT, "the command printed no line '%s: NUMBER'",
+                        study->answers[i].column);
   scree_free(record->answers);
   record->answers = answers;
+  answers = NULL;
   record->answer_count = count;
   scree_study_answers_mark(study, record->answered);
   return SCREE_OK;
@@ -192,10 +179,8 @@ scree_status scree_study_answer_command(const scree_study *study, const char *fo
 scree_status scree_study_record_command(const scree_study *study, size_t run, const char *folder,
                                         bool (*watch)(void *context), void *context,
                                         scree_study_record *record, scree_error *error) {
-  char output[4200];
   long process;
-  snprintf(output, sizeof output, "%.4100s/output.txt", folder);
-  SCREE_TRY(start(study, run, folder, output, &process, error));
+  SCREE_TRY(start(study, run, folder, SCREE_PATH_IN(folder, "output.txt"), &process, error));
   SCREE_TRY(wait_for(process, watch, context, error));
   SCREE_TRY(scree_study_answer_command(study, folder, record, error));
   record->result = scree_no_result();

@@ -32,15 +32,12 @@ static scree_status make_folders(const scree_study *study, scree_error *error) {
   return SCREE_OK;
 }
 
-/* Writes the copy where it is not the same already, so that a folder in use is left alone. */
-static scree_status keep_copy(const scree_study *study, scree_error *error) {
-  const char *path = SCREE_STUDY_PATH(study, "", "study.yaml", "");
-  char *old = NULL;
+scree_status scree_study_keep_text(const char *text, const char *path, scree_error *error) {
+  SCREE_CLEANUP(scree_free_at) char *old = NULL;
   size_t size = 0;
   bool same = scree_path_exists(path) && scree_file_read(path, 0, &old, &size, NULL) == SCREE_OK &&
-              size == study->text_size && !memcmp(old, study->text, size);
-  scree_free(old);
-  return same ? SCREE_OK : scree_text_write(study->text, path, true, error);
+              size == strlen(text) && !memcmp(old, text, size);
+  return same ? SCREE_OK : scree_text_write(text, path, true, error);
 }
 
 scree_status scree_study_open(scree_study *study, const char *folder, scree_error *error) {
@@ -49,23 +46,21 @@ scree_status scree_study_open(scree_study *study, const char *folder, scree_erro
   scree_free(study->folder);
   study->folder = copy;
   SCREE_TRY(make_folders(study, error));
-  SCREE_TRY(keep_copy(study, error));
+  SCREE_TRY(
+      scree_study_keep_text(study->text, SCREE_STUDY_PATH(study, "", "study.yaml", ""), error));
   return scree_study_keep_scene(study, error);
 }
 
 scree_status scree_study_open_folder(const char *folder, scree_study **study, scree_error *error) {
   const char *path = SCREE_PATH_IN(folder, "study.yaml");
-  scree_study *made = NULL;
-  scree_status status =
-      scree_path_exists(path)
-          ? scree_study_read(path, &made, error)
-          : scree_fail(error, SCREE_IO, "%s: is no folder of a study: no study.yaml in it", folder);
-  if (status == SCREE_OK && !(made->folder = scree_strdup(folder)))
-    status = scree_fail_memory(error, strlen(folder), "a path");
-  if (status == SCREE_OK) status = scree_study_know_shapes(made, error);
-  if (status == SCREE_OK)
-    *study = made;
-  else
-    scree_study_free(made);
-  return status;
+  SCREE_CLEANUP(scree_study_drop) scree_study *made = NULL;
+  if (!scree_path_exists(path))
+    return scree_fail(error, SCREE_IO, "%s: is no folder of a study: no study.yaml in it", folder);
+  SCREE_TRY(scree_study_read(path, &made, error));
+  if (!(made->folder = scree_strdup(folder)))
+    return scree_fail_memory(error, strlen(folder), "a path");
+  SCREE_TRY(scree_study_know_shapes(made, error));
+  *study = made;
+  made = NULL;
+  return SCREE_OK;
 }

@@ -370,7 +370,8 @@ static scree_status read_set(const reader *r, const scree_yaml *node, size_t *in
 static scree_status try_value(const reader *r, const scree_yaml *node, const char *key,
                               const char *text) {
   if (r->study->command.count)
-    return !strcmp(key, "seed") || scree_study_command_has(r->study, key) /* or it has no scatter */
+    return !strcmp(key, "seed") ||
+                   scree_command_has(&r->study->command, key) /* or it has no scatter */
                ? SCREE_OK
                : fail_at(r, node, "%s: the command has no word with {%s}", key, key);
   scree_error error;

@@ -62,12 +62,11 @@ static const char *make_label(scree_study *study, const char **values) {
 /* Checks what only a point's values together can say. */
 static scree_status check_point(const scree_study *study, const scree_study_point *point,
                                 scree_error *error) {
-  scree_scene_file *file;
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
   scree_error reason;
   if (study->command.count) return SCREE_OK; /* its values are the command's to judge */
   SCREE_TRY(scree_study_scene(study, point, &file, error));
   scree_status status = scree_scene_file_check(file, &reason);
-  scree_scene_file_free(file);
   if (status == SCREE_OK) return SCREE_OK;
   return scree_fail(error, status, "%s: at the point %s: %.500s", study->path, point->label,
                     reason.message);
@@ -77,8 +76,7 @@ static scree_status make_point(scree_study *study, size_t index, const double *u
                                scree_error *error) {
   scree_study_point *point = &study->points[index];
   *point = (scree_study_point){.rp = "scan"};
-  point->values = scree_arena_take(&study->arena, study->factor_count, sizeof *point->values);
-  if (!point->values) return scree_fail_memory(error, 0, study->path);
+  SCREE_TRY_TAKE(point->values, &study->arena, study->factor_count, error);
   for (size_t f = 0; f < study->factor_count; f++) {
     const scree_factor *factor = &study->factors[f];
     point->values[f] = unit ? value_at(study, factor, unit[index * study->factor_count + f])
@@ -103,12 +101,10 @@ scree_status scree_study_make_points(scree_study *study, scree_error *error) {
     study->point_count = 1;
     for (size_t f = 0; f < dimensions; f++) study->point_count *= study->factors[f].level_count;
   } else {
-    unit = scree_arena_take(&study->arena, study->point_count * dimensions, sizeof *unit);
-    order = scree_arena_take(&study->arena, study->point_count, sizeof *order);
-    if (!unit || !order) return scree_fail_memory(error, 0, study->path);
+    SCREE_TRY_TAKE(unit, &study->arena, study->point_count * dimensions, error);
+    SCREE_TRY_TAKE(order, &study->arena, study->point_count, error);
   }
-  study->points = scree_arena_take(&study->arena, study->point_count, sizeof *study->points);
-  if (!study->points) return scree_fail_memory(error, 0, study->path);
+  SCREE_TRY_TAKE(study->points, &study->arena, study->point_count, error);
   if (study->design == SCREE_DESIGN_LATIN)
     scree_design_latin(study->seed, study->point_count, dimensions, order, unit);
   if (study->design == SCREE_DESIGN_SOBOL)
@@ -136,19 +132,16 @@ static bool is_own_file(const scree_study *study, const char *path) {
 
 static scree_status write_files(const scree_study *study, const scree_scene_file *file,
                                 FILE *stream, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK; i++) {
-    char path[4096], *bytes, sum[SCREE_CHECKSUM_TEXT];
+  for (size_t i = 0;; i++) {
+    char path[4096], sum[SCREE_CHECKSUM_TEXT];
+    SCREE_CLEANUP(scree_free_at) char *bytes = NULL;
     size_t count;
     SCREE_TRY(scree_scene_file_find_input(file, i, path, sizeof path, error));
-    if (!*path) break;
+    if (!*path) return SCREE_OK;
     if (is_own_file(study, path)) continue;
-    status = scree_file_read(path, 0, &bytes, &count, error);
-    if (status != SCREE_OK) break;
+    SCREE_TRY(scree_file_read(path, 0, &bytes, &count, error));
     fprintf(stream, "file=%s\n", scree_checksum_text(scree_checksum_of(bytes, count), sum));
-    scree_free(bytes);
   }
-  return status;
 }
 
 /* The same of a command: its words. */
@@ -166,16 +159,15 @@ static scree_status write_command_identity(const scree_study *study, size_t run,
  * written, the files that it names, the shapes' checksums and what is made of them. */
 static scree_status write_identity(const scree_study *study, size_t run, FILE *stream,
                                    scree_error *error) {
-  scree_scene_file *file;
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
   char unit[SCREE_NUMBER_SIZE];
   if (study->command.count) return write_command_identity(study, run, stream, error);
   SCREE_TRY(scree_study_run_scene(study, run, &file, error));
-  scree_status status = scree_scene_file_set(file, "output.frames", "0", error);
-  if (status == SCREE_OK) status = scree_scene_file_set(file, "output.checkpoint", "60", error);
-  if (status == SCREE_OK) status = scree_scene_file_print(file, stream, error);
-  if (status == SCREE_OK) status = write_files(study, file, stream, error);
-  scree_scene_file_free(file);
-  if (status != SCREE_OK || !study->own_shapes) return status;
+  SCREE_TRY(scree_scene_file_set(file, "output.frames", "0", error));
+  SCREE_TRY(scree_scene_file_set(file, "output.checkpoint", "60", error));
+  SCREE_TRY(scree_scene_file_print(file, stream, error));
+  SCREE_TRY(write_files(study, file, stream, error));
+  if (!study->own_shapes) return SCREE_OK;
   scree_number_format_digits(study->unit_m, 9, unit);
   fprintf(stream, "unit=%s\n", unit);
   const scree_shape_set *set = &study->sets[study->points[scree_study_run_point(study, run)].set];
@@ -184,7 +176,7 @@ static scree_status write_identity(const scree_study *study, size_t run, FILE *s
     scree_checksum_text(study->shapes[set->shapes[i]].checksum, sum);
     fprintf(stream, "shape=%s\n", sum);
   }
-  return status;
+  return SCREE_OK;
 }
 
 static scree_status make_key(const scree_study *study, size_t run, char key[SCREE_RUN_KEY_BYTES],
@@ -208,16 +200,12 @@ static scree_status make_key(const scree_study *study, size_t run, char key[SCRE
 scree_status scree_study_make_keys(scree_study *study, scree_error *error) {
   size_t count = scree_study_run_count(study);
   if (study->keys) return SCREE_OK;
-  char(*keys)[SCREE_RUN_KEY_BYTES] = scree_alloc(count, sizeof *keys);
-  if (!keys) return scree_fail_memory(error, count * sizeof *keys, "the runs' names");
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < count; i++)
-    status = make_key(study, i, keys[i], error);
-  if (status == SCREE_OK)
-    study->keys = keys;
-  else
-    scree_free(keys);
-  return status;
+  SCREE_CLEANUP(scree_free_at) char(*keys)[SCREE_RUN_KEY_BYTES] = NULL;
+  SCREE_TRY_ALLOC(keys, count, error);
+  for (size_t i = 0; i < count; i++) SCREE_TRY(make_key(study, i, keys[i], error));
+  study->keys = keys;
+  keys = NULL;
+  return SCREE_OK;
 }
 
 size_t scree_study_run_count(const scree_study *study) {

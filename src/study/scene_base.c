@@ -56,17 +56,15 @@ static scree_status keep_text(scree_study *study, const char *path, const char *
 }
 
 scree_status scree_study_read_scene(scree_study *study, const char *name, scree_error *error) {
-  char *path = scene_path(study, name), *bytes;
+  SCREE_CLEANUP(scree_free_at) char *path = scene_path(study, name);
+  SCREE_CLEANUP(scree_free_at) char *bytes = NULL;
   size_t count;
+  study->scene_is_file = false;
   if (!path) return scree_fail_memory(error, strlen(name), "a path");
-  scree_status status = scree_file_read(path, 1 << 20, &bytes, &count, error);
-  if (status == SCREE_OK) {
-    status = keep_text(study, path, bytes, error);
-    scree_free(bytes);
-  }
-  scree_free(path);
-  study->scene_is_file = status == SCREE_OK;
-  return status;
+  SCREE_TRY(scree_file_read(path, 1 << 20, &bytes, &count, error));
+  SCREE_TRY(keep_text(study, path, bytes, error));
+  study->scene_is_file = true;
+  return SCREE_OK;
 }
 
 scree_status scree_study_take_template(scree_study *study, const char *name, scree_error *error) {
@@ -87,58 +85,50 @@ scree_status scree_study_add_setting(scree_study *study, const char *key, const 
   return SCREE_OK;
 }
 
+/* A field of each shape of the set. */
+static scree_status set_in_shapes(const scree_study *study, size_t set_index, const char *key,
+                                  const char *value, scree_scene_file *file, scree_error *error) {
+  const scree_shape_set *set = &study->sets[set_index];
+  for (size_t i = 0; i < set->count; i++) {
+    char field[160];
+    snprintf(field, sizeof field, "shapes.%s.%s", study->shapes[set->shapes[i]].name, key);
+    SCREE_TRY(scree_scene_file_set(file, field, value, error));
+  }
+  return SCREE_OK;
+}
+
 /* The shapes that the study names, in place of the scene's. */
 static scree_status pour_set(const scree_study *study, size_t set_index, scree_scene_file *file,
                              scree_error *error) {
   const scree_shape_set *set = &study->sets[set_index];
-  scree_poured *shapes = scree_alloc(set->count, sizeof *shapes);
-  if (!shapes) return scree_fail_memory(error, set->count, "shapes");
+  SCREE_SCRATCH(scree_poured, shapes, set->count, error);
   for (size_t i = 0; i < set->count; i++) {
     const scree_study_shape *s = &study->shapes[set->shapes[i]];
     shapes[i] =
         (scree_poured){s->name, s->path ? "file" : "sample", s->path ? s->word : s->word + 7, 1};
   }
-  scree_status status = scree_scene_file_pour(file, shapes, set->count, error);
-  if (status == SCREE_OK && study->method == SCREE_METHOD_QECD)
-    for (size_t i = 0; status == SCREE_OK && i < set->count; i++) {
-      char field[160];
-      snprintf(field, sizeof field, "shapes.%s.method", shapes[i].name);
-      status = scree_scene_file_set(file, field, "qecd", error);
-    }
-  scree_free(shapes);
-  return status;
-}
-
-static scree_status set_level(const scree_study *study, size_t set_index, const char *rp,
-                              scree_scene_file *file, scree_error *error) {
-  const scree_shape_set *set = &study->sets[set_index];
-  for (size_t i = 0; i < set->count; i++) {
-    char field[160];
-    snprintf(field, sizeof field, "shapes.%s.rp", study->shapes[set->shapes[i]].name);
-    SCREE_TRY(scree_scene_file_set(file, field, rp, error));
-  }
-  return SCREE_OK;
+  SCREE_TRY(scree_scene_file_pour(file, shapes, set->count, error));
+  return study->method == SCREE_METHOD_QECD
+             ? set_in_shapes(study, set_index, "method", "qecd", file, error)
+             : SCREE_OK;
 }
 
 scree_status scree_study_scene(const scree_study *study, const scree_study_point *point,
                                scree_scene_file **file, scree_error *error) {
-  scree_scene_file *made = NULL;
-  scree_status status = scree_scene_file_parse(study->scene_text, strlen(study->scene_text),
-                                               study->scene_path, &made, error);
-  if (status == SCREE_OK && point && study->own_shapes)
-    status = pour_set(study, point->set, made, error);
-  for (size_t i = 0; status == SCREE_OK && i < study->setting_count; i++)
-    status = scree_scene_file_set(made, study->settings[i][0], study->settings[i][1], error);
-  if (status == SCREE_OK && point && study->own_shapes)
-    status = set_level(study, point->set, point->rp, made, error);
-  for (size_t f = 0; status == SCREE_OK && point && f < study->factor_count; f++)
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *made = NULL;
+  bool pours = point && study->own_shapes;
+  SCREE_TRY(scree_scene_file_parse(study->scene_text, strlen(study->scene_text), study->scene_path,
+                                   &made, error));
+  if (pours) SCREE_TRY(pour_set(study, point->set, made, error));
+  for (size_t i = 0; i < study->setting_count; i++)
+    SCREE_TRY(scree_scene_file_set(made, study->settings[i][0], study->settings[i][1], error));
+  if (pours) SCREE_TRY(set_in_shapes(study, point->set, "rp", point->rp, made, error));
+  for (size_t f = 0; point && f < study->factor_count; f++)
     if (!scree_study_is_own(study, study->factors[f].key))
-      status = scree_scene_file_set(made, study->factors[f].key, point->values[f], error);
-  if (status == SCREE_OK)
-    *file = made;
-  else
-    scree_scene_file_free(made);
-  return status;
+      SCREE_TRY(scree_scene_file_set(made, study->factors[f].key, point->values[f], error));
+  *file = made;
+  made = NULL;
+  return SCREE_OK;
 }
 
 scree_status scree_study_run_scene(const scree_study *study, size_t run, scree_scene_file **file,
@@ -148,31 +138,27 @@ scree_status scree_study_run_scene(const scree_study *study, size_t run, scree_s
       scree_study_scene(study, &study->points[scree_study_run_point(study, run)], file, error));
   snprintf(seed, sizeof seed, "%" PRIu64, scree_study_run_seed(study, run));
   scree_status status = scree_scene_file_set(*file, "seed", seed, error);
-  if (status != SCREE_OK) scree_scene_file_free(*file);
+  if (status != SCREE_OK) scree_scene_file_drop(file);
+  if (status != SCREE_OK) *file = NULL;
   return status;
 }
 
 scree_status scree_study_try(const scree_study *study, const char *key, const char *value,
                              scree_error *error) {
-  scree_scene_file *file;
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
   SCREE_TRY(scree_study_scene(study, NULL, &file, error));
-  scree_status status = scree_scene_file_try(file, key, value, error);
-  scree_scene_file_free(file);
-  return status;
+  return scree_scene_file_try(file, key, value, error);
 }
 
 /* The plan's phases, and which is the first in which something moves; its seed and pile. */
 scree_status scree_study_look(scree_study *study, scree_error *error) {
-  scree_scene_file *file;
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
   scree_plan plan;
   SCREE_TRY(scree_study_scene(study, NULL, &file, error));
-  scree_status status = scree_scene_file_plan(file, &study->arena, &plan, error);
-  scree_scene_file_free(file);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_file_plan(file, &study->arena, &plan, error));
   study->seed = plan.seed;
   study->phase_count = plan.phases.count;
-  study->phases = scree_arena_take(&study->arena, plan.phases.count, sizeof *study->phases);
-  if (!study->phases) return scree_fail_memory(error, 0, study->path);
+  SCREE_TRY_TAKE(study->phases, &study->arena, plan.phases.count, error);
   study->moving_phase = 0;
   for (size_t i = 0; i < plan.phases.count; i++) study->phases[i] = plan.phases.items[i].place.name;
   for (size_t i = 0; i < plan.geometry.count; i++) {
@@ -204,45 +190,42 @@ scree_status scree_study_stock(const scree_study *study, size_t run, const scree
                                scree_error *error) {
   size_t point = scree_study_run_point(study, run);
   const scree_shape_set *set = &study->sets[study->points[point].set];
-  scree_arena arena = {0};
+  SCREE_CLEANUP(scree_arena_free) scree_arena arena = {0};
   scree_plan plan;
   if (!study->own_shapes) return SCREE_OK;
-  scree_status status = scree_scene_file_plan(file, &arena, &plan, error);
-  for (size_t i = 0; status == SCREE_OK && i < set->count; i++) {
+  SCREE_TRY(scree_scene_file_plan(file, &arena, &plan, error));
+  for (size_t i = 0; i < set->count; i++) {
     const scree_plan_shape *shape = &plan.shapes.items[i];
-    scree_shape_made made;
-    status = scree_study_make_shape(study, set->shapes[i], study->points[point].rp, &made, error);
-    if (status != SCREE_OK) break;
+    SCREE_CLEANUP(scree_free_at)
     char *path = scree_scene_path(file->folder, shape->file ? shape->file : shape->sample);
-    scree_shape_spec spec = scree_scene_shape_spec(shape, path ? path : "");
-    status = path ? scree_shape_store_put(store, &spec, &made, error)
-                  : scree_fail_memory(error, 0, "a path");
+    scree_shape_made made;
+    if (!path) return scree_fail_memory(error, 0, "a path");
+    SCREE_TRY(scree_study_make_shape(study, set->shapes[i], study->points[point].rp, &made, error));
+    scree_shape_spec spec = scree_scene_shape_spec(shape, path);
+    scree_status status = scree_shape_store_put(store, &spec, &made, error);
     *triangle_count += (double)made.triangle_count / (double)set->count;
-    scree_free(path);
     scree_particle_free(made.particle);
+    SCREE_TRY(status);
   }
-  scree_arena_free(&arena);
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- answers ---- */
 
 bool scree_study_has_column(const scree_study *study, const char *column, const char **unit) {
-  scree_scene_file *file;
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
   char name[96] = "?";
-  bool found = false;
   if (scree_study_scene(study, NULL, &file, NULL) != SCREE_OK) return false;
-  for (size_t i = 0; !found && *name; i++) {
-    if (scree_scene_file_column(file, i, name, unit, NULL) != SCREE_OK) break;
-    found = !strcmp(name, column);
+  for (size_t i = 0; *name; i++) {
+    if (scree_scene_file_column(file, i, name, unit, NULL) != SCREE_OK) return false;
+    if (!strcmp(name, column)) return true;
   }
-  scree_scene_file_free(file);
-  return found;
+  return false;
 }
 
 const char *scree_study_column_hint(scree_study *study, const char *column) {
   enum { MOST = 200 };
-  scree_scene_file *file;
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
   char names[MOST][96], hint[SCREE_NAME_HINT];
   const char *known[MOST];
   size_t count = 0;
@@ -253,7 +236,6 @@ const char *scree_study_column_hint(scree_study *study, const char *column) {
     known[count] = names[count];
     count += strchr(names[count], '.') != NULL;
   }
-  scree_scene_file_free(file);
   scree_name_hint(column, known, count, hint);
   const char *kept = scree_arena_text(&study->arena, hint);
   return kept ? kept : "";
@@ -354,10 +336,9 @@ static bool ends_still(const scree_scene *scene, const scree_observation *o) {
 
 scree_status scree_study_answer_scene(const scree_study *study, const scree_scene *scene,
                                       scree_study_record *record, scree_error *error) {
-  double *answers = scree_alloc(study->answer_count, sizeof *answers);
-  if (!answers) return scree_fail_memory(error, 0, "a run's answers");
   scree_free(record->answers);
-  record->answers = answers;
+  record->answer_count = 0;
+  SCREE_TRY_ALLOC(record->answers, study->answer_count, error);
   record->answer_count = study->answer_count;
   for (size_t i = 0; i < study->answer_count; i++)
     record->answers[i] = answer_of(&study->answers[i], scene);
@@ -373,10 +354,8 @@ scree_status scree_study_record_scene(const scree_study *study, const scree_scen
   const scree_record_result none = scree_no_result();
   scree_pile pile = {
       .repose = none.repose, .packing_fraction = none.packing_fraction, .size = none.particle_size};
-  scree_status status = SCREE_OK;
   if (scree_scene_pile_name(scene, 0))
-    status = scree_scene_measure_pile(scene, 0, NULL, &pile, error);
-  if (status != SCREE_OK) return status;
+    SCREE_TRY(scree_scene_measure_pile(scene, 0, NULL, &pile, error));
   scree_scene_get_book(scene, &book);
   scree_world_observe(world, &o);
   scree_checksum_text(scree_world_hash(world), record->hash);

@@ -45,24 +45,18 @@ static bool take_facts(const scree_yaml *root, scree_study_shape *shape) {
 static scree_status know_shape(const scree_study *study, scree_study_shape *shape,
                                scree_error *error) {
   const char *path = SCREE_STUDY_PATH(study, "shapes", shape->name, ".yaml");
-  scree_status status = SCREE_OK;
-  if (!shape->known && scree_path_exists(path)) {
-    scree_yaml root;
-    status = scree_yaml_read(path, &root, error);
-    if (status == SCREE_OK) {
-      shape->known = root.kind == SCREE_YAML_MAPPING && take_facts(&root, shape);
-      const scree_yaml *word = shape->known ? scree_yaml_find(&root, "source") : NULL;
-      if (!word)
-        status = scree_fail(error, SCREE_BAD_FILE,
-                            "%s: is damaged; delete it and its shape is made again", path);
-      else if (strcmp(word->text, shape->word) != 0)
-        status =
-            scree_fail(error, SCREE_BAD_ARGUMENT, "%s: is of '%s', not of '%s': use another folder",
-                       path, word->text, shape->word);
-      scree_yaml_free(&root);
-    }
-  }
-  return status;
+  SCREE_CLEANUP(scree_yaml_free) scree_yaml root = {0};
+  if (shape->known || !scree_path_exists(path)) return SCREE_OK;
+  SCREE_TRY(scree_yaml_read(path, &root, error));
+  shape->known = root.kind == SCREE_YAML_MAPPING && take_facts(&root, shape);
+  const scree_yaml *word = shape->known ? scree_yaml_find(&root, "source") : NULL;
+  if (!word)
+    return scree_fail(error, SCREE_BAD_FILE,
+                      "%s: is damaged; delete it and its shape is made again", path);
+  if (strcmp(word->text, shape->word) != 0)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: is of '%s', not of '%s': use another folder",
+                      path, word->text, shape->word);
+  return SCREE_OK;
 }
 
 scree_status scree_study_know_shapes(scree_study *study, scree_error *error) {
@@ -171,18 +165,16 @@ static scree_status read_scan(const scree_study *study, const scree_study_shape 
                               scree_checksum *sum, scree_error *error) {
   scree_read_options read = scree_default_read_options();
   scree_repair_options repair = scree_default_repair_options();
-  scree_scan scan;
+  SCREE_CLEANUP(scree_scan_free) scree_scan scan = {0};
   read.ignore_comment_unit = true;
   SCREE_TRY(scree_scan_read(shape->path, &read, &scan, error));
   double unit = scan.comment_unit_m > 0 ? scan.comment_unit_m : study->unit_m;
   *scale = scan.states_unit ? 1 : unit / read.unit_m;
   *sum = scan.checksum;
-  scree_status status = scree_mesh_prepare(&scan.mesh, &repair, progress, &scan.mesh, NULL, error);
-  if (status != SCREE_OK)
-    scree_scan_free(&scan);
-  else
-    *mesh = scan.mesh;
-  return status;
+  SCREE_TRY(scree_mesh_prepare(&scan.mesh, &repair, progress, &scan.mesh, NULL, error));
+  *mesh = scan.mesh;
+  scan.mesh = (scree_mesh){0};
+  return SCREE_OK;
 }
 
 static scree_status write_mesh(const scree_mesh *mesh, const char *path, scree_error *error) {
@@ -196,15 +188,11 @@ static scree_status write_mesh(const scree_mesh *mesh, const char *path, scree_e
 static scree_status write_clump(scree_mesh *mesh, size_t count, const scree_progress *progress,
                                 const char *path, scree_error *error) {
   scree_clump_options o = scree_default_clump_options();
-  scree_clumps clumps;
+  SCREE_CLEANUP(scree_clumps_free) scree_clumps clumps = {0};
   o.most = count;
-  scree_status status = scree_mesh_canonicalize(mesh, error);
-  if (status == SCREE_OK) status = scree_clumps_make(mesh, &o, progress, &clumps, error);
-  if (status != SCREE_OK) return status;
-  status =
-      scree_spheres_write(&clumps, scree_clumps_of_count(&clumps, count), 1, path, true, error);
-  scree_clumps_free(&clumps);
-  return status;
+  SCREE_TRY(scree_mesh_canonicalize(mesh, error));
+  SCREE_TRY(scree_clumps_make(mesh, &o, progress, &clumps, error));
+  return scree_spheres_write(&clumps, scree_clumps_of_count(&clumps, count), 1, path, true, error);
 }
 
 static size_t find_level(const scree_study_shape *shape, const scree_curve *curve, const char *rp) {
@@ -218,19 +206,13 @@ static size_t find_level(const scree_study_shape *shape, const scree_curve *curv
 static scree_status write_level(const scree_study *study, const scree_study_shape *shape,
                                 const char *rp, const scree_curve *curve,
                                 const scree_progress *progress, scree_error *error) {
-  scree_mesh mesh;
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
   const char *path = LEVEL_PATH(study, shape, rp);
-  scree_status status = SCREE_OK;
-  if (!scree_path_exists(path)) {
-    size_t spheres = scree_study_spheres(rp);
-    status = scree_curve_mesh(curve, find_level(shape, curve, rp), &mesh, error);
-    if (status == SCREE_OK) {
-      status = spheres ? write_clump(&mesh, spheres, progress, path, error)
-                       : write_mesh(&mesh, path, error);
-      scree_mesh_free(&mesh);
-    }
-  }
-  return status;
+  size_t spheres = scree_study_spheres(rp);
+  if (scree_path_exists(path)) return SCREE_OK;
+  SCREE_TRY(scree_curve_mesh(curve, find_level(shape, curve, rp), &mesh, error));
+  return spheres ? write_clump(&mesh, spheres, progress, path, error)
+                 : write_mesh(&mesh, path, error);
 }
 
 static scree_status write_facts(const scree_study *study, const scree_study_shape *shape,
@@ -264,28 +246,24 @@ static scree_status decimate(const scree_study *study, size_t index, scree_mesh 
                              const scree_progress *progress, scree_study_shape *made,
                              scree_error *error) {
   scree_simplify_options simplify = scree_default_simplify_options();
-  scree_curve *curve;
-  scree_choice choice = {0};
+  SCREE_CLEANUP(scree_curve_drop) scree_curve *curve = NULL;
+  SCREE_CLEANUP(scree_choice_free) scree_choice choice = {0};
   simplify.method = study->method;
   SCREE_TRY(scree_curve_build_scaled(mesh, scale, &simplify, progress, &curve, error));
-  scree_status status = scree_choose(curve, mesh, NULL, progress, &choice, error);
-  if (status == SCREE_OK) {
-    made->triangle_count = choice.triangle_count;
-    made->area = choice.area;
-    made->volume = choice.volume;
-    made->paper_rp = choice.paper.rp;
-    made->robust_rp = choice.robust.rp;
-    made->recommended_rp = choice.recommended.rp;
-    if (!(made->volume > 0))
-      status = scree_fail(error, SCREE_BAD_MESH, "%s: the volume is %g m3: not an outward surface",
-                          made->word, made->volume);
-  }
-  for (size_t p = 0; status == SCREE_OK && p < study->point_count; p++)
+  SCREE_TRY(scree_choose(curve, mesh, NULL, progress, &choice, error));
+  made->triangle_count = choice.triangle_count;
+  made->area = choice.area;
+  made->volume = choice.volume;
+  made->paper_rp = choice.paper.rp;
+  made->robust_rp = choice.robust.rp;
+  made->recommended_rp = choice.recommended.rp;
+  if (!(made->volume > 0))
+    return scree_fail(error, SCREE_BAD_MESH, "%s: the volume is %g m3: not an outward surface",
+                      made->word, made->volume);
+  for (size_t p = 0; p < study->point_count; p++)
     if (uses(study, p, index) && strcmp(study->points[p].rp, "spheres") != 0)
-      status = write_level(study, made, study->points[p].rp, curve, progress, error);
-  scree_choice_free(&choice);
-  scree_curve_free(curve);
-  return status;
+      SCREE_TRY(write_level(study, made, study->points[p].rp, curve, progress, error));
+  return SCREE_OK;
 }
 
 /* Reads, decimates, writes; the facts last, for they say that all is there. */
@@ -293,7 +271,7 @@ static scree_status make_shape(const scree_study *study, size_t index,
                                const scree_progress *progress, scree_error *error) {
   scree_study_shape made = study->shapes[index];
   scree_checksum sum;
-  scree_mesh mesh;
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
   double scale = 1;
   scree_status status = made.path ? read_scan(study, &made, progress, &mesh, &scale, &sum, error)
                                   : read_sample(study, &made, progress, &mesh, &sum, error);
@@ -305,12 +283,11 @@ static scree_status make_shape(const scree_study *study, size_t index,
     return status;
   }
   if (made.known && (made.checksum.high != sum.high || made.checksum.low != sum.low))
-    status = scree_fail(error, SCREE_BAD_ARGUMENT,
-                        "%s: has changed since the study began: use another folder", made.word);
+    return scree_fail(error, SCREE_BAD_ARGUMENT,
+                      "%s: has changed since the study began: use another folder", made.word);
   made.checksum = sum;
-  if (status == SCREE_OK) status = decimate(study, index, &mesh, scale, progress, &made, error);
-  scree_mesh_free(&mesh);
-  return status == SCREE_OK ? write_facts(study, &made, error) : status;
+  SCREE_TRY(decimate(study, index, &mesh, scale, progress, &made, error));
+  return write_facts(study, &made, error);
 }
 
 static scree_status pause_for(const scree_study_options *options, const scree_progress *progress,
@@ -330,25 +307,22 @@ static scree_status prepare_shape(scree_study *study, size_t index,
   snprintf(name, sizeof name, "shape-%s", shape->name);
   scree_lease_default_worker(worker);
   const char *folder = SCREE_STUDY_PATH(study, "leases", "", "");
-  scree_status status = SCREE_OK;
-  for (bool complete = false; status == SCREE_OK;) {
+  for (;;) {
     bool taken;
     scree_lease lease;
-    status = know_shape(study, shape, error);
-    if (status == SCREE_OK) complete = is_complete(study, index);
-    if (status != SCREE_OK || complete) break;
-    status = scree_lease_take(folder, name, options->lease_s, worker, &taken, &lease, error);
-    if (status != SCREE_OK) break;
+    SCREE_TRY(know_shape(study, shape, error));
+    if (is_complete(study, index)) return SCREE_OK;
+    SCREE_TRY(scree_lease_take(folder, name, options->lease_s, worker, &taken, &lease, error));
     if (!taken) {
-      status = pause_for(options, progress, "another process makes the shapes", error);
+      SCREE_TRY(pause_for(options, progress, "another process makes the shapes", error));
       continue;
     }
     keeper k = {progress, &lease, fmin(5, 0.2 * options->lease_s), shape->name};
     scree_progress keeping = {keep, &k, progress ? progress->interval : 0.2};
-    status = make_shape(study, index, &keeping, error);
+    scree_status status = make_shape(study, index, &keeping, error);
     scree_lease_release(&lease);
+    SCREE_TRY(status);
   }
-  return status;
 }
 
 /* A file that is not the one the study began with must not be taken for it. */
@@ -370,11 +344,9 @@ scree_status scree_study_prepare(scree_study *study, const scree_study_options *
   const scree_study_options defaults = scree_default_study_options();
   if (!options) options = &defaults;
   for (size_t i = 0; i < study->shape_count; i++) {
-    scree_status status = know_shape(study, &study->shapes[i], error);
-    if (status == SCREE_OK && study->shapes[i].known)
-      status = check_unchanged(&study->shapes[i], error);
-    if (status == SCREE_OK) status = prepare_shape(study, i, options, progress, error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(know_shape(study, &study->shapes[i], error));
+    if (study->shapes[i].known) SCREE_TRY(check_unchanged(&study->shapes[i], error));
+    SCREE_TRY(prepare_shape(study, i, options, progress, error));
   }
   return scree_study_make_keys(study, error);
 }
@@ -384,12 +356,10 @@ scree_status scree_study_prepare(scree_study *study, const scree_study_options *
 static scree_status read_mesh_particle(const char *path, scree_particle **particle,
                                        scree_error *error) {
   scree_read_options read = scree_default_read_options();
-  scree_scan scan;
+  SCREE_CLEANUP(scree_scan_free) scree_scan scan = {0};
   read.unit_m = 1;
   SCREE_TRY(scree_scan_read(path, &read, &scan, error));
-  scree_status status = scree_particle_from_mesh(&scan.mesh, NULL, particle, error);
-  scree_scan_free(&scan);
-  return status;
+  return scree_particle_from_mesh(&scan.mesh, NULL, particle, error);
 }
 
 static scree_status make_particle(const scree_study *study, const scree_study_shape *shape,

@@ -98,6 +98,7 @@ struct scree_study {
   char (*keys)[SCREE_RUN_KEY_BYTES]; /* of every run; NULL before all shapes are known */
 };
 
+SCREE_DEFINE_DROP(scree_curve)
 SCREE_DEFINE_DROP(scree_study)
 
 static inline size_t scree_study_run_point(const scree_study *study, size_t run) {
@@ -162,7 +163,7 @@ scree_status scree_study_keep_scene(const scree_study *study, scree_error *error
 scree_status scree_study_read_command(scree_study *study, const scree_yaml *command,
                                       scree_error *error);
 /* Whether the command has a word with {key} in it. */
-bool scree_study_command_has(const scree_study *study, const char *key);
+bool scree_command_has(const scree_texts *command, const char *key);
 /* The word of the command with a run's values, as text in the arena's way; folder NULL: {folder} is
  * left as it is. */
 scree_status scree_study_command_word(const scree_study *study, size_t run, size_t word,
@@ -174,6 +175,10 @@ const char *scree_study_path(const scree_study *study, const char *kind, const c
                              const char *ending, char path[SCREE_PATH_BYTES]);
 #define SCREE_STUDY_PATH(study, kind, name, ending)                                                \
   scree_study_path(study, kind, name, ending, (char[SCREE_PATH_BYTES]){0})
+
+/* Writes the text where the file does not hold it already, so that a folder in use is left alone.
+ */
+scree_status scree_study_keep_text(const char *text, const char *path, scree_error *error);
 
 /* confidence in (0, 1), for example 0.95: of normally distributed values. */
 scree_summary scree_summarise(const double *values, size_t count, double confidence);

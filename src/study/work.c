@@ -7,6 +7,7 @@
 #include "base/number.h"
 #include "base/platform.h"
 #include "base/progress.h"
+#include "scene/scene.h"
 #include "study/lease.h"
 #include "study/record.h"
 
@@ -74,7 +75,7 @@ static bool watch(void *context, const scree_scene_state *state) {
 /* To its end; a checkpoint that cannot be read is thrown away once. */
 static scree_status simulate(work *w, const scree_scene_file *file, scree_shape_store *store,
                              scree_study_record *record, scree_error *error) {
-  scree_scene *scene = NULL;
+  SCREE_CLEANUP(scree_scene_drop) scree_scene *scene = NULL;
   scree_scene_job job = {.file = file,
                          .folder = RUN_FILE(w, "runs", ""),
                          .resume = true,
@@ -91,11 +92,8 @@ static scree_status simulate(work *w, const scree_scene_file *file, scree_shape_
     job.overwrite = true;
     status = scree_scene_complete(&job, &scene, &own);
   }
-  if (status == SCREE_OK)
-    status = scree_study_record_scene(w->study, scene, record, error);
-  else if (error)
-    *error = own;
-  scree_scene_free(scene);
+  if (status == SCREE_OK) return scree_study_record_scene(w->study, scene, record, error);
+  if (error) *error = own;
   return status;
 }
 
@@ -116,18 +114,13 @@ static scree_status run_command(work *w, scree_study_record *record, scree_error
 }
 
 static scree_status make_and_simulate(work *w, scree_study_record *record, scree_error *error) {
-  scree_scene_file *file;
-  scree_shape_store *store;
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
+  SCREE_CLEANUP(scree_shape_store_drop) scree_shape_store *store = NULL;
   if (w->study->command.count) return run_command(w, record, error);
   SCREE_TRY(scree_study_run_scene(w->study, w->run, &file, error));
-  scree_status status = scree_shape_store_create(&store, error);
-  if (status == SCREE_OK) {
-    status = scree_study_stock(w->study, w->run, file, store, &record->triangle_count, error);
-    if (status == SCREE_OK) status = simulate(w, file, store, record, error);
-    scree_shape_store_free(store);
-  }
-  scree_scene_file_free(file);
-  return status;
+  SCREE_TRY(scree_shape_store_create(&store, error));
+  SCREE_TRY(scree_study_stock(w->study, w->run, file, store, &record->triangle_count, error));
+  return simulate(w, file, store, record, error);
 }
 
 /* What says that another run would fare no better here. */
@@ -156,6 +149,7 @@ static void record_failure(scree_study_record *record, const char *reason) {
 
 /* Works on w->run, whose lease is ours. */
 static scree_status do_run(work *w, scree_error *error) {
+  SCREE_CLEANUP(scree_study_record_free)
   scree_study_record record = {.started = scree_calendar_time()};
   scree_error reason = {0};
   char last[SCREE_LEASE_NAME] = "", name[64];
@@ -173,17 +167,15 @@ static scree_status do_run(work *w, scree_error *error) {
     status = make_and_simulate(w, &record, &reason);
   record.ended = scree_calendar_time();
   if (w->lost || is_machines_fault(status)) {
-    scree_study_record_free(&record);
     if (w->lost) return SCREE_OK; /* whoever has it now goes on */
     if (w->renewal != SCREE_OK) reason = w->renewal_error;
     if (error) *error = reason;
     return w->renewal != SCREE_OK ? w->renewal : status;
   }
   if (status != SCREE_OK) record_failure(&record, reason.message);
-  status = write_record(w, &record, error);
-  scree_study_record_free(&record);
-  if (status == SCREE_OK) scree_lease_forget_deaths(w->leases, name);
-  return status;
+  SCREE_TRY(write_record(w, &record, error));
+  scree_lease_forget_deaths(w->leases, name);
+  return SCREE_OK;
 }
 
 /* ---- many runs ---- */
@@ -225,13 +217,10 @@ static scree_status pause_work(const work *w, scree_error *error) {
 static void reopen_failed(work *w) {
   for (w->run = 0; w->run < scree_study_run_count(w->study); w->run++) {
     const char *path = RUN_FILE(w, "results", ".yaml");
-    scree_study_record record;
-    bool failed = false;
-    if (scree_path_exists(path) && scree_study_record_read(path, &record, NULL) == SCREE_OK) {
-      failed = record.failed;
-      scree_study_record_free(&record);
-    }
-    for (int n = 1; failed && n < RETRIES_KEPT; n++) {
+    SCREE_CLEANUP(scree_study_record_free) scree_study_record record = {0};
+    if (!scree_path_exists(path) || scree_study_record_read(path, &record, NULL) != SCREE_OK)
+      continue;
+    for (int n = 1; record.failed && n < RETRIES_KEPT; n++) {
       char ending[32];
       snprintf(ending, sizeof ending, ".failed-%d", n);
       const char *aside = RUN_FILE(w, "results", ending);
@@ -258,11 +247,10 @@ scree_status scree_study_answer_again(const scree_study *study, size_t run,
   bool command = study->command.count > 0;
   const char *path =
       SCREE_STUDY_PATH(study, "runs", study->keys[run], command ? "" : "/last.scree");
-  scree_scene *scene = NULL;
+  SCREE_CLEANUP(scree_scene_drop) scree_scene *scene = NULL;
   scree_status status = command ? scree_study_answer_command(study, path, record, error)
                                 : scree_scene_load(path, &scene, error);
   if (scene) status = scree_study_answer_scene(study, scene, record, error);
-  scree_scene_free(scene);
   record->ended = nextafter(record->ended, INFINITY); /* the database sees that it is another */
   return status;
 }
@@ -283,13 +271,10 @@ static scree_status renew_answers(const work *w, const char *path, scree_study_r
 static void put_broken_aside(work *w) {
   for (w->run = 0; w->run < scree_study_run_count(w->study); w->run++) {
     const char *path = RUN_FILE(w, "results", ".yaml");
-    scree_study_record record;
+    SCREE_CLEANUP(scree_study_record_free) scree_study_record record = {0};
     if (!scree_path_exists(path)) continue;
     scree_status status = scree_study_record_read(path, &record, NULL);
-    if (status == SCREE_OK) {
-      status = renew_answers(w, path, &record);
-      scree_study_record_free(&record);
-    }
+    if (status == SCREE_OK) status = renew_answers(w, path, &record);
     if (status == SCREE_BAD_FILE) scree_path_rename(path, RUN_FILE(w, "results", ".broken"));
   }
 }
@@ -299,19 +284,18 @@ static scree_status work_on(work *w, size_t *completed, scree_error *error) {
     bool taken;
     size_t open;
     if (w->options->run_limit && *completed >= w->options->run_limit) return SCREE_OK;
-    scree_status status = take_run(w, &taken, &open, error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(take_run(w, &taken, &open, error));
     if (taken) {
-      status = do_run(w, error);
+      scree_status status = do_run(w, error);
       scree_lease_release(&w->lease);
-      if (status == SCREE_OK) ++*completed;
+      SCREE_TRY(status);
+      ++*completed;
       /* for those who look; what is wrong with the database is told at the end */
-      if (status == SCREE_OK) scree_study_collect(w->study, false, NULL);
+      scree_study_collect(w->study, false, NULL);
     } else {
       if (open == 0 || !w->options->wait) return SCREE_OK;
-      status = pause_work(w, error);
+      SCREE_TRY(pause_work(w, error));
     }
-    if (status != SCREE_OK) return status;
   }
 }
 

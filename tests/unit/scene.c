@@ -243,7 +243,7 @@ static void completed_in_pieces(void **state) {
   /* another scene is refused, and says what differs; more time is not another scene */
   set(file, "inlets.feed.rate", "100");
   assert_int_equal(scree_scene_complete(&job, &scene, &error), SCREE_BAD_ARGUMENT);
-  assert_non_null(strstr(error.message, "'rate: 200' there and 'rate: 100' here"));
+  assert_non_null(strstr(error.message, "inlets.feed.rate is 200 there and 100 here"));
   set(file, "inlets.feed.rate", "200");
   set(file, "time", "0.3");
   job.watch = NULL;
