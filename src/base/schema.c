@@ -277,6 +277,13 @@ static scree_status read_reals(const scree_reader *r, const scree_yaml *node, co
   return SCREE_OK;
 }
 
+static scree_status read_direction(const scree_reader *r, const scree_yaml *node,
+                                   const scree_field *f, double *value) {
+  SCREE_TRY(read_reals(r, node, f, 3, value));
+  if (value[0] != 0 || value[1] != 0 || value[2] != 0) return SCREE_OK;
+  return fail_at(r, node, "[0, 0, 0] points nowhere");
+}
+
 static scree_status read_table(const scree_reader *r, const scree_yaml *node, const scree_field *f,
                                scree_table *value) {
   if (node->kind != SCREE_YAML_SEQUENCE || node->item_count < 1)
@@ -427,6 +434,8 @@ scree_status scree_field_read(const scree_reader *r, const scree_yaml *node, con
     return read_texts(r, node, value);
   case SCREE_FIELD_VECTOR:
     return read_reals(r, node, f, 3, value);
+  case SCREE_FIELD_DIRECTION:
+    return read_direction(r, node, f, value);
   case SCREE_FIELD_TURN:
     return read_reals(r, node, f, 4, value);
   case SCREE_FIELD_TABLE:
@@ -461,6 +470,27 @@ static scree_status check_commas(const scree_reader *r, const scree_yaml *node) 
   return SCREE_OK;
 }
 
+static bool is_of_word(char c) {
+  return isalpha((unsigned char)c) || c == '_';
+}
+
+/* Whether a word of the sentence is the key. */
+static bool has_word(const char *sentence, const char *key) {
+  size_t length = strlen(key);
+  for (const char *at = sentence; (at = strstr(at, key)); at += length)
+    if ((at == sentence || !is_of_word(at[-1])) && !is_of_word(at[length])) return true;
+  return false;
+}
+
+static scree_status check_needs(const scree_reader *r, const scree_record *kind,
+                                const void *record) {
+  for (size_t i = 0; kind->needs && i < kind->field_count; i++)
+    if (!scree_field_is_given(&kind->fields[i], record) &&
+        has_word(kind->needs, kind->fields[i].key))
+      return scree_fail_place(r, record, "needs %s", kind->needs);
+  return SCREE_OK;
+}
+
 scree_status scree_record_read(const scree_reader *reader, const scree_yaml *node,
                                const scree_record *kind, void *record) {
   memcpy(record, kind->defaults, kind->size);
@@ -473,6 +503,7 @@ scree_status scree_record_read(const scree_reader *reader, const scree_yaml *nod
     if (!field) return fail_unknown(reader, &node->items[i], kind);
     SCREE_TRY(scree_field_read(reader, &node->items[i], field, record));
   }
+  SCREE_TRY(check_needs(reader, kind, record));
   return kind->check ? kind->check(reader, record) : SCREE_OK;
 }
 
@@ -488,6 +519,7 @@ bool scree_field_is_given(const scree_field *field, const void *record) {
   switch (field->kind) {
   case SCREE_FIELD_REAL:
   case SCREE_FIELD_VECTOR:
+  case SCREE_FIELD_DIRECTION:
   case SCREE_FIELD_TURN:
     return !isnan(*(const double *)value);
   case SCREE_FIELD_COUNT:
@@ -622,6 +654,7 @@ static void put_value(FILE *stream, const scree_field *f, const void *record) {
     put_texts(stream, value);
     break;
   case SCREE_FIELD_VECTOR:
+  case SCREE_FIELD_DIRECTION:
     put_reals(stream, value, 3);
     break;
   case SCREE_FIELD_TURN:

@@ -8,21 +8,22 @@
 #include "base/yaml.h"
 
 typedef enum scree_field_kind {
-  SCREE_FIELD_REAL,    /* double; NAN: not given */
-  SCREE_FIELD_COUNT,   /* size_t; 0: not given */
-  SCREE_FIELD_SEED,    /* uint64_t */
-  SCREE_FIELD_FLAG,    /* bool */
-  SCREE_FIELD_WORD,    /* int: which of the words that `unit` lists; -1: not given */
-  SCREE_FIELD_TEXT,    /* const char *; NULL: not given */
-  SCREE_FIELD_TEXTS,   /* scree_texts: one text, or a list of them */
-  SCREE_FIELD_VECTOR,  /* double[3]; first NAN: not given */
-  SCREE_FIELD_TURN,    /* double[4], w x y z; first NAN: not given */
-  SCREE_FIELD_TABLE,   /* scree_table: [[t, value], ...], t rising */
-  SCREE_FIELD_WEIGHTS, /* scree_weights: {name: number, ...}, a list of names, or one name */
-  SCREE_FIELD_RECORD,  /* struct *; NULL: not given */
-  SCREE_FIELD_NAMED,   /* TYPE_list: {name: record, ...} */
-  SCREE_FIELD_LIST,    /* TYPE_list: [record, ...] */
-  SCREE_FIELD_VALUES,  /* scree_values: {name: any one value, ...} */
+  SCREE_FIELD_REAL,      /* double; NAN: not given */
+  SCREE_FIELD_COUNT,     /* size_t; 0: not given */
+  SCREE_FIELD_SEED,      /* uint64_t */
+  SCREE_FIELD_FLAG,      /* bool */
+  SCREE_FIELD_WORD,      /* int: which of the words that `unit` lists; -1: not given */
+  SCREE_FIELD_TEXT,      /* const char *; NULL: not given */
+  SCREE_FIELD_TEXTS,     /* scree_texts: one text, or a list of them */
+  SCREE_FIELD_VECTOR,    /* double[3]; first NAN: not given */
+  SCREE_FIELD_DIRECTION, /* the same, not [0, 0, 0] */
+  SCREE_FIELD_TURN,      /* double[4], w x y z; first NAN: not given */
+  SCREE_FIELD_TABLE,     /* scree_table: [[t, value], ...], t rising */
+  SCREE_FIELD_WEIGHTS,   /* scree_weights: {name: number, ...}, a list of names, or one name */
+  SCREE_FIELD_RECORD,    /* struct *; NULL: not given */
+  SCREE_FIELD_NAMED,     /* TYPE_list: {name: record, ...} */
+  SCREE_FIELD_LIST,      /* TYPE_list: [record, ...] */
+  SCREE_FIELD_VALUES,    /* scree_values: {name: any one value, ...} */
   SCREE_FIELD_NODE, /* const scree_yaml *: as it stands there, for its reader to look at; NULL: not
                        given; never printed */
 } scree_field_kind;
@@ -80,6 +81,8 @@ typedef struct scree_record {
   const scree_field *fields;
   size_t field_count, size;
   const void *defaults;
+  /* What must be given, to say so: the words of it that are keys. NULL: nothing. */
+  const char *needs;
   /* What single fields cannot say; NULL: nothing. */
   scree_status (*check)(const scree_reader *reader, const void *record);
 } scree_record;

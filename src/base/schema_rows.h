@@ -8,13 +8,13 @@
  * is the struct, whose members are the rows', and a list of such structs, scree_plan_disc_list. In
  * one .c file
  *
- *     SCREE_RECORD_TABLE(scree_plan_disc, SCREE_PLAN_DISC, "a disc", check_disc)
+ *     SCREE_RECORD_TABLE(scree_plan_disc, SCREE_PLAN_DISC, "a disc", "a radius", NULL)
  *
- * is scree_plan_disc_record, its table and defaults. A row has the kind (scree_field_kind), the
- * member, which is the key too, and
+ * is scree_plan_disc_record, its table and defaults, with what it needs. A row has the kind
+ * (scree_field_kind), the member, which is the key too, and
  *
  *     REAL, VECTOR: default, least, most, unit, sentence     COUNT: default, least, most, sentence
- *     SEED, FLAG: default, sentence                          WORD: default, words, sentence
+ *     DIRECTION, SEED, FLAG: default, sentence               WORD: default, words, sentence
  *     TEXT, TEXTS, VALUES, NODE: sentence                    TABLE, WEIGHTS: least, most, unit,
  *     GROUP, NAMED, LIST: type of the record, sentence         sentence
  *
@@ -47,15 +47,16 @@
   typedef type other;                                                                              \
   SCREE_RECORD_LIST(other)
 
-#define SCREE_RECORD_TABLE(type, list, what, check)                                                \
-  SCREE_RECORD_TABLE_OF(type, list, list, what, check)
+#define SCREE_RECORD_TABLE(type, list, what, needs, check)                                         \
+  SCREE_RECORD_TABLE_OF(type, list, list, what, needs, check)
 /* Of a record that has rows for some of the members; the others have defaults, too. */
-#define SCREE_RECORD_TABLE_OF(type, all, list, what, check)                                        \
+#define SCREE_RECORD_TABLE_OF(type, all, list, what, needs, check)                                 \
   static const type type##_defaults = {.place = {0}, all(SCREE_DEFAULT, type)};                    \
   static const scree_field type##_fields[] = {list(SCREE_ROW, type)};                              \
   const scree_record type##_record = {                                                             \
       what,         type##_fields,    sizeof(type##_fields) / sizeof *type##_fields,               \
-      sizeof(type), &type##_defaults, check};
+      sizeof(type), &type##_defaults, needs,                                                       \
+      check};
 
 /* ---- a row as member of the struct ---- */
 
@@ -64,6 +65,7 @@
 #define SCREE_MEMBER_OWN(T, declaration, ...)    declaration;
 #define SCREE_MEMBER_REAL(T, member, ...)        double member;
 #define SCREE_MEMBER_VECTOR(T, member, ...)      double member[3];
+#define SCREE_MEMBER_DIRECTION(T, member, ...)   double member[3];
 #define SCREE_MEMBER_COUNT(T, member, ...)       size_t member;
 #define SCREE_MEMBER_SEED(T, member, ...)        uint64_t member;
 #define SCREE_MEMBER_FLAG(T, member, ...)        bool member;
@@ -85,6 +87,7 @@
 #define SCREE_DEFAULT_OWN(T, declaration, name, value) .name = value,
 #define SCREE_DEFAULT_REAL(T, member, value, ...)      .member = (value),
 #define SCREE_DEFAULT_VECTOR(T, member, value, ...)    .member = {SCREE_WITHOUT_BRACKETS value},
+#define SCREE_DEFAULT_DIRECTION                        SCREE_DEFAULT_VECTOR
 #define SCREE_DEFAULT_COUNT                            SCREE_DEFAULT_REAL
 #define SCREE_DEFAULT_SEED                             SCREE_DEFAULT_REAL
 #define SCREE_DEFAULT_FLAG                             SCREE_DEFAULT_REAL
@@ -110,6 +113,8 @@
   SCREE_ROW_OF(T, key, REAL, member, least, most, unit, comment, NULL)
 #define SCREE_ROW_VECTOR(T, key, member, value, least, most, unit, comment)                        \
   SCREE_ROW_OF(T, key, VECTOR, member, least, most, unit, comment, NULL)
+#define SCREE_ROW_DIRECTION(T, key, member, value, comment)                                        \
+  SCREE_ROW_OF(T, key, DIRECTION, member, 0, 0, "", comment, NULL)
 #define SCREE_ROW_TABLE(T, key, member, least, most, units, comment)                               \
   SCREE_ROW_OF(T, key, TABLE, member, least, most, units, comment, NULL)
 #define SCREE_ROW_WEIGHTS(T, key, member, least, most, unit, comment)                              \

@@ -139,9 +139,6 @@ double scree_parameter_number(const scree_plan_parameter *parameter, double x);
 double scree_parameter_snap(const scree_plan_parameter *parameter, double x);
 /* Points of an experiment's first runs. */
 size_t scree_calibration_start(const scree_calibration *c, size_t experiment);
-/* Reads the two columns of a CSV file into the quantity. */
-scree_status scree_quantity_read_curve(scree_calibration *c, scree_quantity *quantity,
-                                       const char *path, scree_error *error);
 
 /* rounds.c: reads all rounds of the folder. */
 scree_status scree_rounds_read(scree_calibration *c, scree_error *error);

@@ -13,15 +13,17 @@
 
 enum { LARGEST_FILE = 1 << 20, MOST_CURVE = 40 };
 
-SCREE_RECORD_TABLE(scree_plan_experiment, SCREE_PLAN_EXPERIMENT, "an experiment", NULL)
-SCREE_RECORD_TABLE(scree_plan_parameter, SCREE_PLAN_SOUGHT_PARAMETER, "a parameter", NULL)
-SCREE_RECORD_TABLE_OF(scree_plan_target, SCREE_PLAN_QUANTITY, SCREE_PLAN_TARGET, "a target", NULL)
-SCREE_RECORD_TABLE_OF(scree_plan_sought, SCREE_PLAN_QUANTITY, SCREE_PLAN_ANSWER, "what is sought",
+SCREE_RECORD_TABLE(scree_plan_experiment, SCREE_PLAN_EXPERIMENT, "an experiment", NULL, NULL)
+SCREE_RECORD_TABLE(scree_plan_parameter, SCREE_PLAN_SOUGHT_PARAMETER, "a parameter", NULL, NULL)
+SCREE_RECORD_TABLE_OF(scree_plan_target, SCREE_PLAN_QUANTITY, SCREE_PLAN_TARGET, "a target", NULL,
                       NULL)
-SCREE_RECORD_TABLE_OF(scree_plan_limit, SCREE_PLAN_QUANTITY, SCREE_PLAN_LIMIT, "a limit", NULL)
-SCREE_RECORD_TABLE(scree_plan_budget, SCREE_PLAN_BUDGET, "the budget", NULL)
-SCREE_RECORD_TABLE(scree_plan_start, SCREE_PLAN_START, "the start", NULL)
-SCREE_RECORD_TABLE(scree_plan_calibration, SCREE_PLAN_CALIBRATION, "a calibration", NULL)
+SCREE_RECORD_TABLE_OF(scree_plan_sought, SCREE_PLAN_QUANTITY, SCREE_PLAN_ANSWER, "what is sought",
+                      NULL, NULL)
+SCREE_RECORD_TABLE_OF(scree_plan_limit, SCREE_PLAN_QUANTITY, SCREE_PLAN_LIMIT, "a limit", NULL,
+                      NULL)
+SCREE_RECORD_TABLE(scree_plan_budget, SCREE_PLAN_BUDGET, "the budget", NULL, NULL)
+SCREE_RECORD_TABLE(scree_plan_start, SCREE_PLAN_START, "the start", NULL, NULL)
+SCREE_RECORD_TABLE(scree_plan_calibration, SCREE_PLAN_CALIBRATION, "a calibration", NULL, NULL)
 
 typedef struct reader {
   scree_calibration *c;
@@ -209,6 +211,48 @@ static scree_status read_experiments(const reader *r) {
   return SCREE_OK;
 }
 
+/* ---- curves ---- */
+
+/* Means of MOST_CURVE equal parts, where there are more points. */
+static void thin_curve(scree_quantity *q, double *x, double *y, size_t count) {
+  if (count > MOST_CURVE) {
+    double low = x[0], width = (x[count - 1] - x[0]) / MOST_CURVE;
+    size_t made = 0, i = 0;
+    for (size_t part = 0; part < MOST_CURVE && i < count; part++) {
+      double sum_x = 0, sum_y = 0, used = 0;
+      for (; i < count && (x[i] < low + width * (double)(part + 1) || part + 1 == MOST_CURVE);
+           i++) {
+        sum_x += x[i];
+        sum_y += y[i];
+        used++;
+      }
+      if (used == 0) continue;
+      x[made] = sum_x / used;
+      y[made++] = sum_y / used;
+    }
+    count = made;
+  }
+  q->x = x;
+  q->y = y;
+  q->answer_count = count;
+}
+
+static scree_status read_curve(scree_calibration *c, scree_quantity *q, const char *path,
+                               scree_error *error) {
+  bool outline = !strcmp(q->plan->answer, "outline");
+  SCREE_CLEANUP(scree_curve_file_free) scree_curve_file read = {0};
+  double *x, *y;
+  SCREE_TRY(scree_curve_file_read(path, &read, error));
+  SCREE_TRY(scree_curve_file_convert(&read, 0, outline ? "m" : "s", 1, path, error));
+  if (outline) SCREE_TRY(scree_curve_file_convert(&read, 1, "m", 1, path, error));
+  SCREE_TRY_TAKE(x, &c->arena, read.count, error);
+  SCREE_TRY_TAKE(y, &c->arena, read.count, error);
+  memcpy(x, read.x, read.count * sizeof *x);
+  memcpy(y, read.y, read.count * sizeof *y);
+  thin_curve(q, x, y, read.count);
+  return SCREE_OK;
+}
+
 /* ---- quantities ---- */
 
 static scree_status read_repeats(const reader *r, scree_quantity *q) {
@@ -253,7 +297,7 @@ static scree_status read_measured(const reader *r, scree_quantity *q) {
     return scree_fail_place(&r->in, &p->place,
                             "a curve needs the uncertainty of measuring it, in its own unit");
   const char *path = full_path(r, p->curve);
-  return path ? scree_quantity_read_curve(r->c, q, path, r->in.error) : fail_memory(r);
+  return path ? read_curve(r->c, q, path, r->in.error) : fail_memory(r);
 }
 
 static scree_status find_experiment(const reader *r, scree_quantity *q) {
@@ -473,46 +517,4 @@ void scree_calibration_free(scree_calibration *c) {
 
 bool scree_calibration_is_search(const scree_calibration *c) {
   return c->plan.minimise || c->plan.maximise;
-}
-
-/* ---- curves ---- */
-
-/* Means of MOST_CURVE equal parts, where there are more points. */
-static void thin_curve(scree_quantity *q, double *x, double *y, size_t count) {
-  if (count > MOST_CURVE) {
-    double low = x[0], width = (x[count - 1] - x[0]) / MOST_CURVE;
-    size_t made = 0, i = 0;
-    for (size_t part = 0; part < MOST_CURVE && i < count; part++) {
-      double sum_x = 0, sum_y = 0, used = 0;
-      for (; i < count && (x[i] < low + width * (double)(part + 1) || part + 1 == MOST_CURVE);
-           i++) {
-        sum_x += x[i];
-        sum_y += y[i];
-        used++;
-      }
-      if (used == 0) continue;
-      x[made] = sum_x / used;
-      y[made++] = sum_y / used;
-    }
-    count = made;
-  }
-  q->x = x;
-  q->y = y;
-  q->answer_count = count;
-}
-
-scree_status scree_quantity_read_curve(scree_calibration *c, scree_quantity *q, const char *path,
-                                       scree_error *error) {
-  bool outline = !strcmp(q->plan->answer, "outline");
-  SCREE_CLEANUP(scree_curve_file_free) scree_curve_file read = {0};
-  double *x, *y;
-  SCREE_TRY(scree_curve_file_read(path, &read, error));
-  SCREE_TRY(scree_curve_file_convert(&read, 0, outline ? "m" : "s", 1, path, error));
-  if (outline) SCREE_TRY(scree_curve_file_convert(&read, 1, "m", 1, path, error));
-  SCREE_TRY_TAKE(x, &c->arena, read.count, error);
-  SCREE_TRY_TAKE(y, &c->arena, read.count, error);
-  memcpy(x, read.x, read.count * sizeof *x);
-  memcpy(y, read.y, read.count * sizeof *y);
-  thin_curve(q, x, y, read.count);
-  return SCREE_OK;
 }

@@ -180,14 +180,6 @@ static scree_status work_on_runs(const scree_calibration *c, const scree_study_o
   return SCREE_OK;
 }
 
-static scree_status pause(const scree_study_options *o, const scree_progress *p,
-                          scree_error *error) {
-  scree_sleep(o->poll_s);
-  if (p && p->report && !p->report(p->context, "others work on what is left", 0))
-    return scree_fail(error, SCREE_CANCELLED, "cancelled");
-  return SCREE_OK;
-}
-
 scree_status scree_calibration_work(scree_calibration *c, size_t batch,
                                     const scree_study_options *options,
                                     const scree_progress *progress, scree_error *error) {
@@ -208,7 +200,7 @@ scree_status scree_calibration_work(scree_calibration *c, size_t batch,
     if (g.open == 0) SCREE_TRY(plan(c, batch, o, &g, &planned, error));
     if (planned) continue;
     if (!o->wait) return SCREE_OK;
-    SCREE_TRY(pause(o, progress, error));
+    SCREE_TRY(scree_study_pause(o, progress, "others work on what is left", error));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "base/eigen.h"
 #include "base/radix.h"
 #include "base/rng.h"
+#include "heap/repose.h"
 #include "scree.h"
 
 #include <math.h>
@@ -48,8 +49,8 @@ static void corners_of(const scree_mesh *mesh, size_t triangle, vec3 p[3]) {
 static scree_status draw_points(const scree_mesh *mesh, vec3 *points, vec3 *sum,
                                 scree_error *error) {
   size_t n = mesh->triangle_count;
-  double *until = scree_alloc(n, sizeof *until), area = 0;
-  if (!until) return scree_fail_memory(error, n * sizeof *until, "the areas of a scan");
+  double area = 0;
+  SCREE_SCRATCH(double, until, n, error);
   *sum = (vec3){0, 0, 0};
   for (size_t t = 0; t < n; t++) {
     vec3 p[3];
@@ -68,7 +69,6 @@ static scree_status draw_points(const scree_mesh *mesh, vec3 *points, vec3 *sum,
     points[i] = vec3_add(vec3_scale(p[0], 1 - u),
                          vec3_add(vec3_scale(p[1], u * (1 - v)), vec3_scale(p[2], u * v)));
   }
-  scree_free(until);
   return area > 0 ? SCREE_OK : scree_fail(error, SCREE_BAD_MESH, "none of its facets has an area");
 }
 
@@ -172,21 +172,17 @@ static scree_status find_floor(const vec3 *points, vec3 sum, double diagonal, pl
 
 /* ---- holes and specks ---- */
 
-enum { OUT, IN, DONE }; /* marks of cells */
-
-/* The cells marked IN that hang together with cell `seed`, which is one, marked DONE: the first of
- * `cells`, as many as it answers. */
-static size_t flood(const scree_height_field *f, char *mark, size_t seed, size_t *cells) {
+size_t scree_flood(char *mark, size_t columns, size_t rows, size_t seed, size_t *cells) {
   size_t count = 0, done = 0;
   cells[count++] = seed;
-  mark[seed] = DONE;
+  mark[seed] = SCREE_DONE;
   while (done < count) {
-    size_t i = cells[done++], column = i % f->columns, row = i / f->columns;
-    const size_t next[4] = {column ? i - 1 : i, column + 1 < f->columns ? i + 1 : i,
-                            row ? i - f->columns : i, row + 1 < f->rows ? i + f->columns : i};
+    size_t i = cells[done++], column = i % columns, row = i / columns;
+    const size_t next[4] = {column ? i - 1 : i, column + 1 < columns ? i + 1 : i,
+                            row ? i - columns : i, row + 1 < rows ? i + columns : i};
     for (int k = 0; k < 4; k++) {
-      if (mark[next[k]] != IN) continue;
-      mark[next[k]] = DONE;
+      if (mark[next[k]] != SCREE_IN) continue;
+      mark[next[k]] = SCREE_DONE;
       cells[count++] = next[k];
     }
   }
@@ -199,12 +195,12 @@ static size_t flood(const scree_height_field *f, char *mark, size_t seed, size_t
  * share of the heap's cells. */
 static double fill_holes(scree_height_field *f, char *mark, size_t *cells, double low) {
   size_t count = 0, covered = 0, filled = 0, n = f->columns * f->rows;
-  for (size_t i = 0; i < n; i++) mark[i] = f->height[i] > -INFINITY ? OUT : IN;
-  flood(f, mark, 0, cells);
+  for (size_t i = 0; i < n; i++) mark[i] = f->height[i] > -INFINITY ? SCREE_OUT : SCREE_IN;
+  scree_flood(mark, f->columns, f->rows, 0, cells);
   for (size_t i = 0; i < n; i++) {
     covered += f->height[i] > low;
-    if (mark[i] != OUT) f->height[i] = 0;
-    if (mark[i] == IN) cells[count++] = i;
+    if (mark[i] != SCREE_OUT) f->height[i] = 0;
+    if (mark[i] == SCREE_IN) cells[count++] = i;
   }
   for (int sweep = 0; sweep < MOST_SWEEPS && count; sweep++) {
     double most = 0;
@@ -224,35 +220,30 @@ static double fill_holes(scree_height_field *f, char *mark, size_t *cells, doubl
 static void keep_heap(scree_height_field *f, char *mark, size_t *cells, double low) {
   size_t n = f->columns * f->rows, best = n;
   double most = 0;
-  for (size_t i = 0; i < n; i++) mark[i] = f->height[i] > low ? IN : OUT;
+  for (size_t i = 0; i < n; i++) mark[i] = f->height[i] > low ? SCREE_IN : SCREE_OUT;
   for (size_t i = 0; i < n; i++) {
-    if (mark[i] != IN) continue;
+    if (mark[i] != SCREE_IN) continue;
     double volume = 0;
-    size_t count = flood(f, mark, i, cells);
+    size_t count = scree_flood(mark, f->columns, f->rows, i, cells);
     for (size_t k = 0; k < count; k++) volume += f->height[cells[k]];
     if (volume <= most) continue;
     most = volume;
     best = i;
   }
-  for (size_t i = 0; i < n; i++) mark[i] = f->height[i] > low ? IN : OUT;
-  if (best < n) flood(f, mark, best, cells);
+  for (size_t i = 0; i < n; i++) mark[i] = f->height[i] > low ? SCREE_IN : SCREE_OUT;
+  if (best < n) scree_flood(mark, f->columns, f->rows, best, cells);
   for (size_t i = 0; i < n; i++)
-    if (mark[i] != DONE) f->height[i] = 0;
+    if (mark[i] != SCREE_DONE) f->height[i] = 0;
 }
 
 static scree_status tidy(scree_height_field *f, scree_ground *ground, scree_error *error) {
   size_t n = f->columns * f->rows;
-  char *mark = scree_alloc(n, sizeof *mark);
-  size_t *cells = scree_alloc(n, sizeof *cells);
   double low = fmax(floor_noise * ground->rms, least_height * (double)f->columns * f->cell);
-  if (mark && cells) {
-    ground->filled = fill_holes(f, mark, cells, low);
-    keep_heap(f, mark, cells, low);
-  }
-  bool good = mark && cells;
-  scree_free(mark);
-  scree_free(cells);
-  return good ? SCREE_OK : scree_fail_memory(error, n * sizeof *cells, "the holes of a scan");
+  SCREE_SCRATCH(char, mark, n, error);
+  SCREE_SCRATCH(size_t, cells, n, error);
+  ground->filled = fill_holes(f, mark, cells, low);
+  keep_heap(f, mark, cells, low);
+  return SCREE_OK;
 }
 
 /* The turn that brings the normal upright, by the shorter way. */
@@ -276,20 +267,18 @@ static scree_status make_field(const scree_mesh *mesh, const plane *p, double ce
   }
   double half = 0.5 * fmax(high.x - low.x, high.y - low.y);
   if (cell == 0) cell = 2 * half / CELLS_ACROSS;
-  scree_height_field made;
+  SCREE_CLEANUP(scree_height_field_free) scree_height_field made = {0};
   SCREE_TRY(scree_height_field_create(0.5 * (low.x + high.x), 0.5 * (low.y + high.y),
                                       half + 2 * cell, cell, &made, error));
   for (size_t i = 0; i < made.columns * made.rows; i++) made.height[i] = -INFINITY;
   const double origin[3] = {0, 0, 0}, turned[4] = {q.w, q.x, q.y, q.z};
   scree_height_field_add_mesh(&made, mesh, origin, turned, p->offset);
-  scree_status status = tidy(&made, ground, error);
+  SCREE_TRY(tidy(&made, ground, error));
   vec3_store(ground->up, p->normal);
   ground->offset = p->offset;
-  if (status == SCREE_OK)
-    *field = made;
-  else
-    scree_height_field_free(&made);
-  return status;
+  *field = made;
+  made = (scree_height_field){0};
+  return SCREE_OK;
 }
 
 scree_status scree_height_field_scan(const scree_mesh *scan, double cell, scree_ground *ground,
@@ -301,13 +290,10 @@ scree_status scree_height_field_scan(const scree_mesh *scan, double cell, scree_
   if (!(cell >= 0))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "cells of %g m: must not be below 0", cell);
   if (scan->triangle_count == 0) return scree_fail(error, SCREE_BAD_MESH, "no facet in it");
-  vec3 *points = scree_alloc(POINTS, sizeof *points);
-  if (!points) return scree_fail_memory(error, POINTS * sizeof *points, "the points of a scan");
-  scree_status status = draw_points(scan, points, &sum, error);
-  if (status == SCREE_OK)
-    status = find_floor(points, sum, vec3_distance(box.low, box.high), &best, &found, error);
-  scree_free(points);
-  if (status == SCREE_OK) status = make_field(scan, &best, cell, &found, field, error);
-  if (status == SCREE_OK) *ground = found;
-  return status;
+  SCREE_SCRATCH(vec3, points, POINTS, error);
+  SCREE_TRY(draw_points(scan, points, &sum, error));
+  SCREE_TRY(find_floor(points, sum, vec3_distance(box.low, box.high), &best, &found, error));
+  SCREE_TRY(make_field(scan, &best, cell, &found, field, error));
+  *ground = found;
+  return SCREE_OK;
 }

@@ -3,6 +3,8 @@
  * that all ways of a height field are those of an outline too. */
 #include "base/alloc.h"
 #include "base/curve_file.h"
+#include "base/radix.h"
+#include "heap/repose.h"
 #include "scree.h"
 
 #include <math.h>
@@ -68,15 +70,9 @@ static double axis_of(const scree_outline *o) {
 
 /* Straight between points; 0 beyond the ends. */
 static double height_at(const scree_outline *o, double x) {
-  size_t low = 0, high = o->count - 1;
-  if (x < o->x[low] || x > o->x[high]) return 0;
-  while (high - low > 1) {
-    size_t middle = low + (high - low) / 2;
-    if (o->x[middle] > x)
-      high = middle;
-    else
-      low = middle;
-  }
+  if (x < o->x[0] || x > o->x[o->count - 1]) return 0;
+  SCREE_FIND_FIRST(high, 1, o->count - 1, o->x[high] <= x)
+  size_t low = high - 1;
   double part = (x - o->x[low]) / (o->x[high] - o->x[low]);
   return fmax(0, o->z[low] + part * (o->z[high] - o->z[low]));
 }
@@ -121,7 +117,7 @@ scree_status scree_outline_measure(const scree_outline *outline, double cell,
 
 typedef struct picture {
   size_t width, height;
-  bool *heap;     /* of every pixel, rows from the top */
+  char *heap;     /* of every pixel, rows from the top: SCREE_IN or SCREE_OUT */
   double *top;    /* of every column: rows above the heap, NaN where it is not */
   double *bottom; /* rows above what is below it */
 } picture;
@@ -162,7 +158,7 @@ static scree_status find_silhouette(const uint8_t *rgb, picture *p, scree_error 
       const uint8_t *c = rgb + 3 * i;
       int grey = (299 * c[0] + 587 * c[1] + 114 * c[2]) / 1000;
       if (pass)
-        p->heap[i] = grey <= threshold;
+        p->heap[i] = grey <= threshold ? SCREE_IN : SCREE_OUT;
       else
         histogram[grey]++;
     }
@@ -173,39 +169,20 @@ static scree_status find_silhouette(const uint8_t *rgb, picture *p, scree_error 
         "no silhouette: dark and bright explain %.0f %% of the greys' variance, at least %g %% are "
         "needed; light the heap from behind, or paint it black on white",
         100 * parted, 100 * least_parted);
-  for (size_t i = 0; i < p->width; i++) bright += !p->heap[i];
-  for (size_t i = 0; 2 * bright < p->width && i < n; i++) p->heap[i] = !p->heap[i];
+  for (size_t i = 0; i < p->width; i++) bright += p->heap[i] == SCREE_OUT;
+  for (size_t i = 0; 2 * bright < p->width && i < n; i++)
+    p->heap[i] = p->heap[i] == SCREE_IN ? SCREE_OUT : SCREE_IN;
   return SCREE_OK;
-}
-
-/* Collects what hangs together with pixel `seed` and takes it out of the mask; its pixels are the
- * first of `pixels`. */
-static size_t take_part(picture *p, size_t seed, size_t *pixels) {
-  size_t count = 0, done = 0;
-  pixels[count++] = seed;
-  p->heap[seed] = false;
-  while (done < count) {
-    size_t i = pixels[done++], column = i % p->width, row = i / p->width;
-    const size_t next[4] = {column ? i - 1 : i, column + 1 < p->width ? i + 1 : i,
-                            row ? i - p->width : i, row + 1 < p->height ? i + p->width : i};
-    for (int k = 0; k < 4; k++) {
-      if (!p->heap[next[k]]) continue;
-      p->heap[next[k]] = false;
-      pixels[count++] = next[k];
-    }
-  }
-  return count;
 }
 
 /* Only the largest piece stays: specks and dust go. */
 static scree_status find_columns(picture *p, scree_error *error) {
   const size_t width = p->width, n = width * p->height;
   size_t most = 0;
-  size_t *pixels = scree_alloc(n, sizeof *pixels);
-  if (!pixels) return scree_fail_memory(error, n * sizeof *pixels, "a silhouette");
+  SCREE_SCRATCH(size_t, pixels, n, error);
   for (size_t i = 0; i < n; i++) {
-    if (!p->heap[i]) continue;
-    size_t count = take_part(p, i, pixels);
+    if (p->heap[i] != SCREE_IN) continue;
+    size_t count = scree_flood(p->heap, width, p->height, i, pixels);
     if (count <= most) continue;
     most = count;
     for (size_t c = 0; c < width; c++) p->top[c] = p->bottom[c] = NAN;
@@ -216,7 +193,6 @@ static scree_status find_columns(picture *p, scree_error *error) {
       p->bottom[column] = fmax(p->bottom[column], row + 1);
     }
   }
-  scree_free(pixels);
   for (size_t c = 0; c < width; c++)
     if (p->top[c] == 0)
       return scree_fail(error, SCREE_BAD_FILE,
@@ -264,8 +240,7 @@ static scree_status draw_outline(const picture *p, const ground *g, double pixel
                                  scree_outline *outline, scree_error *error) {
   double length = hypot(1, g->slope), cosine = 1 / length, sine = g->slope / length;
   size_t columns = (size_t)((double)p->width * length + (double)p->height) + 1, count = 0;
-  double *highest = scree_alloc(columns, sizeof *highest);
-  if (!highest) return scree_fail_memory(error, columns * sizeof *highest, "an outline");
+  SCREE_SCRATCH(double, highest, columns, error);
   for (size_t i = 0; i < columns; i++) highest[i] = NAN;
   for (size_t c = 0; c < p->width; c++) {
     if (isnan(p->top[c])) continue;
@@ -276,36 +251,30 @@ static scree_status draw_outline(const picture *p, const ground *g, double pixel
     if (i < columns) highest[i] = fmax(highest[i], up);
   }
   for (size_t i = 0; i < columns; i++) count += !isnan(highest[i]);
-  scree_status status = make_outline(count, outline, error);
-  for (size_t i = 0, made = 0; status == SCREE_OK && i < columns; i++) {
+  SCREE_TRY(make_outline(count, outline, error));
+  for (size_t i = 0, made = 0; i < columns; i++) {
     if (isnan(highest[i])) continue;
     outline->x[made] = ((double)i + 0.5) * pixel;
     outline->z[made++] = highest[i] * pixel;
   }
-  double axis = status == SCREE_OK ? axis_of(outline) : 0;
-  for (size_t i = 0; status == SCREE_OK && i < count; i++) outline->x[i] -= axis;
-  scree_free(highest);
-  return status;
+  double axis = axis_of(outline);
+  for (size_t i = 0; i < count; i++) outline->x[i] -= axis;
+  return SCREE_OK;
 }
 
 scree_status scree_outline_trace(const uint8_t *rgb, size_t width, size_t height, double pixel,
                                  scree_outline *outline, scree_error *error) {
-  picture p = {.width = width, .height = height};
   ground g = {0};
   if (!(pixel > 0) || width < 8 || height < 8)
     return scree_fail(
         error, SCREE_BAD_ARGUMENT,
         "a picture of %zu x %zu pixels of %g m: must be 8 x 8 at least, and its scale positive",
         width, height, pixel);
-  p.heap = scree_alloc(width * height, sizeof *p.heap);
-  p.top = scree_alloc(2 * width, sizeof *p.top);
-  scree_status status = p.heap && p.top ? SCREE_OK : scree_fail_memory(error, 0, "a silhouette");
-  p.bottom = p.top ? p.top + width : NULL;
-  if (status == SCREE_OK) status = find_silhouette(rgb, &p, error);
-  if (status == SCREE_OK) status = find_columns(&p, error);
-  if (status == SCREE_OK) status = find_ground(&p, &g, error);
-  if (status == SCREE_OK) status = draw_outline(&p, &g, pixel, outline, error);
-  scree_free(p.heap);
-  scree_free(p.top);
-  return status;
+  SCREE_SCRATCH(char, heap, width *height, error);
+  SCREE_SCRATCH(double, top, 2 * width, error);
+  picture p = {width, height, heap, top, top + width};
+  SCREE_TRY(find_silhouette(rgb, &p, error));
+  SCREE_TRY(find_columns(&p, error));
+  SCREE_TRY(find_ground(&p, &g, error));
+  return draw_outline(&p, &g, pixel, outline, error);
 }

@@ -41,6 +41,11 @@ typedef struct spheres {
   scree_columns columns;
 } spheres;
 
+static void free_spheres(spheres *s) {
+  scree_free(s->centres);
+  scree_free(s->radii);
+}
+
 static bool push_sphere(spheres *s, const double row[4]) {
   if (!scree_array_reserve((void **)&s->centres, &s->centre_capacity, 3 * (s->count + 1),
                            sizeof *s->centres) ||
@@ -298,20 +303,15 @@ static scree_status read_pfc(scree_text *t, spheres *s) {
 scree_status scree_particle_clump_read(const char *path, const scree_read_options *options,
                                        scree_particle **particle, scree_error *error) {
   const scree_read_options o = options ? *options : scree_default_read_options();
-  char *bytes;
+  SCREE_CLEANUP(scree_free_at) char *bytes = NULL;
+  SCREE_CLEANUP(free_spheres) spheres s = {.keep_unit = o.ignore_comment_unit};
   size_t count;
-  spheres s = {.keep_unit = o.ignore_comment_unit};
   SCREE_TRY(scree_file_read(path, o.max_bytes, &bytes, &count, error));
   scree_text text = {bytes, bytes, bytes + count, path, o.unit_m, error};
-  scree_status status = is_pfc(text) ? read_pfc(&text, &s) : read_spheres(&text, &s);
-  if (status == SCREE_OK)
-    status = scree_particle_clump_of(s.centres, s.radii, s.count,
-                                     s.known == (VOLUME | CENTROID | INERTIA) ? &s.body : NULL,
-                                     particle, error);
-  scree_free(s.centres);
-  scree_free(s.radii);
-  scree_free(bytes);
-  return status;
+  SCREE_TRY(is_pfc(text) ? read_pfc(&text, &s) : read_spheres(&text, &s));
+  bool whole = s.known == (VOLUME | CENTROID | INERTIA);
+  return scree_particle_clump_of(s.centres, s.radii, s.count, whole ? &s.body : NULL, particle,
+                                 error);
 }
 
 bool scree_is_clump_table(const char *path) {

@@ -375,12 +375,9 @@ static scree_box box_of_point(const void *particle, size_t i) {
 }
 
 static scree_status add_edge_cones(scree_particle *p, scree_error *error) {
-  scree_cone *cones = scree_alloc(p->edge_count, sizeof *cones);
-  if (!cones) return scree_fail_memory(error, p->edge_count * sizeof *cones, "cones of edges");
+  SCREE_SCRATCH(scree_cone, cones, p->edge_count, error);
   for (size_t e = 0; e < p->edge_count; e++) cones[e] = p->edges[e].normals;
-  scree_status status = scree_tree_add_cones(&p->edge_tree, cones, error);
-  scree_free(cones);
-  return status;
+  return scree_tree_add_cones(&p->edge_tree, cones, error);
 }
 
 scree_status scree_particle_build_trees(scree_particle *p, scree_error *error) {

@@ -47,19 +47,27 @@ void scree_particle_free(scree_particle *p) {
   scree_free(p);
 }
 
-static scree_particle *new_particle(scree_particle_kind kind, scree_error *error) {
-  scree_particle *p = scree_alloc_zero(1, sizeof *p);
-  if (!p) {
-    scree_fail_memory(error, sizeof *p, "a particle");
-    return NULL;
-  }
+SCREE_DEFINE_DROP(scree_particle)
+
+static scree_status make(scree_particle_kind kind, scree_particle **particle, scree_error *error) {
+  scree_particle *p;
+  SCREE_TRY_ALLOC_ZERO(p, 1, error);
   atomic_init(&p->reference_count, 1);
   p->measures.kind = kind;
   p->measures.orientation[0] = 1;
-  return p;
+  *particle = p;
+  return SCREE_OK;
 }
 
-void scree_particle_set_solid(scree_particle_measures *m, const scree_solid *solid) {
+/* Hands what was made over. */
+static scree_status give(scree_particle **made, scree_particle **particle) {
+  *particle = *made;
+  *made = NULL;
+  return SCREE_OK;
+}
+
+/* Volume, size, centre, orientation and moments of inertia. */
+static void set_solid(scree_particle_measures *m, const scree_solid *solid) {
   vec3 moments;
   quat q;
   scree_solid_principal(solid, &moments, &q);
@@ -104,8 +112,7 @@ static const double least_across = 0.8; /* cosine, of walls that count as facing
 /* Distance through the solid from a face's middle against its normal, to a wall that faces away:
  * the depth that 1 % of the surface stays below (single rays graze corners and notches). */
 static scree_status measure_thickness(scree_particle *p, scree_error *error) {
-  wall_sample *walls = scree_alloc(p->face_count, sizeof *walls);
-  if (!walls) return scree_fail_memory(error, p->face_count * sizeof *walls, "wall depths");
+  SCREE_SCRATCH(wall_sample, walls, p->face_count, error);
   double total = 0, below = 0;
   for (size_t f = 0; f < p->face_count; f++) {
     const scree_face *face = &p->faces[f];
@@ -120,7 +127,6 @@ static scree_status measure_thickness(scree_particle *p, scree_error *error) {
   size_t k = 0;
   while (k + 1 < p->face_count && (below += walls[k].area) < 0.01 * total) k++;
   p->measures.thickness = walls[k].depth;
-  scree_free(walls);
   return SCREE_OK;
 }
 
@@ -149,7 +155,7 @@ static scree_status make_mesh_particle(scree_particle *p, double rounding, scree
     return scree_fail(error, SCREE_BAD_MESH,
                       "particle: the mesh encloses a volume of %g m3: turned inside out?",
                       solid.volume);
-  scree_particle_set_solid(&p->measures, &solid);
+  set_solid(&p->measures, &solid);
   for (size_t v = 0; v < p->mesh.vertex_count; v++) {
     double *position = &p->mesh.positions[3 * v];
     vec3_store(position, into_frame(&p->measures, position));
@@ -169,8 +175,8 @@ static scree_status make_mesh_particle(scree_particle *p, double rounding, scree
 /* What the features' extraction does not see: surfaces that meet themselves, shells in shells. */
 static scree_status check_surface(const scree_mesh *mesh, scree_error *error) {
   scree_check check;
-  scree_status status = scree_mesh_check(mesh, NULL, NULL, &check, error);
-  if (status || check.usable) return status;
+  SCREE_TRY(scree_mesh_check(mesh, NULL, NULL, &check, error));
+  if (check.usable) return SCREE_OK;
   return scree_fail(error, SCREE_BAD_MESH, "particle: the mesh is %s", check.verdict);
 }
 
@@ -179,44 +185,30 @@ scree_status scree_particle_from_mesh(const scree_mesh *mesh, const scree_partic
   double rounding = options ? options->rounding : 0;
   if (!(rounding >= 0 && isfinite(rounding)))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "particle: rounding %g m; at least 0", rounding);
-  scree_particle *p = new_particle(SCREE_PARTICLE_MESH, error);
-  if (!p) return SCREE_OUT_OF_MEMORY;
-  scree_status status = scree_mesh_copy(mesh, &p->mesh, error);
+  SCREE_CLEANUP(scree_particle_drop) scree_particle *p = NULL;
+  SCREE_TRY(make(SCREE_PARTICLE_MESH, &p, error));
+  SCREE_TRY(scree_mesh_copy(mesh, &p->mesh, error));
   /* first as it stands, so that messages name what is wrong before the volume is asked for */
-  if (!status) {
-    status = scree_particle_extract_features(p, false, error);
-    drop_features(p);
-  }
-  if (!status) status = check_surface(mesh, error);
-  if (!status) status = make_mesh_particle(p, rounding, error);
-  if (status) {
-    scree_particle_free(p);
-    return status;
-  }
-  *particle = p;
-  return SCREE_OK;
+  SCREE_TRY(scree_particle_extract_features(p, false, error));
+  drop_features(p);
+  SCREE_TRY(check_surface(mesh, error));
+  SCREE_TRY(make_mesh_particle(p, rounding, error));
+  return give(&p, particle);
 }
 
 scree_status scree_particle_surface(const scree_mesh *mesh, double rounding, bool two_sided,
                                     scree_particle **particle, scree_error *error) {
-  scree_particle *p = new_particle(SCREE_PARTICLE_MESH, error);
-  if (!p) return SCREE_OUT_OF_MEMORY;
+  SCREE_CLEANUP(scree_particle_drop) scree_particle *p = NULL;
+  SCREE_TRY(make(SCREE_PARTICLE_MESH, &p, error));
   p->measures.rounding = p->radius = rounding;
   p->sheet = two_sided;
-  scree_status status = scree_mesh_copy(mesh, &p->mesh, error);
-  if (!status) status = extract_all(p, true, error);
-  if (!status && !p->sheet) {
-    double volume = scree_solid_of_mesh(&p->mesh).volume;
-    p->hollow = volume < 0;
-    p->measures.volume = fabs(volume);
-  }
-  if (!status) status = measure_thickness(p, error);
-  if (status) {
-    scree_particle_free(p);
-    return status;
-  }
-  *particle = p;
-  return SCREE_OK;
+  SCREE_TRY(scree_mesh_copy(mesh, &p->mesh, error));
+  SCREE_TRY(extract_all(p, true, error));
+  double volume = p->sheet ? 0 : scree_solid_of_mesh(&p->mesh).volume;
+  p->hollow = volume < 0;
+  p->measures.volume = fabs(volume);
+  SCREE_TRY(measure_thickness(p, error));
+  return give(&p, particle);
 }
 
 scree_edge scree_rim_edge(vec3 start, vec3 end, vec3 outward) {
@@ -247,20 +239,16 @@ static void add_circle(scree_particle *p, const scree_circle *circle) {
 
 scree_status scree_particle_circles(const scree_circle *circles, size_t count,
                                     scree_particle **particle, scree_error *error) {
-  scree_particle *p = new_particle(SCREE_PARTICLE_MESH, error);
-  if (!p) return SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(p->points, count * RIM_SIDES, error, out_of_memory);
-  SCREE_ALLOC_OR(p->point_radii, count * RIM_SIDES, error, out_of_memory);
-  SCREE_ALLOC_OR(p->edges, count * RIM_SIDES, error, out_of_memory);
+  SCREE_CLEANUP(scree_particle_drop) scree_particle *p = NULL;
+  SCREE_TRY(make(SCREE_PARTICLE_MESH, &p, error));
+  SCREE_TRY_ALLOC(p->points, count * RIM_SIDES, error);
+  SCREE_TRY_ALLOC(p->point_radii, count * RIM_SIDES, error);
+  SCREE_TRY_ALLOC(p->edges, count * RIM_SIDES, error);
   for (size_t i = 0; i < count; i++) add_circle(p, &circles[i]);
   set_bounding_radius(p);
   set_counts(p);
-  if (scree_particle_build_trees(p, error) != SCREE_OK) goto out_of_memory;
-  *particle = p;
-  return SCREE_OK;
-out_of_memory:
-  scree_particle_free(p);
-  return SCREE_OUT_OF_MEMORY;
+  SCREE_TRY(scree_particle_build_trees(p, error));
+  return give(&p, particle);
 }
 
 scree_status scree_particle_sphere(double radius, scree_particle **particle, scree_error *error) {
@@ -268,9 +256,9 @@ scree_status scree_particle_sphere(double radius, scree_particle **particle, scr
     return scree_fail(error, SCREE_BAD_ARGUMENT, "particle: sphere of radius %g m; above 0",
                       radius);
   const double centre[3] = {0};
-  scree_status status = scree_particle_clump(centre, &radius, 1, NULL, particle, error);
-  if (!status) (*particle)->measures.kind = SCREE_PARTICLE_SPHERE;
-  return status;
+  SCREE_TRY(scree_particle_clump(centre, &radius, 1, NULL, particle, error));
+  (*particle)->measures.kind = SCREE_PARTICLE_SPHERE;
+  return SCREE_OK;
 }
 
 static scree_solid solid_of_clump(const double *centres, const double *radii, size_t count) {
@@ -310,24 +298,19 @@ scree_status scree_particle_clump(const double *centres, const double *radii, si
       return scree_fail(error, SCREE_BAD_ARGUMENT,
                         "particle: sphere %zu of the clump has radius %g m at %g %g %g", i,
                         radii[i], centres[3 * i], centres[3 * i + 1], centres[3 * i + 2]);
-  scree_particle *p = new_particle(SCREE_PARTICLE_CLUMP, error);
-  if (!p) return SCREE_OUT_OF_MEMORY;
+  SCREE_CLEANUP(scree_particle_drop) scree_particle *p = NULL;
+  SCREE_TRY(make(SCREE_PARTICLE_CLUMP, &p, error));
   if (like) {
     p->measures = like->measures;
     p->measures.kind = SCREE_PARTICLE_CLUMP;
     p->measures.rounding = 0;
   } else {
     scree_solid solid = solid_of_clump(centres, radii, count);
-    scree_particle_set_solid(&p->measures, &solid);
+    set_solid(&p->measures, &solid);
   }
-  scree_status status = p->measures.volume > 0 ? fill_clump(p, centres, radii, count, error)
-                                               : scree_fail_memory(error, count, "a clump");
-  if (status) {
-    scree_particle_free(p);
-    return status;
-  }
-  *particle = p;
-  return SCREE_OK;
+  if (!(p->measures.volume > 0)) return scree_fail_memory(error, count, "a clump");
+  SCREE_TRY(fill_clump(p, centres, radii, count, error));
+  return give(&p, particle);
 }
 
 scree_status scree_particle_clump_of(const double *centres, const double *radii, size_t count,
@@ -335,7 +318,7 @@ scree_status scree_particle_clump_of(const double *centres, const double *radii,
                                      scree_error *error) {
   if (!solid) return scree_particle_clump(centres, radii, count, NULL, particle, error);
   scree_particle like = {.measures = {0}};
-  scree_particle_set_solid(&like.measures, solid);
+  set_solid(&like.measures, solid);
   return scree_particle_clump(centres, radii, count, &like, particle, error);
 }
 
@@ -361,16 +344,11 @@ static scree_status restore(scree_particle *p, const scree_mesh *mesh, const dou
 scree_status scree_particle_restore(const scree_particle_measures *measures, const scree_mesh *mesh,
                                     const double *centres, const double *radii, size_t count,
                                     scree_particle **particle, scree_error *error) {
-  scree_particle *p = new_particle(measures->kind, error);
-  if (!p) return SCREE_OUT_OF_MEMORY;
+  SCREE_CLEANUP(scree_particle_drop) scree_particle *p = NULL;
+  SCREE_TRY(make(measures->kind, &p, error));
   p->measures = *measures;
-  scree_status status = restore(p, mesh, centres, radii, count, error);
-  if (status) {
-    scree_particle_free(p);
-    return status;
-  }
-  *particle = p;
-  return SCREE_OK;
+  SCREE_TRY(restore(p, mesh, centres, radii, count, error));
+  return give(&p, particle);
 }
 
 static void scale_measures(scree_particle_measures *m, double factor) {

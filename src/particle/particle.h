@@ -87,9 +87,6 @@ void scree_particle_retain(scree_particle *particle);
 scree_status scree_particle_surface(const scree_mesh *mesh, double rounding, bool two_sided,
                                     scree_particle **particle, scree_error *error);
 
-/* Volume, size, centre, orientation and moments of inertia. */
-void scree_particle_set_solid(scree_particle_measures *measures, const scree_solid *solid);
-
 /* scree_particle_clump with the mass properties of a solid, or of the union where that is NULL. */
 scree_status scree_particle_clump_of(const double *centres, const double *radii, size_t count,
                                      const scree_solid *solid, scree_particle **particle,

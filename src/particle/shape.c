@@ -302,7 +302,7 @@ static scree_status make_from_scan(const scree_shape_spec *spec, scree_shape_sto
                                    const scree_progress *progress, scree_shape_made *made,
                                    scree_error *error) {
   scan own = {0}, *s = store ? &store->scan : &own;
-  char *key = key_of(spec, false);
+  SCREE_CLEANUP(scree_free_at) char *key = key_of(spec, false);
   if (!key) return scree_fail_memory(error, 0, "a shape");
   scree_status status = SCREE_OK;
   if (!s->key || strcmp(s->key, key) != 0) {
@@ -310,7 +310,6 @@ static scree_status make_from_scan(const scree_shape_spec *spec, scree_shape_sto
     status = read_scan(spec, progress, s, error);
     if (status == SCREE_OK) s->key = key, key = NULL;
   }
-  scree_free(key);
   if (status == SCREE_OK) status = from_scan(spec, s, store != NULL, progress, made, error);
   if (!store || !s->key) forget_scan(s);
   return status;
@@ -366,22 +365,20 @@ scree_status scree_shape_make(const scree_shape_spec *spec, scree_shape_store *s
   const char *wrong = spec->level ? scree_shape_level_error(spec->level) : NULL;
   if (wrong)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "the level '%.60s': %s", spec->level, wrong);
-  char *key = store ? key_of(spec, true) : NULL;
+  SCREE_CLEANUP(scree_free_at) char *key = store ? key_of(spec, true) : NULL;
   if (store && !key) return scree_fail_memory(error, 0, "a shape");
   for (size_t i = 0; store && i < store->shapes.count; i++) {
     if (strcmp(store->shapes.items[i].key, key) != 0) continue;
     *made = store->shapes.items[i].made;
     scree_particle_retain(made->particle);
-    scree_free(key);
     return SCREE_OK;
   }
-  scree_free(key);
   scree_shape_made one = {0};
-  scree_status status = make(spec, store, progress, &one, error);
-  if (status == SCREE_OK && store) status = scree_shape_store_put(store, spec, &one, error);
+  SCREE_TRY(make(spec, store, progress, &one, error));
+  scree_status status = store ? scree_shape_store_put(store, spec, &one, error) : SCREE_OK;
   if (status == SCREE_OK)
     *made = one;
-  else if (one.particle)
+  else
     scree_particle_free(one.particle);
   return status;
 }

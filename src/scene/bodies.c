@@ -113,10 +113,8 @@ scree_status scree_scene_bodies_write(const scree_scene *scene, const char *path
   for (int k = 0; k < REALS; k++)
     fprintf(out, *known[k].unit ? ",%s [%s]" : ",%s", known[k].name, known[k].unit);
   putc('\n', out);
-  for (size_t b = 0; b < scene->shape_of.count; b++) {
-    scree_body body;
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_world_get_body(scene->world, b, &body);
+  scree_body body;
+  for (size_t b = 0; scree_scene_next_body(scene, &b, &body); b++) {
     size_t shape = scene->shape_of.items[b];
     fputs(scree_scene_shape_name(scene, shape), out);
     put_reals(out, body.position, 3);

@@ -170,34 +170,36 @@ static scree_status cancel(work *w, scree_error *error) {
 
 static scree_status go_on(work *w, scree_error *error) {
   while (!w->scene->end) {
-    scree_status status = put_frames(w, false, error);
-    if (status == SCREE_OK) status = put_motion(w, false, error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(put_frames(w, false, error));
+    SCREE_TRY(put_motion(w, false, error));
     double start = scree_now();
     size_t steps = steps_to_frame(w);
-    status = scree_scene_advance(w->scene, steps, error);
-    if (status == SCREE_OK) status = write_rows(w, error);
-    if (status != SCREE_OK) return status;
+    SCREE_TRY(scree_scene_advance(w->scene, steps, error));
+    SCREE_TRY(write_rows(w, error));
     if (steps == w->chunk) tune_chunk(w, scree_now() - start);
     if (!watch(w, false)) return cancel(w, error);
     if (scree_now() - w->last_checkpoint >= w->scene->plan.output->checkpoint)
-      status = checkpoint(w, error);
-    if (status != SCREE_OK) return status;
+      SCREE_TRY(checkpoint(w, error));
   }
-  scree_status status = put_frames(w, true, error);
-  if (status == SCREE_OK) status = put_motion(w, true, error);
-  if (status == SCREE_OK) status = checkpoint(w, error);
-  if (status == SCREE_OK) status = save_state(w, "last.scree", error);
+  SCREE_TRY(put_frames(w, true, error));
+  SCREE_TRY(put_motion(w, true, error));
+  SCREE_TRY(checkpoint(w, error));
+  SCREE_TRY(save_state(w, "last.scree", error));
   watch(w, true);
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- beginning, or going on ---- */
 
+/* A checkpoint's scene goes on by this file, where it says the same. */
 static scree_status take_over(scree_scene *scene, const scree_scene_file *file, const char *path,
                               scree_error *error) {
   scree_plan plan;
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *shrunk = NULL;
   SCREE_CLEANUP(scree_free_at) char *text = NULL;
+  if (scree_scene_file_shrinks(file))
+    SCREE_TRY(scree_scene_file_shrink(file, scree_scene_largest(scene), &shrunk, error));
+  if (shrunk) file = shrunk;
   SCREE_TRY(scree_scene_file_text(file, &text, error));
   SCREE_TRY(scree_scene_check_same(scene, text, path, error));
   SCREE_TRY(scree_scene_file_plan(file, &scene->arena, &plan, error));
@@ -212,14 +214,6 @@ static scree_status take_over(scree_scene *scene, const scree_scene_file *file, 
   return SCREE_OK;
 }
 
-scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *file,
-                                   const char *path, scree_error *error) {
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *shrunk = NULL;
-  if (!scree_scene_file_shrinks(file)) return take_over(scene, file, path, error);
-  SCREE_TRY(scree_scene_file_shrink(file, scree_scene_largest(scene), &shrunk, error));
-  return take_over(scene, shrunk, path, error);
-}
-
 static scree_status check_found(work *w, const char *path, scree_error *error) {
   const scree_scene *scene = w->scene;
   if (scene->is_frame)
@@ -228,7 +222,7 @@ static scree_status check_found(work *w, const char *path, scree_error *error) {
     return scree_fail(error, SCREE_BAD_FILE,
                       "%s: was saved after its scene had failed, and cannot go on: %.700s", path,
                       scene->world->failure.message);
-  return w->job->file ? scree_scene_take_over(w->scene, w->job->file, path, error) : SCREE_OK;
+  return w->job->file ? take_over(w->scene, w->job->file, path, error) : SCREE_OK;
 }
 
 /* Loads the checkpoint into w->scene, which stays NULL where there is none. */

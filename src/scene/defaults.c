@@ -33,8 +33,7 @@ static scree_status measure_layers(scree_scene *scene, scree_scene_inlet *inlet,
                                    scree_error *error) {
   scree_scene_layers *l = &inlet->layers;
   size_t count = inlet->plan->count, shapes = inlet->plan->shapes.count;
-  l->order = scree_arena_take(&scene->arena, count, sizeof *l->order);
-  if (!l->order) return scree_fail_memory(error, count * sizeof *l->order, "layers");
+  SCREE_TRY_TAKE(l->order, &scene->arena, count, error);
   SCREE_TRY(scree_fill_order(scene->plan.seed + (uint64_t)(inlet - scene->inlets),
                              inlet->plan->shapes.values, shapes, l->order, count, error));
   for (size_t i = 0; i < count; i++) {

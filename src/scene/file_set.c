@@ -221,18 +221,16 @@ static scree_status shrink(scree_scene_file *file, const scree_yaml *parameter, 
 scree_status scree_scene_file_shrink(const scree_scene_file *file, double largest,
                                      scree_scene_file **shrunk, scree_error *error) {
   scree_yaml root;
-  scree_scene_file *made = NULL;
-  scree_status status = scree_yaml_copy(&file->root, &root, error);
-  if (status == SCREE_OK) status = scree_scene_file_keep(&root, file->name, &made, error);
-  const scree_yaml *parameters = made ? scree_yaml_find(&made->root, "parameters") : NULL;
-  for (size_t i = 0; status == SCREE_OK && parameters && i < parameters->item_count; i++)
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *made = NULL;
+  SCREE_TRY(scree_yaml_copy(&file->root, &root, error));
+  SCREE_TRY(scree_scene_file_keep(&root, file->name, &made, error));
+  const scree_yaml *parameters = scree_yaml_find(&made->root, "parameters");
+  for (size_t i = 0; parameters && i < parameters->item_count; i++)
     if (shrinks(&parameters->items[i]))
-      status = shrink(made, &parameters->items[i], largest, error);
-  if (status == SCREE_OK)
-    *shrunk = made;
-  else
-    scree_scene_file_free(made);
-  return status;
+      SCREE_TRY(shrink(made, &parameters->items[i], largest, error));
+  *shrunk = made;
+  made = NULL;
+  return SCREE_OK;
 }
 
 /* ---- several, of which the first that cannot be is told ---- */
@@ -348,17 +346,14 @@ static void apply(applier *a, const scree_yaml *node, const char *path) {
   blame(a, node, status, &why);
 }
 
-scree_status scree_scene_file_apply(scree_scene_file *file, const scree_yaml *settings,
-                                    const char *const *but, const char *name, scree_error *error) {
+/* The settings of a tree over a file. */
+static scree_status apply_all(scree_scene_file *file, const scree_yaml *settings, const char *name,
+                              scree_error *error) {
   applier a = {.file = file, .name = name};
   const scree_yaml *preset = scree_yaml_find(settings, "preset");
   if (preset) apply(&a, preset, "");
-  for (size_t i = 0; i < settings->item_count; i++) {
-    bool passed = &settings->items[i] == preset;
-    for (size_t k = 0; but && but[k]; k++)
-      passed = passed || !strcmp(settings->items[i].key, but[k]);
-    if (!passed) apply(&a, &settings->items[i], "");
-  }
+  for (size_t i = 0; i < settings->item_count; i++)
+    if (&settings->items[i] != preset) apply(&a, &settings->items[i], "");
   if (a.status == SCREE_OK) return SCREE_OK;
   if (a.status == SCREE_BAD_FILE && scree_scene_file_check(file, NULL) == SCREE_OK) return SCREE_OK;
   if (error) *error = a.first;
@@ -382,24 +377,18 @@ scree_status scree_scene_file_template(const char *name, scree_scene_file **file
 scree_status scree_scene_file_read_over(const char *path, const char *template_name,
                                         const char *preset, scree_scene_file **file,
                                         scree_error *error) {
-  scree_scene_file *read;
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *read = NULL;
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *made = NULL;
   SCREE_TRY(scree_scene_file_read(path, &read, error));
-  if (read->root.kind != SCREE_YAML_MAPPING || scree_yaml_find(&read->root, "inlets")) {
-    *file = read;
-    return SCREE_OK;
-  }
-  scree_scene_file *made = NULL;
-  scree_status status = scree_scene_file_template(template_name, &made, error);
-  if (status == SCREE_OK && preset && !scree_yaml_find(&read->root, "preset"))
-    status = scree_scene_file_set(made, "preset", preset, error);
-  if (status == SCREE_OK)
-    status = scree_scene_file_apply(made, &read->root, NULL, read->name, error);
-  scree_scene_file_free(read);
-  if (status == SCREE_OK)
-    *file = made;
-  else
-    scree_scene_file_free(made);
-  return status;
+  bool whole = read->root.kind != SCREE_YAML_MAPPING || scree_yaml_find(&read->root, "inlets");
+  scree_scene_file **answer = whole ? &read : &made;
+  if (!whole) SCREE_TRY(scree_scene_file_template(template_name, &made, error));
+  if (!whole && preset && !scree_yaml_find(&read->root, "preset"))
+    SCREE_TRY(scree_scene_file_set(made, "preset", preset, error));
+  if (!whole) SCREE_TRY(apply_all(made, &read->root, read->name, error));
+  *file = *answer;
+  *answer = NULL;
+  return SCREE_OK;
 }
 
 /* As text that reads back to the same, to be freed. */
@@ -435,21 +424,21 @@ static scree_status add_shape(scree_scene_file *file, const scree_poured *shape,
                               scree_error *error) {
   const char *material = particle_material(file);
   const scree_yaml *inlets = scree_yaml_find(&file->root, "inlets");
-  char path[PATH_BYTES], share[SCREE_NUMBER_SIZE], *value = quote(shape->value);
+  char path[PATH_BYTES], share[SCREE_NUMBER_SIZE];
+  SCREE_CLEANUP(scree_free_at) char *value = quote(shape->value);
   if (!value) return scree_fail_memory(error, strlen(shape->value), "a shape");
   snprintf(path, sizeof path, "shapes.%.64s", shape->name);
-  scree_status status = scree_yaml_set(&file->root, path, "{}", error);
+  SCREE_TRY(scree_yaml_set(&file->root, path, "{}", error));
   snprintf(path, sizeof path, "shapes.%.64s.%.32s", shape->name, shape->kind);
-  if (status == SCREE_OK) status = scree_yaml_set(&file->root, path, value, error);
-  scree_free(value);
+  SCREE_TRY(scree_yaml_set(&file->root, path, value, error));
   snprintf(path, sizeof path, "shapes.%.64s.material", shape->name);
-  if (status == SCREE_OK && material) status = scree_yaml_set(&file->root, path, material, error);
+  if (material) SCREE_TRY(scree_yaml_set(&file->root, path, material, error));
   scree_number_format_digits(shape->share, 17, share);
-  for (size_t i = 0; status == SCREE_OK && inlets && i < inlets->item_count; i++) {
+  for (size_t i = 0; inlets && i < inlets->item_count; i++) {
     snprintf(path, sizeof path, "inlets.%.64s.shapes.%.64s", inlets->items[i].key, shape->name);
-    status = scree_yaml_set(&file->root, path, share, error);
+    SCREE_TRY(scree_yaml_set(&file->root, path, share, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_scene_file_pour(scree_scene_file *file, const scree_poured *shapes, size_t count,

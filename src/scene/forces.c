@@ -100,12 +100,10 @@ static vec3 force_of(const scree_scene *scene, size_t index, size_t shape, const
 scree_status scree_scene_apply_forces(scree_scene *scene, scree_error *error) {
   static const double none[3] = {0, 0, 0};
   scree_status status = SCREE_OK;
-  for (size_t b = 0; status == SCREE_OK && b < scene->shape_of.count; b++) {
-    scree_body body;
+  scree_body body;
+  for (size_t b = 0; status == SCREE_OK && scree_scene_next_body(scene, &b, &body); b++) {
     double sum[3];
     vec3 force = {0, 0, 0};
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_world_get_body(scene->world, b, &body);
     for (size_t i = 0; i < scene->plan.forces.count; i++)
       force = vec3_add(force, force_of(scene, i, scene->shape_of.items[b], &body));
     vec3_store(sum, force);

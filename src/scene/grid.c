@@ -156,11 +156,9 @@ static void add_product(double *to, vec3 a, vec3 b, double factor) {
 }
 
 static void put_bodies(const sampling *s) {
-  for (size_t b = 0; b < s->scene->shape_of.count; b++) {
-    if (scree_world_body_removed(s->scene->world, b)) continue;
+  scree_body body;
+  for (size_t b = 0; scree_scene_next_body(s->scene, &b, &body); b++) {
     const scree_scene_shape *shape = &s->scene->shapes[s->scene->shape_of.items[b]];
-    scree_body body;
-    scree_world_get_body(s->scene->world, b, &body);
     vec3 p = vec3_load(body.position), arm = vec3_sub(p, s->at),
          v = vec3_sub(vec3_load(body.velocity), vec3_add(s->velocity, vec3_cross(s->spin, arm)));
     v = mat3_tmul_vec(&s->rotation, v);

@@ -28,7 +28,7 @@ static size_t body_class(const scree_scene *scene, const scree_scene_sensor *sen
   return scree_scene_class_of(scene, by_of(sensor), scene->shape_of.items[body]);
 }
 
-size_t scree_impact_class_count(const scree_scene *scene, const scree_scene_sensor *sensor) {
+static size_t class_count(const scree_scene *scene, const scree_scene_sensor *sensor) {
   size_t n = scree_scene_class_count(scene, by_of(sensor));
   return n * (n + 1) / 2 + n * scene->plan.geometry.count;
 }
@@ -68,7 +68,7 @@ scree_status scree_scene_plan_impacts(scree_scene *scene, scree_scene_sensor *se
   if (!made) return scree_fail_memory(error, sizeof *made, "impacts");
   *made = (scree_scene_impacts){.window_from = sensor->plan->from};
   sensor->impacts = made;
-  made->class_count = scree_impact_class_count(scene, sensor);
+  made->class_count = class_count(scene, sensor);
   double decades = scree_log10(plan->most / plan->least);
   made->bin_count = (size_t)ceil(decades * (double)plan->bins - 1e-9) + 2;
   size_t sums = made->class_count * SCREE_IMPACT_SUMS,

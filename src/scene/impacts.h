@@ -32,7 +32,6 @@ struct scree_scene_impacts {
   } bodies;
 };
 
-size_t scree_impact_class_count(const scree_scene *scene, const scree_scene_sensor *sensor);
 void scree_impact_class_names(const scree_scene *scene, const scree_scene_sensor *sensor,
                               size_t index, const char *names[2]);
 /* J, where the bin begins; bin 0 begins at 0. */

@@ -212,12 +212,10 @@ scree_status scree_scene_list_present(scree_scene *scene, const scree_placement 
                                       const double low[3], const double high[3],
                                       scree_error *error) {
   scene->present.count = 0;
-  for (size_t b = 0; b < scene->shape_of.count; b++) {
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_body body;
+  scree_body body;
+  for (size_t b = 0; scree_scene_next_body(scene, &b, &body); b++) {
     size_t shape = scene->shape_of.items[b];
     scree_placement p = extents ? extents[shape] : scene->shapes[shape].extent;
-    scree_world_get_body(scene->world, b, &body);
     p.position = vec3_load(body.position);
     p.orientation = scree_body_turn(&body);
     if (!push_present(scene, &p, low, high))
@@ -229,10 +227,8 @@ scree_status scree_scene_list_present(scree_scene *scene, const scree_placement 
 double scree_scene_highest(const scree_scene *scene, const scree_placement *extents,
                            double slowest) {
   double top = -INFINITY;
-  for (size_t b = 0; b < scene->shape_of.count; b++) {
-    scree_body body;
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_world_get_body(scene->world, b, &body);
+  scree_body body;
+  for (size_t b = 0; scree_scene_next_body(scene, &b, &body); b++) {
     size_t shape = scene->shape_of.items[b];
     double radius = extents ? extents[shape].radius : scene->shapes[shape].extent.radius;
     if (body.velocity[2] >= slowest) top = fmax(top, body.position[2] + radius);

@@ -29,8 +29,7 @@ static uint64_t seed_of(const scree_scene *scene, const scree_scene_inlet *inlet
 static scree_status allocate(scree_scene *scene, scree_scene_inlet *inlet, scree_error *error) {
   scree_scene_layers *l = &inlet->layers;
   size_t shapes = SCREE_SCENE_SHAPES(scene);
-  l->extents = scree_arena_take(&scene->arena, shapes, sizeof *l->extents);
-  if (!l->extents) return scree_fail_memory(error, shapes * sizeof *l->extents, "layers");
+  SCREE_TRY_TAKE(l->extents, &scene->arena, shapes, error);
   for (size_t i = 0; i < shapes; i++)
     l->extents[i] = scree_placement_of(scene->shapes[i].particle,
                                        inlet->plan->layers->packed ? 0 : l->clearance);

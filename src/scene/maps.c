@@ -38,10 +38,7 @@ scree_status scree_scene_plan_maps(scree_scene *scene, scree_error *error) {
     for (size_t w = 0; w < g->wall_count; w++)
       sensor->cell_count += scree_scene_wall_cells(scene, g->first_wall + w);
     size_t numbers = SCREE_MAP_COUNT * sensor->cell_count;
-    sensor->maps = scree_arena_take(&scene->arena, numbers, sizeof *sensor->maps);
-    if (!sensor->maps)
-      return scree_fail_memory(error, numbers * sizeof *sensor->maps, "a wall's maps");
-    memset(sensor->maps, 0, numbers * sizeof *sensor->maps);
+    SCREE_TRY_TAKE(sensor->maps, &scene->arena, numbers, error);
   }
   return SCREE_OK;
 }

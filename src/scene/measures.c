@@ -10,6 +10,13 @@ static const double degree = 57.29577951308232;
 
 /* ---- the angle of repose ---- */
 
+/* The bodies of a pile, raised and measured. */
+typedef struct heap_of_bodies {
+  scree_repose repose;
+  size_t body_count;
+  double solid, size; /* m3, of the bodies; m, of one */
+} heap_of_bodies;
+
 static void raise_body(const scree_scene *scene, size_t b, const scree_body *body, double floor_z,
                        scree_height_field *field) {
   scree_particle *particle = scree_world_body_particle(scene->world, b);
@@ -80,10 +87,10 @@ static extent take_extent(const scree_scene *scene, const scree_plan_pile *plan)
   return e;
 }
 
-scree_status scree_scene_measure_heap(const scree_scene *scene, const scree_plan_pile *plan,
-                                      scree_scene_heap *heap, scree_error *error) {
+static scree_status measure_heap(const scree_scene *scene, const scree_plan_pile *plan,
+                                 heap_of_bodies *heap, scree_error *error) {
   extent e = take_extent(scene, plan);
-  scree_scene_heap made = {.size = e.size};
+  heap_of_bodies made = {.size = e.size};
   scree_height_field field;
   if (!(e.size > 0)) {
     *heap = made;
@@ -109,7 +116,7 @@ scree_status scree_scene_measure_heap(const scree_scene *scene, const scree_plan
   return status;
 }
 
-static scree_pile pile_of(const scree_scene_heap *heap, double size) {
+static scree_pile pile_of(const heap_of_bodies *heap, double size) {
   const scree_repose *r = &heap->repose;
   scree_pile p = {.repose = *r, .body_count = heap->body_count, .size = size};
   /* plates side by side fill what is under them: there the field's own error may pass 1 */
@@ -122,8 +129,8 @@ static scree_pile pile_of(const scree_scene_heap *heap, double size) {
 
 scree_status scree_scene_put_pile(const scree_scene *scene, const scree_plan_pile *plan, double *at,
                                   scree_error *error) {
-  scree_scene_heap heap;
-  SCREE_TRY(scree_scene_measure_heap(scene, plan, &heap, error));
+  heap_of_bodies heap;
+  SCREE_TRY(measure_heap(scene, plan, &heap, error));
   scree_pile p = pile_of(&heap, plan->size);
   const scree_repose *r = &p.repose;
   const double values[SCREE_PILE_COLUMNS] = {
@@ -168,11 +175,11 @@ scree_status scree_scene_measure_pile(const scree_scene *scene, size_t index,
   if (plan.sectors < 1 || !(plan.cell >= 0))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "a pile: %zu sectors, cells of %g m", plan.sectors,
                       plan.cell);
-  scree_scene_heap heap;
+  heap_of_bodies heap;
   const scree_place nowhere = {.path = ""};
   if (!isnan(plan.size))
     SCREE_TRY(scree_scene_check_cell(scene, &nowhere, plan.cell, plan.size, error));
-  SCREE_TRY(scree_scene_measure_heap(scene, &plan, &heap, error));
+  SCREE_TRY(measure_heap(scene, &plan, &heap, error));
   *pile = pile_of(&heap, heap.size);
   return SCREE_OK;
 }

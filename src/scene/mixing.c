@@ -84,11 +84,9 @@ static bool take_mixture(const scree_scene *scene, const scree_scene_sensor *sen
   mixture m = {.bodies = scree_alloc(scene->shape_of.count, sizeof *m.bodies)};
   find_cell *find = sensor->grid ? find_of_grid : find_cube;
   if (!m.bodies) return false;
-  for (size_t b = 0; b < scene->shape_of.count; b++) {
-    scree_body body;
+  scree_body body;
+  for (size_t b = 0; scree_scene_next_body(scene, &b, &body); b++) {
     cell_body *to = &m.bodies[m.count];
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_world_get_body(scene->world, b, &body);
     if (!find(scene, sensor, body.position, to->cell)) continue;
     to->class = (uint32_t)scree_scene_class_of(scene, by, scene->shape_of.items[b]);
     m.count++;

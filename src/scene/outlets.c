@@ -55,10 +55,8 @@ void scree_scene_empty(scree_scene *scene) {
   size_t rim = scene->plan.outlets.count;
   double time = scree_world_time(scene->world);
   if (!d && rim == 0) return;
-  for (size_t b = 0; b < scene->shape_of.count; b++) {
-    scree_body body;
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_world_get_body(scene->world, b, &body);
+  scree_body body;
+  for (size_t b = 0; scree_scene_next_body(scene, &b, &body); b++) {
     size_t outlet = outlet_at(scene, body.position, time);
     if (outlet < rim || (d && !scree_is_in(body.position, d->min, d->max)))
       take_out(scene, b, &body, outlet);
@@ -68,10 +66,8 @@ void scree_scene_empty(scree_scene *scene) {
 void scree_scene_take_lost(scree_scene *scene) {
   if (scene->plan.domain) return;
   scree_scene_reach reach = scree_scene_domain(scene);
-  for (size_t b = 0; b < scene->shape_of.count; b++) {
-    scree_body body;
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_world_get_body(scene->world, b, &body);
+  scree_body body;
+  for (size_t b = 0; scree_scene_next_body(scene, &b, &body); b++) {
     if (!scree_is_in(body.position, reach.low, reach.high))
       take_out(scene, b, &body, scene->plan.outlets.count);
   }

@@ -178,7 +178,8 @@ double scree_scene_part_energy(const scree_scene *scene, size_t geometry) {
   return 0.5 * m * part->speed * part->speed + potential_of(scene, geometry, part->way);
 }
 
-double scree_scene_wall_work(const scree_scene *scene, size_t geometry) {
+/* J, that its walls have done on bodies. */
+static double wall_work(const scree_scene *scene, size_t geometry) {
   const scree_scene_geometry *g = &scene->geometry[geometry];
   double sum = 0;
   for (size_t w = g->first_wall; w < g->first_wall + g->wall_count; w++) {
@@ -194,8 +195,7 @@ double scree_scene_parts_balance(const scree_scene *scene) {
   for (size_t i = 0; i < scene->plan.geometry.count; i++) {
     const scree_scene_part *part = scene->geometry[i].part;
     if (!part || plan_of(scene, i)->servo) continue;
-    sum += scree_scene_part_energy(scene, i) + part->lost - part->work +
-           scree_scene_wall_work(scene, i);
+    sum += scree_scene_part_energy(scene, i) + part->lost - part->work + wall_work(scene, i);
   }
   return sum;
 }

@@ -20,10 +20,6 @@ size_t scree_plan_find(const void *items, size_t count, size_t size, const char 
   return count;
 }
 
-static bool has_length(const double *v) {
-  return v[0] != 0 || v[1] != 0 || v[2] != 0;
-}
-
 static bool is_across(const double *v, const double *n) {
   vec3 a = vec3_load(v), b = vec3_load(n);
   return fabs(vec3_dot(a, b)) <= 1e-6 * vec3_norm(a) * vec3_norm(b);
@@ -38,22 +34,16 @@ scree_status scree_plan_one_of(const scree_reader *r, const scree_place *place, 
                           names);
 }
 
-scree_status scree_plan_check_direction(const scree_reader *r, const scree_place *place,
-                                        const char *what, const double *v) {
-  if (!given(v) || has_length(v)) return SCREE_OK;
-  return scree_fail_place(r, place, "%s [0, 0, 0] points nowhere", what);
-}
-
 /* ---- materials ---- */
 
-SCREE_RECORD_TABLE(scree_plan_material, SCREE_PLAN_MATERIAL, "a material", NULL)
+SCREE_RECORD_TABLE(scree_plan_material, SCREE_PLAN_MATERIAL, "a material", NULL, NULL)
 
 static scree_status check_pair(const scree_reader *r, const void *record) {
   const scree_plan_pair *p = record;
   if (p->between.count == 2) return SCREE_OK;
   return scree_fail_place(r, &p->place, "needs between: [material, material]");
 }
-SCREE_RECORD_TABLE(scree_plan_pair, SCREE_PLAN_PAIR, "a pair", check_pair)
+SCREE_RECORD_TABLE(scree_plan_pair, SCREE_PLAN_PAIR, "a pair", NULL, check_pair)
 
 /* ---- shapes ---- */
 
@@ -118,28 +108,15 @@ static scree_status check_shape(const scree_reader *r, const void *record) {
                             s->triangles);
   return SCREE_OK;
 }
-SCREE_RECORD_TABLE(scree_plan_shape, SCREE_PLAN_SHAPE, "a shape", check_shape)
+SCREE_RECORD_TABLE(scree_plan_shape, SCREE_PLAN_SHAPE, "a shape", NULL, check_shape)
 
 /* ---- geometry ---- */
 
-static scree_status check_turn(const scree_reader *r, const void *record) {
-  const scree_plan_turn *t = record;
-  return scree_plan_check_direction(r, &t->place, "axis", t->axis);
-}
-SCREE_RECORD_TABLE(scree_plan_turn, SCREE_PLAN_TURN, "a turn", check_turn)
+SCREE_RECORD_TABLE(scree_plan_turn, SCREE_PLAN_TURN, "a turn", NULL, NULL)
 
-static scree_status check_disc(const scree_reader *r, const void *record) {
-  const scree_plan_disc *d = record;
-  if (!given(&d->radius)) return scree_fail_place(r, &d->place, "needs a radius");
-  return scree_plan_check_direction(r, &d->place, "normal", d->normal);
-}
-SCREE_RECORD_TABLE(scree_plan_disc, SCREE_PLAN_DISC, "a disc", check_disc)
+SCREE_RECORD_TABLE(scree_plan_disc, SCREE_PLAN_DISC, "a disc", "a radius", NULL)
 
-static scree_status check_cylinder(const scree_reader *r, const void *record) {
-  const scree_plan_cylinder *c = record;
-  return scree_plan_check_direction(r, &c->place, "axis", c->axis);
-}
-SCREE_RECORD_TABLE(scree_plan_cylinder, SCREE_PLAN_CYLINDER, "a cylinder", check_cylinder)
+SCREE_RECORD_TABLE(scree_plan_cylinder, SCREE_PLAN_CYLINDER, "a cylinder", NULL, NULL)
 
 static scree_status check_corners(const scree_reader *r, const scree_place *place,
                                   const double *min, const double *max) {
@@ -155,9 +132,9 @@ static scree_status check_box(const scree_reader *r, const void *record) {
   const scree_plan_box *b = record;
   return check_corners(r, &b->place, b->min, b->max);
 }
-SCREE_RECORD_TABLE(scree_plan_box, SCREE_PLAN_BOX, "a box", check_box)
+SCREE_RECORD_TABLE(scree_plan_box, SCREE_PLAN_BOX, "a box", NULL, check_box)
 
-SCREE_RECORD_TABLE(scree_plan_shaft, SCREE_PLAN_SHAFT, "a shaft", NULL)
+SCREE_RECORD_TABLE(scree_plan_shaft, SCREE_PLAN_SHAFT, "a shaft", NULL, NULL)
 
 scree_status scree_plan_check_window(const scree_reader *r, const scree_place *place, double from,
                                      double until) {
@@ -174,7 +151,6 @@ static scree_status check_geometry(const scree_reader *r, const void *record) {
                         g->loop != NULL,   g->screw != NULL,    g->sieve != NULL};
   SCREE_TRY(scree_plan_one_of(r, &g->place, there, 9,
                               "file, box, plane, disc, cylinder, shaft, loop, screw, sieve"));
-  SCREE_TRY(scree_plan_check_direction(r, &g->place, "plane", g->plane));
   if (g->cylinder && given(g->cylinder->at))
     return scree_fail_place(r, &g->cylinder->place,
                             "at stands beside the cylinder, as of all geometry, not in it");
@@ -205,7 +181,7 @@ static scree_status check_geometry(const scree_reader *r, const void *record) {
                               "a motion during a phase must be the geometry's only one");
   return SCREE_OK;
 }
-SCREE_RECORD_TABLE(scree_plan_geometry, SCREE_PLAN_GEOMETRY, "geometry", check_geometry)
+SCREE_RECORD_TABLE(scree_plan_geometry, SCREE_PLAN_GEOMETRY, "geometry", NULL, check_geometry)
 
 /* ---- inlets and outlets ---- */
 
@@ -218,7 +194,7 @@ static scree_status check_layers(const scree_reader *r, const void *record) {
   return scree_fail_place(
       r, &l->place, "pack_time is of random layers; those of a grid follow from the velocity");
 }
-SCREE_RECORD_TABLE(scree_plan_layers, SCREE_PLAN_LAYERS, "layers", check_layers)
+SCREE_RECORD_TABLE(scree_plan_layers, SCREE_PLAN_LAYERS, "layers", NULL, check_layers)
 
 static scree_status check_layered(const scree_reader *r, const scree_plan_inlet *i) {
   const scree_plan_cylinder *c = i->cylinder;
@@ -260,14 +236,14 @@ static scree_status check_inlet(const scree_reader *r, const void *record) {
     return scree_fail_place(r, &i->place, "only one of rate, mass_rate may be given");
   return scree_plan_check_window(r, &i->place, i->from, i->until);
 }
-SCREE_RECORD_TABLE(scree_plan_inlet, SCREE_PLAN_INLET, "an inlet", check_inlet)
+SCREE_RECORD_TABLE(scree_plan_inlet, SCREE_PLAN_INLET, "an inlet", NULL, check_inlet)
 
 static scree_status check_outlet(const scree_reader *r, const void *record) {
   const scree_plan_outlet *o = record;
-  if (!o->box) return scree_fail_place(r, &o->place, "needs a box: {min: ..., max: ...}");
   return scree_plan_check_window(r, &o->place, o->from, o->until);
 }
-SCREE_RECORD_TABLE(scree_plan_outlet, SCREE_PLAN_OUTLET, "an outlet", check_outlet)
+SCREE_RECORD_TABLE(scree_plan_outlet, SCREE_PLAN_OUTLET, "an outlet", "a box: {min: ..., max: ...}",
+                   check_outlet)
 
 static scree_status check_domain(const scree_reader *r, const void *record) {
   const scree_plan_domain *d = record;
@@ -281,52 +257,42 @@ static scree_status check_domain(const scree_reader *r, const void *record) {
     return scree_fail_place(r, &d->place, "periodic: along two axes at most");
   return SCREE_OK;
 }
-SCREE_RECORD_TABLE(scree_plan_domain, SCREE_PLAN_DOMAIN, "the domain", check_domain)
+SCREE_RECORD_TABLE(scree_plan_domain, SCREE_PLAN_DOMAIN, "the domain", NULL, check_domain)
 
 /* ---- the rest ---- */
 
-SCREE_RECORD_TABLE(scree_plan_contact, SCREE_PLAN_CONTACT, "contact", NULL)
+SCREE_RECORD_TABLE(scree_plan_contact, SCREE_PLAN_CONTACT, "contact", NULL, NULL)
 
-static scree_status check_bodies(const scree_reader *r, const void *record) {
-  const scree_plan_bodies *b = record;
-  return b->file ? SCREE_OK : scree_fail_place(r, &b->place, "needs a file");
-}
-SCREE_RECORD_TABLE(scree_plan_bodies, SCREE_PLAN_BODIES, "bodies", check_bodies)
+SCREE_RECORD_TABLE(scree_plan_bodies, SCREE_PLAN_BODIES, "bodies", "a file", NULL)
 
-SCREE_RECORD_TABLE(scree_plan_stop, SCREE_PLAN_STOP, "stop", NULL)
+SCREE_RECORD_TABLE(scree_plan_stop, SCREE_PLAN_STOP, "stop", NULL, NULL)
 
 static scree_status check_phase(const scree_reader *r, const void *record) {
   const scree_plan_phase *p = record;
-  if (!given(&p->time)) return scree_fail_place(r, &p->place, "needs a time");
   if (p->clear && !given(&p->still))
     return scree_fail_place(r, &p->place, "clear says when `still` may end it: give still too");
   return SCREE_OK;
 }
-SCREE_RECORD_TABLE(scree_plan_phase, SCREE_PLAN_PHASE, "a phase", check_phase)
+SCREE_RECORD_TABLE(scree_plan_phase, SCREE_PLAN_PHASE, "a phase", "a time", check_phase)
 
-SCREE_RECORD_TABLE(scree_plan_output, SCREE_PLAN_OUTPUT, "output", NULL)
+SCREE_RECORD_TABLE(scree_plan_output, SCREE_PLAN_OUTPUT, "output", NULL, NULL)
 
 /* ---- names for what is set together ---- */
 
 static scree_status check_parameter(const scree_reader *r, const void *record) {
   const scree_scene_parameter *p = record;
-  if (!p->name || !p->sets.count)
-    return scree_fail_place(r, &p->place, "needs a name and sets: [FIELD, ...]");
   if (given(&p->below) != given(&p->power))
     return scree_fail_place(r, &p->place, "below and power go together");
   if (isnan(p->power) || 2 * p->power == floor(2 * p->power)) return SCREE_OK;
   return scree_fail_place(r, &p->place, "power %g: must be a whole number, or half of one",
                           p->power);
 }
-SCREE_RECORD_TABLE(scree_scene_parameter, SCREE_PLAN_PARAMETER, "a parameter", check_parameter)
+SCREE_RECORD_TABLE(scree_scene_parameter, SCREE_PLAN_PARAMETER, "a parameter",
+                   "a name and sets: [FIELD, ...]", check_parameter)
 
-static scree_status check_preset(const scree_reader *r, const void *record) {
-  const scree_plan_preset *p = record;
-  return p->name ? SCREE_OK : scree_fail_place(r, &p->place, "needs a name");
-}
-SCREE_RECORD_TABLE(scree_plan_preset, SCREE_PLAN_PRESET, "a preset", check_preset)
+SCREE_RECORD_TABLE(scree_plan_preset, SCREE_PLAN_PRESET, "a preset", "a name", NULL)
 
-SCREE_RECORD_TABLE(scree_plan, SCREE_PLAN_SCENE, "a scene", scree_plan_check)
+SCREE_RECORD_TABLE(scree_plan, SCREE_PLAN_SCENE, "a scene", NULL, scree_plan_check)
 
 /* Groups that may be left out, and then have their defaults. */
 static scree_status fill_in(const scree_reader *r, const scree_record *kind, void **record) {

@@ -94,13 +94,13 @@ SCREE_RECORD_TYPE(scree_plan_shape, SCREE_PLAN_SHAPE)
 size_t scree_plan_spheres(const scree_plan_shape *shape);
 
 #define SCREE_PLAN_TURN(ROW, T)                                                                    \
-  ROW(T, VECTOR, axis, (0, 0, 1), 0, 0, "", "")                                                    \
+  ROW(T, DIRECTION, axis, (0, 0, 1), "")                                                           \
   ROW(T, REAL, angle_deg, 0, -360, 360, "deg", "right-handed about the axis")
 SCREE_RECORD_TYPE(scree_plan_turn, SCREE_PLAN_TURN)
 
 #define SCREE_PLAN_DISC(ROW, T)                                                                    \
   ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m", "")                                                    \
-  ROW(T, VECTOR, normal, (0, 0, 1), 0, 0, "", "")
+  ROW(T, DIRECTION, normal, (0, 0, 1), "")
 SCREE_RECORD_TYPE(scree_plan_disc, SCREE_PLAN_DISC)
 
 /* Of geometry, and as the region of an inlet. */
@@ -108,7 +108,7 @@ SCREE_RECORD_TYPE(scree_plan_disc, SCREE_PLAN_DISC)
   ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m",                                                        \
       "inside; of geometry with layers in it not given: as wide as what they pour will be high")   \
   ROW(T, REAL, length, 0, 0, 1e6, "m", "along the axis; of geometry 0: endless")                   \
-  ROW(T, VECTOR, axis, (0, 0, 1), 0, 0, "", "")                                                    \
+  ROW(T, DIRECTION, axis, (0, 0, 1), "")                                                           \
   ROW(T, VECTOR, at, SCREE_NONE, -1e6, 1e6, "m", "of a region: the middle of the end it begins at")
 SCREE_RECORD_TYPE(scree_plan_cylinder, SCREE_PLAN_CYLINDER)
 
@@ -119,13 +119,13 @@ SCREE_RECORD_TYPE(scree_plan_box, SCREE_PLAN_BOX)
 
 #define SCREE_PLAN_TRANSLATE(ROW, T)                                                               \
   ROW(T, VECTOR, velocity, SCREE_NONE, -1e3, 1e3, "m/s", "")                                       \
-  ROW(T, VECTOR, along, SCREE_NONE, 0, 0, "", "direction of what the table says")                  \
+  ROW(T, DIRECTION, along, SCREE_NONE, "direction of what the table says")                         \
   ROW(T, TABLE, table, 0, 0, "s|m/s", "[time in s, speed in m/s], linear between")                 \
   ROW(T, TABLE, positions, 0, 0, "s|m", "or [time in s, way in m], linear between")
 SCREE_RECORD_TYPE(scree_plan_translate, SCREE_PLAN_TRANSLATE)
 
 #define SCREE_PLAN_ROTATE(ROW, T)                                                                  \
-  ROW(T, VECTOR, axis, (0, 0, 1), 0, 0, "", "")                                                    \
+  ROW(T, DIRECTION, axis, (0, 0, 1), "")                                                           \
   ROW(T, VECTOR, through, SCREE_ZERO, -1e6, 1e6, "m", "a point of the axis")                       \
   ROW(T, REAL, speed, NAN, -1e4, 1e4, "rad/s", "right-handed about the axis")                      \
   ROW(T, TABLE, table, 0, 0, "s|rad/s", "[time in s, speed in rad/s], linear between")             \
@@ -136,14 +136,14 @@ SCREE_RECORD_TYPE(scree_plan_translate, SCREE_PLAN_TRANSLATE)
 SCREE_RECORD_TYPE(scree_plan_rotate, SCREE_PLAN_ROTATE)
 
 #define SCREE_PLAN_VIBRATE(ROW, T)                                                                 \
-  ROW(T, VECTOR, along, (0, 0, 1), 0, 0, "", "")                                                   \
+  ROW(T, DIRECTION, along, (0, 0, 1), "")                                                          \
   ROW(T, REAL, amplitude, NAN, 0, 1e3, "m", "")                                                    \
   ROW(T, REAL, frequency, NAN, 0, 1e5, "Hz", "")                                                   \
   ROW(T, REAL, phase, 0, -7, 7, "rad", "of the sine")
 SCREE_RECORD_TYPE(scree_plan_vibrate, SCREE_PLAN_VIBRATE)
 
 #define SCREE_PLAN_CRANK(ROW, T)                                                                   \
-  ROW(T, VECTOR, along, (0, 0, 1), 0, 0, "", "away from the shaft")                                \
+  ROW(T, DIRECTION, along, (0, 0, 1), "away from the shaft")                                       \
   ROW(T, REAL, radius, NAN, 1e-9, 1e3, "m", "of the crank: half the stroke")                       \
   ROW(T, REAL, rod, NAN, 1e-9, 1e6, "m", "its length, more than the radius")                       \
   ROW(T, REAL, speed, NAN, 1e-9, 1e5, "rad/s", "of the shaft")                                     \
@@ -196,7 +196,7 @@ SCREE_RECORD_LIKE(scree_plan_servo, scree_plan_turning_servo);
 
 /* What moves by forces along one coordinate, a slide (m) or a hinge (rad). */
 #define SCREE_PLAN_HINGE(ROW, T)                                                                   \
-  ROW(T, VECTOR, axis, (0, 0, 1), 0, 0, "", "")                                                    \
+  ROW(T, DIRECTION, axis, (0, 0, 1), "")                                                           \
   ROW(T, VECTOR, through, SCREE_ZERO, -1e6, 1e6, "m", "a point of the axis")                       \
   ROW(T, REAL, inertia, NAN, 1e-15, 1e15, "kg m2", "about the axis")                               \
   ROW(T, REAL, mass, 0, 0, 1e12, "kg", "for its weight")                                           \
@@ -215,7 +215,7 @@ SCREE_RECORD_LIKE(scree_plan_servo, scree_plan_turning_servo);
 SCREE_RECORD_TYPE(scree_plan_hinge, SCREE_PLAN_HINGE)
 
 #define SCREE_PLAN_SLIDE(ROW, T)                                                                   \
-  ROW(T, AS, "along", VECTOR, axis, (0, 0, 1), 0, 0, "", "")                                       \
+  ROW(T, AS, "along", DIRECTION, axis, (0, 0, 1), "")                                              \
   ROW(T, REAL, mass, NAN, 1e-9, 1e12, "kg", "")                                                    \
   ROW(T, REAL, spring, 0, 0, 1e15, "N/m", "")                                                      \
   ROW(T, REAL, rest, 0, -1e6, 1e6, "m", "way at which the spring is loose")                        \
@@ -233,14 +233,14 @@ typedef scree_plan_hinge scree_plan_part; /* either */
 /* A sheet round two wheels, of which one is at the geometry's origin. */
 #define SCREE_PLAN_LOOP(ROW, T)                                                                    \
   ROW(T, VECTOR, span, SCREE_NONE, -1e6, 1e6, "m", "from the wheel at `at` to the other")          \
-  ROW(T, VECTOR, axis, (0, 1, 0), 0, 0, "", "of the wheels, square to the span")                   \
+  ROW(T, DIRECTION, axis, (0, 1, 0), "of the wheels, square to the span")                          \
   ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m", "of the wheels")                                       \
   ROW(T, REAL, width, NAN, 1e-9, 1e6, "m", "along the axis")
 SCREE_RECORD_TYPE(scree_plan_loop, SCREE_PLAN_LOOP)
 
 /* A flight of a helix about its axis, from the geometry's origin on, and its shaft. */
 #define SCREE_PLAN_SCREW(ROW, T)                                                                   \
-  ROW(T, VECTOR, axis, (1, 0, 0), 0, 0, "", "from `at` on; the flight is right-handed")            \
+  ROW(T, DIRECTION, axis, (1, 0, 0), "from `at` on; the flight is right-handed")                   \
   ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m", "of the flight")                                       \
   ROW(T, REAL, shaft, NAN, 1e-9, 1e6, "m", "radius of the shaft")                                  \
   ROW(T, REAL, pitch, NAN, 1e-9, 1e6, "m", "")                                                     \
@@ -260,7 +260,7 @@ SCREE_RECORD_TYPE(scree_plan_sieve, SCREE_PLAN_SIEVE)
 
 /* The surface of closed loops about an axis runs along itself. */
 #define SCREE_PLAN_BELT(ROW, T)                                                                    \
-  ROW(T, VECTOR, axis, (0, 1, 0), 0, 0, "", "of its pulleys")                                      \
+  ROW(T, DIRECTION, axis, (0, 1, 0), "of its pulleys")                                             \
   ROW(T, REAL, speed, NAN, -1e3, 1e3, "m/s", "along itself; above 0 right-handed about the axis")
 SCREE_RECORD_TYPE(scree_plan_belt, SCREE_PLAN_BELT)
 
@@ -268,7 +268,7 @@ SCREE_RECORD_TYPE(scree_plan_belt, SCREE_PLAN_BELT)
  * that leads to the other on; without a span about the axis. */
 #define SCREE_PLAN_ROUND(ROW, T)                                                                   \
   ROW(T, COUNT, count, 0, 1, 1000, "of all, at equal distances")                                   \
-  ROW(T, VECTOR, axis, (0, 0, 1), 0, 0, "", "about which they stand")                              \
+  ROW(T, DIRECTION, axis, (0, 0, 1), "about which they stand")                                     \
   ROW(T, VECTOR, through, SCREE_ZERO, -1e6, 1e6, "m", "a point of it")                             \
   ROW(T, VECTOR, span, SCREE_ZERO, -1e6, 1e6, "m",                                                 \
       "of a chain: from the wheel there to the other; the first copy begins the strand along it")  \
@@ -279,7 +279,7 @@ SCREE_RECORD_TYPE(scree_plan_round, SCREE_PLAN_ROUND)
 #define SCREE_PLAN_GEOMETRY(ROW, T)                                                                \
   ROW(T, TEXTS, file, "a mesh, or several that move together")                                     \
   ROW(T, VECTOR, box, SCREE_NONE, 1e-9, 1e6, "m", "three sides, about `at`")                       \
-  ROW(T, VECTOR, plane, SCREE_NONE, 0, 0, "", "normal, out of the solid")                          \
+  ROW(T, DIRECTION, plane, SCREE_NONE, "normal, out of the solid")                                 \
   ROW(T, GROUP, disc, scree_plan_disc, "")                                                         \
   ROW(T, GROUP, cylinder, scree_plan_cylinder, "a sheet from `at` along its axis")                 \
   ROW(T, GROUP, shaft, scree_plan_shaft, "four endless walls about z")                             \
@@ -345,7 +345,7 @@ SCREE_RECORD_TYPE(scree_plan_domain, SCREE_PLAN_DOMAIN)
 
 #define SCREE_PLAN_FLOW(ROW, T)                                                                    \
   ROW(T, VECTOR, through, SCREE_NONE, -1e6, 1e6, "m", "a point of the plane")                      \
-  ROW(T, VECTOR, normal, (0, 0, 1), 0, 0, "", "along it counts up, against it down")               \
+  ROW(T, DIRECTION, normal, (0, 0, 1), "along it counts up, against it down")                      \
   ROW(T, REAL, radius, NAN, 0, 1e6, "m", "about the point; not given: all of it")
 SCREE_RECORD_TYPE(scree_plan_flow, SCREE_PLAN_FLOW)
 
@@ -370,7 +370,7 @@ SCREE_RECORD_TYPE(scree_plan_region, SCREE_PLAN_REGION)
 SCREE_RECORD_TYPE(scree_plan_pile, SCREE_PLAN_PILE)
 
 #define SCREE_PLAN_SLOPE(ROW, T)                                                                   \
-  ROW(T, VECTOR, axis, (1, 0, 0), 0, 0, "", "the surface is seen along it")                        \
+  ROW(T, DIRECTION, axis, (1, 0, 0), "the surface is seen along it")                               \
   ROW(T, GROUP, box, scree_plan_box, "of the bodies in it; not given: about the middle of all")
 SCREE_RECORD_TYPE(scree_plan_slope, SCREE_PLAN_SLOPE)
 

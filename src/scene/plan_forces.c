@@ -1,12 +1,8 @@
 /* The fields of forces on bodies. */
 #include "scene/plan_fields.h"
 
-static scree_status check_drag(const scree_reader *r, const void *record) {
-  const scree_plan_drag *d = record;
-  if (given(&d->density) && given(&d->viscosity)) return SCREE_OK;
-  return scree_fail_place(r, &d->place, "needs the density and the viscosity of the fluid");
-}
-SCREE_RECORD_TABLE(scree_plan_drag, SCREE_PLAN_DRAG, "drag", check_drag)
+SCREE_RECORD_TABLE(scree_plan_drag, SCREE_PLAN_DRAG, "drag",
+                   "the density and the viscosity of the fluid", NULL)
 
 static scree_status check_force(const scree_reader *r, const void *record) {
   const scree_plan_force *f = record;
@@ -21,4 +17,4 @@ static scree_status check_force(const scree_reader *r, const void *record) {
     status = scree_fail_place(r, &f->cylinder->place, "needs a radius and at: [x, y, z]");
   return status == SCREE_OK ? scree_plan_check_window(r, &f->place, f->from, f->until) : status;
 }
-SCREE_RECORD_TABLE(scree_plan_force, SCREE_PLAN_FORCE, "a force", check_force)
+SCREE_RECORD_TABLE(scree_plan_force, SCREE_PLAN_FORCE, "a force", NULL, check_force)

@@ -10,9 +10,9 @@ static scree_status check_translate(const scree_reader *r, const void *record) {
                               "velocity, table (with along), positions (with along)"));
   if (!there[0] && !given(t->along))
     return scree_fail_place(r, &t->place, "a table needs along: [x, y, z]");
-  return scree_plan_check_direction(r, &t->place, "along", t->along);
+  return SCREE_OK;
 }
-SCREE_RECORD_TABLE(scree_plan_translate, SCREE_PLAN_TRANSLATE, "translate", check_translate)
+SCREE_RECORD_TABLE(scree_plan_translate, SCREE_PLAN_TRANSLATE, "translate", NULL, check_translate)
 
 static scree_status check_rotate(const scree_reader *r, const void *record) {
   const scree_plan_rotate *t = record;
@@ -21,40 +21,26 @@ static scree_status check_rotate(const scree_reader *r, const void *record) {
   SCREE_TRY(scree_plan_one_of(r, &t->place, there, 4, "speed, table, positions, amplitude"));
   if (there[3] != given(&t->frequency))
     return scree_fail_place(r, &t->place, "amplitude and frequency go together");
-  return scree_plan_check_direction(r, &t->place, "axis", t->axis);
+  return SCREE_OK;
 }
-SCREE_RECORD_TABLE(scree_plan_rotate, SCREE_PLAN_ROTATE, "rotate", check_rotate)
+SCREE_RECORD_TABLE(scree_plan_rotate, SCREE_PLAN_ROTATE, "rotate", NULL, check_rotate)
 
-static scree_status check_vibrate(const scree_reader *r, const void *record) {
-  const scree_plan_vibrate *v = record;
-  if (!given(&v->amplitude) || !given(&v->frequency))
-    return scree_fail_place(r, &v->place, "needs amplitude and frequency");
-  return scree_plan_check_direction(r, &v->place, "along", v->along);
-}
-SCREE_RECORD_TABLE(scree_plan_vibrate, SCREE_PLAN_VIBRATE, "vibrate", check_vibrate)
+SCREE_RECORD_TABLE(scree_plan_vibrate, SCREE_PLAN_VIBRATE, "vibrate", "amplitude and frequency",
+                   NULL)
 
 static scree_status check_crank(const scree_reader *r, const void *record) {
   const scree_plan_crank *c = record;
-  if (!given(&c->radius) || !given(&c->rod) || !given(&c->speed))
-    return scree_fail_place(r, &c->place, "needs radius, rod and speed");
   if (!(c->rod > c->radius))
     return scree_fail_place(r, &c->place, "rod %g m: must be longer than the radius %g m", c->rod,
                             c->radius);
-  return scree_plan_check_direction(r, &c->place, "along", c->along);
+  return SCREE_OK;
 }
-SCREE_RECORD_TABLE(scree_plan_crank, SCREE_PLAN_CRANK, "a crank", check_crank)
+SCREE_RECORD_TABLE(scree_plan_crank, SCREE_PLAN_CRANK, "a crank", "radius, rod and speed",
+                   check_crank)
 
-static scree_status check_travel(const scree_reader *r, const void *record) {
-  const scree_plan_travel *t = record;
-  return given(&t->speed) ? SCREE_OK : scree_fail_place(r, &t->place, "needs a speed");
-}
-SCREE_RECORD_TABLE(scree_plan_travel, SCREE_PLAN_TRAVEL, "round", check_travel)
+SCREE_RECORD_TABLE(scree_plan_travel, SCREE_PLAN_TRAVEL, "round", "a speed", NULL)
 
-static scree_status check_path(const scree_reader *r, const void *record) {
-  const scree_plan_path *p = record;
-  return p->file ? SCREE_OK : scree_fail_place(r, &p->place, "needs a file");
-}
-SCREE_RECORD_TABLE(scree_plan_path, SCREE_PLAN_PATH, "a path", check_path)
+SCREE_RECORD_TABLE(scree_plan_path, SCREE_PLAN_PATH, "a path", "a file", NULL)
 
 static scree_status check_motion(const scree_reader *r, const void *record) {
   const scree_plan_motion *m = record;
@@ -72,4 +58,4 @@ static scree_status check_motion(const scree_reader *r, const void *record) {
     status = scree_fail_place(r, &m->place, "during stands instead of from and until");
   return status == SCREE_OK ? scree_plan_check_window(r, &m->place, m->from, m->until) : status;
 }
-SCREE_RECORD_TABLE(scree_plan_motion, SCREE_PLAN_MOTION, "a motion", check_motion)
+SCREE_RECORD_TABLE(scree_plan_motion, SCREE_PLAN_MOTION, "a motion", NULL, check_motion)

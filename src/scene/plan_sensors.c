@@ -1,18 +1,10 @@
 /* The fields of sensors. */
 #include "scene/plan_fields.h"
 
-static scree_status check_flow(const scree_reader *r, const void *record) {
-  const scree_plan_flow *f = record;
-  if (!given(f->through)) return scree_fail_place(r, &f->place, "needs through: [x, y, z]");
-  return scree_plan_check_direction(r, &f->place, "normal", f->normal);
-}
-SCREE_RECORD_TABLE(scree_plan_flow, SCREE_PLAN_FLOW, "a flow", check_flow)
+SCREE_RECORD_TABLE(scree_plan_flow, SCREE_PLAN_FLOW, "a flow", "through: [x, y, z]", NULL)
 
-static scree_status check_region(const scree_reader *r, const void *record) {
-  const scree_plan_region *g = record;
-  return g->box ? SCREE_OK : scree_fail_place(r, &g->place, "needs a box: {min: ..., max: ...}");
-}
-SCREE_RECORD_TABLE(scree_plan_region, SCREE_PLAN_REGION, "a region", check_region)
+SCREE_RECORD_TABLE(scree_plan_region, SCREE_PLAN_REGION, "a region", "a box: {min: ..., max: ...}",
+                   NULL)
 
 static scree_status check_pile(const scree_reader *r, const void *record) {
   const scree_plan_pile *p = record;
@@ -20,28 +12,21 @@ static scree_status check_pile(const scree_reader *r, const void *record) {
   return scree_fail_place(r, &p->place, "band_low %g must be below band_high %g", p->band_low,
                           p->band_high);
 }
-SCREE_RECORD_TABLE(scree_plan_pile, SCREE_PLAN_PILE, "a pile", check_pile)
+SCREE_RECORD_TABLE(scree_plan_pile, SCREE_PLAN_PILE, "a pile", NULL, check_pile)
 
-static scree_status check_slope(const scree_reader *r, const void *record) {
-  const scree_plan_slope *s = record;
-  return scree_plan_check_direction(r, &s->place, "axis", s->axis);
-}
-SCREE_RECORD_TABLE(scree_plan_slope, SCREE_PLAN_SLOPE, "a slope", check_slope)
+SCREE_RECORD_TABLE(scree_plan_slope, SCREE_PLAN_SLOPE, "a slope", NULL, NULL)
 
-static scree_status check_segregation(const scree_reader *r, const void *record) {
-  const scree_plan_segregation *s = record;
-  return given(&s->cells) ? SCREE_OK : scree_fail_place(r, &s->place, "needs cells: their side");
-}
-SCREE_RECORD_TABLE(scree_plan_segregation, SCREE_PLAN_SEGREGATION, "segregation", check_segregation)
+SCREE_RECORD_TABLE(scree_plan_segregation, SCREE_PLAN_SEGREGATION, "segregation",
+                   "cells: their side", NULL)
 
-SCREE_RECORD_TABLE(scree_plan_residence, SCREE_PLAN_RESIDENCE, "residence", NULL)
+SCREE_RECORD_TABLE(scree_plan_residence, SCREE_PLAN_RESIDENCE, "residence", NULL, NULL)
 
 static scree_status check_impacts(const scree_reader *r, const void *record) {
   const scree_plan_impacts *p = record;
   if (p->least < p->most) return SCREE_OK;
   return scree_fail_place(r, &p->place, "least %g J must be below most %g J", p->least, p->most);
 }
-SCREE_RECORD_TABLE(scree_plan_impacts, SCREE_PLAN_IMPACTS, "impacts", check_impacts)
+SCREE_RECORD_TABLE(scree_plan_impacts, SCREE_PLAN_IMPACTS, "impacts", NULL, check_impacts)
 
 static scree_status check_grid(const scree_reader *r, const void *record) {
   const scree_plan_grid *p = record;
@@ -58,7 +43,7 @@ static scree_status check_grid(const scree_reader *r, const void *record) {
     return scree_fail_place(r, &p->cylinder->place, "needs at: [x, y, z] and a length above 0");
   return SCREE_OK;
 }
-SCREE_RECORD_TABLE(scree_plan_grid, SCREE_PLAN_GRID, "a grid", check_grid)
+SCREE_RECORD_TABLE(scree_plan_grid, SCREE_PLAN_GRID, "a grid", NULL, check_grid)
 
 static scree_status check_sensor(const scree_reader *r, const void *record) {
   const scree_plan_sensor *s = record;
@@ -71,4 +56,4 @@ static scree_status check_sensor(const scree_reader *r, const void *record) {
       "flow, region, wall, position, part, pile, slope, segregation, residence, impacts, grid"));
   return scree_plan_check_window(r, &s->place, s->from, s->until);
 }
-SCREE_RECORD_TABLE(scree_plan_sensor, SCREE_PLAN_SENSOR, "a sensor", check_sensor)
+SCREE_RECORD_TABLE(scree_plan_sensor, SCREE_PLAN_SENSOR, "a sensor", NULL, check_sensor)

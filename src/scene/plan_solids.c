@@ -11,20 +11,15 @@ static scree_status check_span(const scree_reader *r, const scree_place *place,
 }
 static scree_status check_loop(const scree_reader *r, const void *record) {
   const scree_plan_loop *l = record;
-  if (!given(l->span) || !given(&l->radius) || !given(&l->width))
-    return scree_fail_place(r, &l->place, "needs span: [x, y, z], a radius and a width");
   if (!(vec3_norm(vec3_load(l->span)) > 0))
     return scree_fail_place(r, &l->place, "span has no length: a cylinder is round one wheel");
-  SCREE_TRY(scree_plan_check_direction(r, &l->place, "axis", l->axis));
   return check_span(r, &l->place, l->axis, l->span);
 }
-SCREE_RECORD_TABLE(scree_plan_loop, SCREE_PLAN_LOOP, "a loop", check_loop)
+SCREE_RECORD_TABLE(scree_plan_loop, SCREE_PLAN_LOOP, "a loop",
+                   "span: [x, y, z], a radius and a width", check_loop)
 
 static scree_status check_screw(const scree_reader *r, const void *record) {
   const scree_plan_screw *s = record;
-  if (!given(&s->radius) || !given(&s->shaft) || !given(&s->pitch) || !given(&s->length) ||
-      !given(&s->thickness))
-    return scree_fail_place(r, &s->place, "needs radius, shaft, pitch, length and thickness");
   if (!(s->shaft < s->radius))
     return scree_fail_place(r, &s->place, "shaft %g m: must be below the radius %g m", s->shaft,
                             s->radius);
@@ -33,14 +28,13 @@ static scree_status check_screw(const scree_reader *r, const void *record) {
                             s->thickness);
   if (s->length > 100 * s->pitch)
     return scree_fail_place(r, &s->place, "length %g m: at most 100 times the pitch", s->length);
-  return scree_plan_check_direction(r, &s->place, "axis", s->axis);
+  return SCREE_OK;
 }
-SCREE_RECORD_TABLE(scree_plan_screw, SCREE_PLAN_SCREW, "a screw", check_screw)
+SCREE_RECORD_TABLE(scree_plan_screw, SCREE_PLAN_SCREW, "a screw",
+                   "radius, shaft, pitch, length and thickness", check_screw)
 
 static scree_status check_sieve(const scree_reader *r, const void *record) {
   const scree_plan_sieve *s = record;
-  if (!given(s->size) || !given(&s->hole) || !given(&s->pitch))
-    return scree_fail_place(r, &s->place, "needs size: [x, y, thickness], hole and pitch");
   if (!(s->hole <= 0.95 * s->pitch))
     return scree_fail_place(r, &s->place, "hole %g m: must be below 0.95 of the pitch, %g m",
                             s->hole, 0.95 * s->pitch);
@@ -53,23 +47,17 @@ static scree_status check_sieve(const scree_reader *r, const void *record) {
                             s->bend);
   return SCREE_OK;
 }
-SCREE_RECORD_TABLE(scree_plan_sieve, SCREE_PLAN_SIEVE, "a sieve", check_sieve)
+SCREE_RECORD_TABLE(scree_plan_sieve, SCREE_PLAN_SIEVE, "a sieve",
+                   "size: [x, y, thickness], hole and pitch", check_sieve)
 
-static scree_status check_belt(const scree_reader *r, const void *record) {
-  const scree_plan_belt *b = record;
-  if (!given(&b->speed)) return scree_fail_place(r, &b->place, "needs a speed");
-  return scree_plan_check_direction(r, &b->place, "axis", b->axis);
-}
-SCREE_RECORD_TABLE(scree_plan_belt, SCREE_PLAN_BELT, "a belt", check_belt)
+SCREE_RECORD_TABLE(scree_plan_belt, SCREE_PLAN_BELT, "a belt", "a speed", NULL)
 
 /* ---- copies ---- */
 
 static scree_status check_copies(const scree_reader *r, const void *record) {
   const scree_plan_round *c = record;
-  if (!c->count) return scree_fail_place(r, &c->place, "needs a count");
   if ((vec3_norm(vec3_load(c->span)) > 0) != given(&c->radius))
     return scree_fail_place(r, &c->place, "span and radius go together: they are of a chain");
-  SCREE_TRY(scree_plan_check_direction(r, &c->place, "axis", c->axis));
   return check_span(r, &c->place, c->axis, c->span);
 }
-SCREE_RECORD_TABLE(scree_plan_round, SCREE_PLAN_ROUND, "copies", check_copies)
+SCREE_RECORD_TABLE(scree_plan_round, SCREE_PLAN_ROUND, "copies", "a count", check_copies)

@@ -230,7 +230,7 @@ scree_status scree_scene_prepare(scree_scene *scene, scree_error *error) {
   return scree_scene_plan_columns(scene, error);
 }
 
-scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_error *error) {
+static scree_status set_up(scree_scene *scene, const char *folder, scree_error *error) {
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) scree_scene_measure_shape(scene, i);
   SCREE_TRY(scree_scene_complete_plan(scene, error));
   SCREE_TRY(make_gallery(scene, folder, error));
@@ -308,7 +308,7 @@ static scree_status create(const scree_scene_file *file, scree_shape_store *stor
   SCREE_TRY_ALLOC_ZERO(made, 1, error);
   SCREE_TRY(scree_scene_take_file(made, file, error));
   SCREE_TRY(make_particles(made, file->folder, store, progress, error));
-  SCREE_TRY(scree_scene_set_up(made, file->folder, error));
+  SCREE_TRY(set_up(made, file->folder, error));
   SCREE_TRY(scree_scene_plan_maps(made, error));
   SCREE_TRY(scree_scene_check_inlets(made, error));
   SCREE_TRY(scree_scene_plan_layers(made, error));
@@ -467,7 +467,7 @@ static size_t steps_to_decision(const scree_scene *scene, size_t wanted) {
   return steps;
 }
 
-scree_status scree_scene_decide(scree_scene *scene, scree_error *error) {
+static scree_status decide(scree_scene *scene, scree_error *error) {
   bool ticks = scree_world_step_count(scene->world) >= scene->next_tick;
   if (scree_world_time(scene->world) >= next_row(scene)) scree_scene_take_lost(scene);
   SCREE_TRY(scree_scene_watch_maps(scene, error));
@@ -484,7 +484,7 @@ scree_status scree_scene_decide(scree_scene *scene, scree_error *error) {
 
 static scree_status advance(scree_scene *scene, size_t step_count, scree_error *error) {
   while (step_count > 0 && !scene->end) {
-    SCREE_TRY(scree_scene_decide(scene, error));
+    SCREE_TRY(decide(scene, error));
     if (scene->end) break;
     bool anew = scene->has_parts || scene->plan.forces.count; /* what acts in each step */
     size_t steps = anew ? 1 : steps_to_decision(scene, step_count);

@@ -196,15 +196,9 @@ struct scree_scene {
 
 enum { SCREE_SCENE_ENDS = 6 }; /* that a scene may have, 0: none yet */
 
-/* scene.c: what falls on this moment, such as a layer that enters; done once, however calls are
- * cut. scree_scene_advance begins with it. */
-scree_status scree_scene_decide(scree_scene *scene, scree_error *error);
-/* Of its time or its phases, by the longest schedule. */
+/* scene.c: of its time or its phases, by the longest schedule. */
 double scree_scene_fraction(const scree_scene *scene);
 
-/* file_set.c: the settings of a tree over a file, but for some keys (NULL: none). */
-scree_status scree_scene_file_apply(scree_scene_file *file, const scree_yaml *settings,
-                                    const char *const *but, const char *name, scree_error *error);
 /* plan.c of a file: into the arena of whoever asks. */
 scree_status scree_scene_file_plan(const scree_scene_file *file, scree_arena *arena,
                                    scree_plan *plan, scree_error *error);
@@ -376,7 +370,6 @@ scree_status scree_scene_read_maps(const scree_scene *scene, const scree_scene_s
 scree_status scree_scene_plan_parts(scree_scene *scene, scree_error *error);
 scree_status scree_scene_move_parts(scree_scene *scene, scree_error *error);
 double scree_scene_part_energy(const scree_scene *scene, size_t geometry);
-double scree_scene_wall_work(const scree_scene *scene, size_t geometry);
 /* N along the slide or N m about the hinge, of all bodies in the last step. */
 double scree_scene_push(const scree_scene *scene, size_t geometry);
 double scree_scene_parts_balance(const scree_scene *scene);
@@ -409,15 +402,7 @@ uint64_t scree_scene_next_sample(const scree_scene *scene);
 scree_status scree_scene_write_tables(const scree_scene *scene, const char *folder,
                                       scree_error *error);
 
-/* measures.c: the bodies of a pile, raised and measured. */
-typedef struct scree_scene_heap {
-  scree_repose repose;
-  size_t body_count;
-  double solid, size; /* m3, of the bodies; m, of one */
-} scree_scene_heap;
-scree_status scree_scene_measure_heap(const scree_scene *scene, const scree_plan_pile *plan,
-                                      scree_scene_heap *heap, scree_error *error);
-/* Into columns from `at` on. */
+/* measures.c: into columns from `at` on. */
 scree_status scree_scene_put_pile(const scree_scene *scene, const scree_plan_pile *plan, double *at,
                                   scree_error *error);
 enum { SCREE_PILE_COLUMNS = 11 };
@@ -427,9 +412,8 @@ scree_status scree_scene_measure_slope(const scree_scene *scene, const scree_pla
 scree_status scree_scene_measure_mixing(const scree_scene *scene, const scree_scene_sensor *sensor,
                                         double *at, scree_error *error);
 
-/* scene.c: the arrays of a scene that has a plan; then, with its particles, gallery and world. */
+/* scene.c: the arrays of a scene that has a plan. */
 scree_status scree_scene_prepare(scree_scene *scene, scree_error *error);
-scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_error *error);
 /* One that ended by what is otherwise in this plan goes on, without the row of its end. */
 void scree_scene_reopen(scree_scene *scene, const scree_plan *plan);
 /* inlets.c: into scene->present, the bodies and in a periodic domain their images that reach into
@@ -452,15 +436,21 @@ scree_status scree_scene_pack(const void *scene, unsigned char **bytes, size_t *
  * output, of which frames and series must be the same. `path`: of the scene's checkpoint. */
 scree_status scree_scene_check_same(scree_scene *scene, const char *text, const char *path,
                                     scree_error *error);
-/* complete.c: a checkpoint's scene goes on by this file, where it says the same. */
-scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *file,
-                                   const char *path, scree_error *error);
 
 #define SCREE_SCENE_SHAPES(scene) ((scene)->plan.shapes.count)
 
 static inline bool scree_is_in(const double p[3], const double low[3], const double high[3]) {
   for (int k = 0; k < 3; k++)
     if (!(p[k] >= low[k] && p[k] <= high[k])) return false;
+  return true;
+}
+
+/* The first body from *index on that is there; false: there is none. */
+static inline bool scree_scene_next_body(const scree_scene *scene, size_t *index,
+                                         scree_body *body) {
+  while (*index < scene->shape_of.count && scree_world_body_removed(scene->world, *index)) ++*index;
+  if (*index >= scene->shape_of.count) return false;
+  scree_world_get_body(scene->world, *index, body);
   return true;
 }
 

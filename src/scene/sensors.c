@@ -38,31 +38,34 @@ const char *scree_scene_class_name(const scree_scene *scene, int by, size_t inde
 
 /* ---- columns ---- */
 
-/* What is always there. */
+/* What is always there: a number or count of the observation or of the book, or the phase. */
 static const struct {
   const char *name, *unit;
-} base_columns[] = {{"time", "s"},
-                    {"entered", ""},
-                    {"inside", ""},
-                    {"left", ""},
-                    {"waiting", ""},
-                    {"mass_inside", "kg"},
-                    {"kinetic", "J"},
-                    {"rotational", "J"},
-                    {"potential", "J"},
-                    {"elastic", "J"},
-                    {"dissipated_dashpot", "J"},
-                    {"dissipated_friction", "J"},
-                    {"wall_work", "J"},
-                    {"entered_energy", "J"},
-                    {"ledger", ""},
-                    {"pairs", ""},
-                    {"contacts", ""},
-                    {"coordination", ""},
-                    {"largest_overlap", "m"},
-                    {"highest_speed", "m/s"},
-                    {"mean_rotation", "rad/s"},
-                    {"phase", ""}};
+  enum { SEEN_REAL, SEEN_COUNT, BOOK_REAL, BOOK_COUNT, PHASE } of;
+  size_t offset;
+} base_columns[] = {
+    {"time", "s", SEEN_REAL, offsetof(scree_observation, time)},
+    {"entered", "", BOOK_COUNT, offsetof(scree_scene_book, entered_count)},
+    {"inside", "", BOOK_COUNT, offsetof(scree_scene_book, inside_count)},
+    {"left", "", BOOK_COUNT, offsetof(scree_scene_book, left_count)},
+    {"waiting", "", BOOK_COUNT, offsetof(scree_scene_book, waiting_count)},
+    {"mass_inside", "kg", BOOK_REAL, offsetof(scree_scene_book, inside_mass)},
+    {"kinetic", "J", SEEN_REAL, offsetof(scree_observation, kinetic)},
+    {"rotational", "J", SEEN_REAL, offsetof(scree_observation, rotational)},
+    {"potential", "J", SEEN_REAL, offsetof(scree_observation, potential)},
+    {"elastic", "J", SEEN_REAL, offsetof(scree_observation, elastic)},
+    {"dissipated_dashpot", "J", SEEN_REAL, offsetof(scree_observation, dissipated_dashpot)},
+    {"dissipated_friction", "J", SEEN_REAL, offsetof(scree_observation, dissipated_friction)},
+    {"wall_work", "J", SEEN_REAL, offsetof(scree_observation, wall_work)},
+    {"entered_energy", "J", BOOK_REAL, offsetof(scree_scene_book, entered_energy)},
+    {"ledger", "", BOOK_REAL, offsetof(scree_scene_book, ledger)},
+    {"pairs", "", SEEN_COUNT, offsetof(scree_observation, pair_count)},
+    {"contacts", "", SEEN_COUNT, offsetof(scree_observation, contact_count)},
+    {"coordination", "", SEEN_REAL, offsetof(scree_observation, coordination)},
+    {"largest_overlap", "m", SEEN_REAL, offsetof(scree_observation, largest_overlap)},
+    {"highest_speed", "m/s", SEEN_REAL, offsetof(scree_observation, highest_speed)},
+    {"mean_rotation", "rad/s", SEEN_REAL, offsetof(scree_observation, mean_rotation)},
+    {"phase", "", PHASE, 0}};
 enum { BASE_COLUMNS = sizeof base_columns / sizeof *base_columns };
 
 /* Of impacts; the rate follows from the count. */
@@ -348,10 +351,8 @@ static void read_region(const scree_scene *scene, const scree_plan_box *box, dou
   memset(count, 0, (shapes + 1) * sizeof *count);
   memset(mass, 0, (shapes + 1) * sizeof *mass);
   for (int k = 0; k < 3; k++) volume *= box->max[k] - box->min[k];
-  for (size_t b = 0; b < scene->shape_of.count; b++) {
-    scree_body body;
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_world_get_body(scene->world, b, &body);
+  scree_body body;
+  for (size_t b = 0; scree_scene_next_body(scene, &b, &body); b++) {
     if (!scree_is_in(body.position, box->min, box->max)) continue;
     size_t shape = scene->shape_of.items[b];
     double m = scree_world_body_mass(scene->world, b);
@@ -480,29 +481,14 @@ static scree_status measure(const scree_scene *scene, bool all, double *values,
   scree_scene_book b;
   scree_world_observe(scene->world, &o);
   scree_scene_get_book(scene, &b);
-  const double base[BASE_COLUMNS] = {o.time,
-                                     (double)b.entered_count,
-                                     (double)b.inside_count,
-                                     (double)b.left_count,
-                                     (double)b.waiting_count,
-                                     b.inside_mass,
-                                     o.kinetic,
-                                     o.rotational,
-                                     o.potential,
-                                     o.elastic,
-                                     o.dissipated_dashpot,
-                                     o.dissipated_friction,
-                                     o.wall_work,
-                                     b.entered_energy,
-                                     b.ledger,
-                                     (double)o.pair_count,
-                                     (double)o.contact_count,
-                                     o.coordination,
-                                     o.largest_overlap,
-                                     o.highest_speed,
-                                     o.mean_rotation,
-                                     (double)scene->phase};
-  memcpy(values, base, sizeof base);
+  for (size_t i = 0; i < BASE_COLUMNS; i++) {
+    bool seen = base_columns[i].of <= SEEN_COUNT;
+    const char *at = (seen ? (const char *)&o : (const char *)&b) + base_columns[i].offset;
+    bool real = base_columns[i].of == SEEN_REAL || base_columns[i].of == BOOK_REAL;
+    values[i] = base_columns[i].of == PHASE ? (double)scene->phase
+                : real                      ? *(const double *)(const void *)at
+                                            : (double)*(const size_t *)(const void *)at;
+  }
   for (size_t i = 0; i < scene->plan.sensors.count; i++)
     SCREE_TRY(read_sensor(scene, &scene->sensors[i], all, values, error));
   return SCREE_OK;

@@ -15,20 +15,11 @@ enum { SLICES = 200 }; /* of a class, for its integrals */
 
 /* ---- fields ---- */
 
-static scree_status check_rosin_rammler(const scree_reader *r, const void *record) {
-  const scree_plan_rosin_rammler *d = record;
-  if (given(&d->size) && given(&d->spread)) return SCREE_OK;
-  return scree_fail_place(r, &d->place, "needs size and spread");
-}
 SCREE_RECORD_TABLE(scree_plan_rosin_rammler, SCREE_PLAN_ROSIN_RAMMLER, "rosin_rammler",
-                   check_rosin_rammler)
+                   "size and spread", NULL)
 
-static scree_status check_lognormal(const scree_reader *r, const void *record) {
-  const scree_plan_lognormal *d = record;
-  if (given(&d->median) && given(&d->deviation)) return SCREE_OK;
-  return scree_fail_place(r, &d->place, "needs median and deviation");
-}
-SCREE_RECORD_TABLE(scree_plan_lognormal, SCREE_PLAN_LOGNORMAL, "lognormal", check_lognormal)
+SCREE_RECORD_TABLE(scree_plan_lognormal, SCREE_PLAN_LOGNORMAL, "lognormal", "median and deviation",
+                   NULL)
 
 static scree_status check_table(const scree_reader *r, const scree_plan_size *s) {
   const scree_table *t = &s->distribution;
@@ -69,7 +60,7 @@ static scree_status check_size(const scree_reader *r, const void *record) {
     return scree_fail_place(r, &s->place, "needs least and most, where it is cut off");
   return SCREE_OK;
 }
-SCREE_RECORD_TABLE(scree_plan_size, SCREE_PLAN_SIZE, "size", check_size)
+SCREE_RECORD_TABLE(scree_plan_size, SCREE_PLAN_SIZE, "size", NULL, check_size)
 
 /* ---- classes ---- */
 

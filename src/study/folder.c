@@ -18,6 +18,14 @@ scree_study_options scree_default_study_options(void) {
   return (scree_study_options){.lease_s = 300, .poll_s = 1, .wait = true};
 }
 
+scree_status scree_study_pause(const scree_study_options *options, const scree_progress *progress,
+                               const char *what, scree_error *error) {
+  scree_sleep(options->poll_s);
+  if (progress && progress->report && !progress->report(progress->context, what, 0))
+    return scree_fail(error, SCREE_CANCELLED, "cancelled");
+  return SCREE_OK;
+}
+
 const char *scree_study_path(const scree_study *study, const char *kind, const char *name,
                              const char *ending, char path[SCREE_PATH_BYTES]) {
   snprintf(path, SCREE_PATH_BYTES, "%s/%s%s%s%s", study->folder, kind, *kind && *name ? "/" : "",

@@ -8,7 +8,6 @@
 #include "study/study.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <string.h>
 
 enum { LARGEST_FILE = 1 << 20 };
@@ -21,14 +20,14 @@ static const double most_points = 1e6;
   ROW(T, REAL, noise, NAN, 0, 1.25e-3, "m", "")                                                    \
   ROW(T, SEED, seed, 1, "")
 SCREE_RECORD_TYPE(scree_study_sample, SCREE_STUDY_SAMPLE)
-SCREE_RECORD_TABLE(scree_study_sample, SCREE_STUDY_SAMPLE, "sample", NULL)
+SCREE_RECORD_TABLE(scree_study_sample, SCREE_STUDY_SAMPLE, "sample", NULL, NULL)
 
 #define SCREE_STUDY_ANALYSIS(ROW, T)                                                               \
   ROW(T, WORD, angle, 0, "sector|cone|silhouette", "")                                             \
   ROW(T, REAL, margin_deg, 2, 1e-6, 90, "deg", "")                                                 \
   ROW(T, REAL, confidence, 0.95, 0.5, 0.9999, "", "")
 SCREE_RECORD_TYPE(scree_study_analysis, SCREE_STUDY_ANALYSIS)
-SCREE_RECORD_TABLE(scree_study_analysis, SCREE_STUDY_ANALYSIS, "analysis", NULL)
+SCREE_RECORD_TABLE(scree_study_analysis, SCREE_STUDY_ANALYSIS, "analysis", NULL, NULL)
 
 #define SCREE_STUDY(ROW, T)                                                                        \
   ROW(T, TEXT, name, "")                                                                           \
@@ -46,7 +45,7 @@ SCREE_RECORD_TABLE(scree_study_analysis, SCREE_STUDY_ANALYSIS, "analysis", NULL)
   ROW(T, COUNT, points, 0, 1, 1e6, "")                                                             \
   ROW(T, GROUP, analysis, scree_study_analysis, "")
 SCREE_RECORD_TYPE(scree_study_fields, SCREE_STUDY)
-SCREE_RECORD_TABLE(scree_study_fields, SCREE_STUDY, "a study", NULL)
+SCREE_RECORD_TABLE(scree_study_fields, SCREE_STUDY, "a study", NULL, NULL)
 
 #define SCREE_STUDY_RANGE(ROW, T)                                                                  \
   ROW(T, REAL, from, NAN, -1e300, 1e300, "", "")                                                   \
@@ -54,14 +53,14 @@ SCREE_RECORD_TABLE(scree_study_fields, SCREE_STUDY, "a study", NULL)
   ROW(T, WORD, scale, 0, "linear|log", "")                                                         \
   ROW(T, COUNT, levels, 0, 2, 10000, "")
 SCREE_RECORD_TYPE(scree_study_range, SCREE_STUDY_RANGE)
-SCREE_RECORD_TABLE(scree_study_range, SCREE_STUDY_RANGE, "a range", NULL)
+SCREE_RECORD_TABLE(scree_study_range, SCREE_STUDY_RANGE, "a range", NULL, NULL)
 
 #define SCREE_STUDY_WINDOW(ROW, T)                                                                 \
   ROW(T, REAL, from, NAN, 0, 1e9, "s", "")                                                         \
   ROW(T, REAL, until, NAN, 0, 1e9, "s", "")                                                        \
   ROW(T, REAL, at, NAN, -1e9, 1e9, "s", "")
 SCREE_RECORD_TYPE(scree_study_window, SCREE_STUDY_WINDOW)
-SCREE_RECORD_TABLE(scree_study_window, SCREE_STUDY_WINDOW, "an answer", NULL)
+SCREE_RECORD_TABLE(scree_study_window, SCREE_STUDY_WINDOW, "an answer", NULL, NULL)
 
 /* ---- reading ---- */
 
@@ -71,17 +70,9 @@ typedef struct reader {
   scree_error *error;
 } reader;
 
-static scree_status fail_at(const reader *r, const scree_yaml *node, const char *format, ...)
-    SCREE_PRINTF(3, 4);
-static scree_status fail_at(const reader *r, const scree_yaml *node, const char *format, ...) {
-  char text[512];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return scree_fail(r->error, SCREE_BAD_FILE, "%s, line %zu, column %zu: %s", r->name, node->line,
-                    node->column, text);
-}
+#define fail_at(r, node, ...)                                                                      \
+  scree_fail_place(&(const scree_reader){(r)->name, NULL, (r)->error, ""},                         \
+                   &(const scree_place){NULL, "", (node)->line, (node)->column}, __VA_ARGS__)
 
 const char *scree_arena_text(scree_arena *arena, const char *text) {
   size_t size = strlen(text) + 1;

@@ -65,12 +65,8 @@ static inline double *scree_record_number(scree_record_point *point, size_t colu
 }
 
 /* Which answers the study asks for. They are not among what names a run: other answers go on with
- * the runs that were made, and take theirs from what these left (scree_study_answer_again). */
+ * the runs that were made, and take theirs from what these left. */
 void scree_study_answers_mark(const scree_study *study, char mark[SCREE_CHECKSUM_TEXT]);
-/* Takes the answers anew from the last frame, or what the command printed. SCREE_IO and
- * SCREE_BAD_FILE where these are gone: the run has to be made again. */
-scree_status scree_study_answer_again(const scree_study *study, size_t run,
-                                      scree_study_record *record, scree_error *error);
 
 /* scene_base.c: what is kept of a scene that has ended; its answers alone. */
 scree_status scree_study_record_scene(const scree_study *study, const scree_scene *scene,

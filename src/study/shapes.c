@@ -290,14 +290,6 @@ static scree_status make_shape(const scree_study *study, size_t index,
   return write_facts(study, &made, error);
 }
 
-static scree_status pause_for(const scree_study_options *options, const scree_progress *progress,
-                              const char *what, scree_error *error) {
-  scree_sleep(options->poll_s);
-  if (progress && progress->report && !progress->report(progress->context, what, 0))
-    return scree_fail(error, SCREE_CANCELLED, "cancelled");
-  return SCREE_OK;
-}
-
 /* Makes the shape, or waits until somebody else has. */
 static scree_status prepare_shape(scree_study *study, size_t index,
                                   const scree_study_options *options,
@@ -314,7 +306,7 @@ static scree_status prepare_shape(scree_study *study, size_t index,
     if (is_complete(study, index)) return SCREE_OK;
     SCREE_TRY(scree_lease_take(folder, name, options->lease_s, worker, &taken, &lease, error));
     if (!taken) {
-      SCREE_TRY(pause_for(options, progress, "another process makes the shapes", error));
+      SCREE_TRY(scree_study_pause(options, progress, "another process makes the shapes", error));
       continue;
     }
     keeper k = {progress, &lease, fmin(5, 0.2 * options->lease_s), shape->name};

@@ -111,6 +111,9 @@ static inline size_t scree_study_run_replicate(const scree_study *study, size_t 
 /* Copies into the arena; NULL when memory is out. */
 const char *scree_arena_text(scree_arena *arena, const char *text);
 
+/* folder.c: waits for as long as others are to be waited for; SCREE_CANCELLED. */
+scree_status scree_study_pause(const scree_study_options *options, const scree_progress *progress,
+                               const char *what, scree_error *error);
 /* plan.c: "grid", "latin", "sobol" or "list". */
 const char *scree_study_design_name(const scree_study *study);
 /* points.c: the design's points with their labels; all values have been checked. */

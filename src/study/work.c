@@ -205,14 +205,6 @@ static scree_status take_run(work *w, bool *taken, size_t *open, scree_error *er
   return SCREE_OK;
 }
 
-static scree_status pause_work(const work *w, scree_error *error) {
-  scree_sleep(w->options->poll_s);
-  const scree_progress *p = w->progress;
-  if (p && p->report && !p->report(p->context, "others work on what is left", 0))
-    return scree_fail(error, SCREE_CANCELLED, "cancelled");
-  return SCREE_OK;
-}
-
 /* Records of failures are moved aside: KEY.failed-N. */
 static void reopen_failed(work *w) {
   for (w->run = 0; w->run < scree_study_run_count(w->study); w->run++) {
@@ -242,8 +234,10 @@ void scree_study_answers_mark(const scree_study *study, char mark[SCREE_CHECKSUM
   scree_checksum_text(sum, mark);
 }
 
-scree_status scree_study_answer_again(const scree_study *study, size_t run,
-                                      scree_study_record *record, scree_error *error) {
+/* Takes the answers anew from the last frame, or what the command printed. SCREE_IO and
+ * SCREE_BAD_FILE where these are gone: the run has to be made again. */
+static scree_status answer_again(const scree_study *study, size_t run, scree_study_record *record,
+                                 scree_error *error) {
   bool command = study->command.count > 0;
   const char *path =
       SCREE_STUDY_PATH(study, "runs", study->keys[run], command ? "" : "/last.scree");
@@ -261,7 +255,7 @@ static scree_status renew_answers(const work *w, const char *path, scree_study_r
   char mark[SCREE_CHECKSUM_TEXT];
   scree_study_answers_mark(w->study, mark);
   if (record->failed || !strcmp(mark, record->answered)) return SCREE_OK;
-  scree_status status = scree_study_answer_again(w->study, w->run, record, NULL);
+  scree_status status = answer_again(w->study, w->run, record, NULL);
   if (status == SCREE_OK) return scree_study_record_write(record, path, NULL);
   return status == SCREE_OUT_OF_MEMORY ? status : SCREE_BAD_FILE;
 }
@@ -294,7 +288,7 @@ static scree_status work_on(work *w, size_t *completed, scree_error *error) {
       scree_study_collect(w->study, false, NULL);
     } else {
       if (open == 0 || !w->options->wait) return SCREE_OK;
-      SCREE_TRY(pause_work(w, error));
+      SCREE_TRY(scree_study_pause(w->options, w->progress, "others work on what is left", error));
     }
   }
 }
