@@ -100,11 +100,10 @@ static scree_status add_file(const making *m, const char *name, scree_error *err
   scree_read_options o = scree_default_read_options();
   scree_scan scan;
   o.unit_m = scree_plan_unit(m->copy.unit);
-  char *path = scree_scene_path(m->folder, name);
+  SCREE_CLEANUP(scree_free_at) char *path = scree_scene_path(m->folder, name);
   if (!path) return scree_fail_memory(error, strlen(name), "a path");
-  scree_status status = scree_scan_read(path, &o, &scan, error);
-  scree_free(path);
-  return status == SCREE_OK ? add_mesh(m, name, &scan.mesh, error) : status;
+  SCREE_TRY(scree_scan_read(path, &o, &scan, error));
+  return add_mesh(m, name, &scan.mesh, error);
 }
 
 static scree_status add_shaft(const making *m, scree_error *error) {
@@ -294,25 +293,20 @@ scree_status scree_scene_set_motions(const scree_scene *scene, size_t index, scr
   const scree_plan_geometry *g = plan_of(scene, index);
   const scree_scene_geometry *made = &scene->geometry[index];
   const size_t copies = g->copies ? g->copies->count : 1, most = SCREE_PATH_COLUMNS;
-  scree_status status = SCREE_OK;
-  scree_wall_motion *motions = scree_alloc(most * g->motion.count, sizeof *motions);
-  if (!motions) return scree_fail_memory(error, g->motion.count * sizeof *motions, "motions");
-  for (size_t w = 0; status == SCREE_OK && w < made->wall_count; w++) {
+  SCREE_SCRATCH(scree_wall_motion, motions, most * g->motion.count, error);
+  for (size_t w = 0; w < made->wall_count; w++) {
     const size_t count = put_motions(g, w / (made->wall_count / copies), motions);
-    status = scree_world_set_wall_motion(world, made->first_wall + w, motions, count, error);
+    SCREE_TRY(scree_world_set_wall_motion(world, made->first_wall + w, motions, count, error));
   }
-  scree_free(motions);
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- all of it ---- */
 
 static scree_status add_copy(const making *m, scree_error *error) {
   const scree_plan_geometry *g = &m->copy;
-  scree_status status = SCREE_OK;
-  for (size_t k = 0; status == SCREE_OK && k < g->file.count; k++)
-    status = add_file(m, g->file.items[k], error);
-  return status == SCREE_OK && g->file.count == 0 ? add_solid(m, error) : status;
+  for (size_t k = 0; k < g->file.count; k++) SCREE_TRY(add_file(m, g->file.items[k], error));
+  return g->file.count == 0 ? add_solid(m, error) : SCREE_OK;
 }
 
 static scree_status add_one(scree_scene *scene, size_t index, const char *folder,
@@ -321,31 +315,28 @@ static scree_status add_one(scree_scene *scene, size_t index, const char *folder
   scree_scene_geometry *made = &scene->geometry[index];
   const size_t copies = g->copies ? g->copies->count : 1;
   made->first_wall = scree_world_wall_count(world);
-  scree_status status = SCREE_OK;
-  for (size_t k = 0; status == SCREE_OK && k < copies; k++) {
+  for (size_t k = 0; k < copies; k++) {
     scree_plan_turn turn;
     const making m = {scene,  index, copied(g, k, &turn),
                       folder, world, k == 0 && world == scene->gallery};
-    status = add_copy(&m, error);
+    SCREE_TRY(add_copy(&m, error));
     made->wall_count = scree_world_wall_count(world) - made->first_wall;
-    if (status == SCREE_OK && made->wall_count % (k + 1))
-      status = scree_fail(error, SCREE_BAD_MESH,
-                          "copies: they have bodies on different sides; set side: outside");
+    if (made->wall_count % (k + 1))
+      return scree_fail(error, SCREE_BAD_MESH,
+                        "copies: they have bodies on different sides; set side: outside");
   }
-  if (status == SCREE_OK) status = scree_scene_read_paths(scene, index, folder, error);
-  if (status != SCREE_OK || g->motion.count == 0) return status;
-  return scree_scene_set_motions(scene, index, world, error);
+  SCREE_TRY(scree_scene_read_paths(scene, index, folder, error));
+  return g->motion.count ? scree_scene_set_motions(scene, index, world, error) : SCREE_OK;
 }
 
 scree_status scree_scene_add_geometry(scree_scene *scene, const char *folder, scree_world *world,
                                       scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < scene->plan.geometry.count; i++) {
+  for (size_t i = 0; i < scene->plan.geometry.count; i++) {
     scree_error why;
-    status = add_one(scene, i, folder, world, &why);
-    status = scree_scene_blame(scene, &plan_of(scene, i)->place, status, &why, error);
+    scree_status status = add_one(scene, i, folder, world, &why);
+    SCREE_TRY(scree_scene_blame(scene, &plan_of(scene, i)->place, status, &why, error));
   }
-  return status;
+  return SCREE_OK;
 }
 
 /* ---- whether a body is clear ---- */

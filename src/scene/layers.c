@@ -73,33 +73,31 @@ static scree_status count_layers(const scree_scene *scene, scree_scene_inlet *in
                                  scree_error *error) {
   const scree_scene_layers *l = &inlet->layers;
   size_t count, placed = 0, layers = 0;
-  scree_placement *waiting = list_waiting(inlet, 0, &count, error);
+  SCREE_CLEANUP(scree_free_at) scree_placement *waiting = list_waiting(inlet, 0, &count, error);
   if (!waiting) return SCREE_OUT_OF_MEMORY;
-  scree_status status = SCREE_OK;
-  for (; status == SCREE_OK && placed < count; layers++) {
+  for (; placed < count; layers++) {
     scree_fill_layer layer = layer_at(scene, inlet, 0);
     layer.layer_index = layers;
     size_t more = scree_fill_place(&layer, waiting + placed, count - placed);
     if (more == 0)
-      status =
-          scree_scene_fail(scene, &inlet->plan->place, error,
-                           "a particle %.4g mm across does not fit into the %s of %.4g mm",
-                           1e3 * box_length(&waiting[placed]), l->radius > 0 ? "cylinder" : "box",
-                           2e3 * (l->radius > 0 ? l->radius : fmin(l->half[0], l->half[1])));
+      return scree_scene_fail(scene, &inlet->plan->place, error,
+                              "a particle %.4g mm across does not fit into the %s of %.4g mm",
+                              1e3 * box_length(&waiting[placed]),
+                              l->radius > 0 ? "cylinder" : "box",
+                              2e3 * (l->radius > 0 ? l->radius : fmin(l->half[0], l->half[1])));
     placed += more;
   }
-  if (status == SCREE_OK && inlet->layers.count == 0) {
+  if (inlet->layers.count == 0) {
     scree_fill_layer layer = layer_at(scene, inlet, l->middle.z);
     layer.is_clear = is_clear, layer.context = scene;
     if (scree_fill_place(&layer, waiting, 1) == 0)
-      status = scree_scene_fail(scene, &inlet->plan->place, error,
-                                "nowhere at %.4g m, where its layers begin, is there room for a "
-                                "particle %.4g mm across clear of the walls",
-                                l->middle.z, 1e3 * box_length(&waiting[0]));
+      return scree_scene_fail(scene, &inlet->plan->place, error,
+                              "nowhere at %.4g m, where its layers begin, is there room for a "
+                              "particle %.4g mm across clear of the walls",
+                              l->middle.z, 1e3 * box_length(&waiting[0]));
   }
-  scree_free(waiting);
   inlet->layers.planned = layers;
-  return status;
+  return SCREE_OK;
 }
 
 /* s in which a body moves by the way. */
@@ -215,19 +213,18 @@ static scree_status enter_random(scree_scene *scene, scree_scene_inlet *inlet, d
   size_t left;
   double velocity[3] = {0, 0, -inlet->layers.speed};
   const double low[3] = {-INFINITY, -INFINITY, bottom}, high[3] = {INFINITY, INFINITY, INFINITY};
-  scree_status status = scree_scene_list_present(scene, inlet->layers.extents, low, high, error);
-  if (status != SCREE_OK) return status;
+  SCREE_TRY(scree_scene_list_present(scene, inlet->layers.extents, low, high, error));
+  SCREE_CLEANUP(scree_free_at)
   scree_placement *waiting = list_waiting(inlet, inlet->entered, &left, error);
   if (!waiting) return SCREE_OUT_OF_MEMORY;
   scree_fill_layer layer = layer_at(scene, inlet, bottom);
   layer.present = scene->present.items, layer.present_count = scene->present.count;
   layer.is_clear = is_clear, layer.context = scene;
   size_t placed = scree_fill_place(&layer, waiting, left);
-  for (size_t i = 0; status == SCREE_OK && i < placed; i++)
-    status = scree_scene_enter(scene, inlet, inlet->layers.order[inlet->entered], &waiting[i],
-                               velocity, error);
-  scree_free(waiting);
-  return status;
+  for (size_t i = 0; i < placed; i++)
+    SCREE_TRY(scree_scene_enter(scene, inlet, inlet->layers.order[inlet->entered], &waiting[i],
+                                velocity, error));
+  return SCREE_OK;
 }
 
 /* The place of a body in its cell: the room that a smaller one has is used at random. */
@@ -311,9 +308,8 @@ static scree_status enter_layer(scree_scene *scene, scree_scene_inlet *inlet, sc
 }
 
 scree_status scree_scene_enter_layers(scree_scene *scene, scree_error *error) {
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < scene->plan.inlets.count; i++)
-    while (status == SCREE_OK && steps_to(scene, &scene->inlets[i]) == 0)
-      status = enter_layer(scene, &scene->inlets[i], error);
-  return status;
+  for (size_t i = 0; i < scene->plan.inlets.count; i++)
+    while (steps_to(scene, &scene->inlets[i]) == 0)
+      SCREE_TRY(enter_layer(scene, &scene->inlets[i], error));
+  return SCREE_OK;
 }

@@ -81,13 +81,16 @@ static void code_inlets(scree_codec *c, scree_scene *scene) {
   }
 }
 
+/* Whether a list has place for what is read or written into it. */
+#define HOLDS(codec, reserved)                                                                     \
+  (scree_codec_good(codec) && ((reserved) || ((codec)->out_of_memory = true, false)))
+
 /* An array that grows. */
 #define CODE_REALS(codec, list)                                                                    \
   do {                                                                                             \
     size_t count_ = (list)->count;                                                                 \
     scree_code_count((codec), &count_, sizeof(double));                                            \
-    if (scree_codec_good(codec) && !SCREE_RESERVE(list, count_)) (codec)->out_of_memory = true;    \
-    if (scree_codec_good(codec)) {                                                                 \
+    if (HOLDS(codec, SCREE_RESERVE(list, count_))) {                                               \
       (list)->count = count_;                                                                      \
       scree_code_reals((codec), (list)->items, count_);                                            \
     }                                                                                              \
@@ -106,8 +109,7 @@ static void code_hits(scree_codec *c, scree_scene *scene) {
   size_t count = scene->hits.count;
   scree_code_u64(c, &scene->next_hits);
   scree_code_count(c, &count, 50);
-  if (scree_codec_good(c) && !SCREE_RESERVE(&scene->hits, count)) c->out_of_memory = true;
-  if (!scree_codec_good(c)) return;
+  if (!HOLDS(c, SCREE_RESERVE(&scene->hits, count))) return;
   scene->hits.count = count;
   for (size_t i = 0; i < count; i++) {
     scree_scene_hit *hit = &scene->hits.items[i];
@@ -135,8 +137,7 @@ void scree_scene_code_sensor(scree_codec *c, scree_scene *scene, scree_scene_sen
   }
   size_t count = sensor->side.count;
   scree_code_count(c, &count, 1);
-  if (scree_codec_good(c) && !SCREE_RESERVE(&sensor->side, count)) c->out_of_memory = true;
-  if (!scree_codec_good(c)) return;
+  if (!HOLDS(c, SCREE_RESERVE(&sensor->side, count))) return;
   sensor->side.count = count;
   scree_code_bytes(c, sensor->side.items, count);
 }
@@ -144,11 +145,10 @@ void scree_scene_code_sensor(scree_codec *c, scree_scene *scene, scree_scene_sen
 static void code_bodies(scree_codec *c, scree_scene *scene) {
   size_t count = scene->shape_of.count;
   scree_code_count(c, &count, 28);
-  if (scree_codec_good(c) &&
-      (!SCREE_RESERVE(&scene->shape_of, count) || !SCREE_RESERVE(&scene->entered_at, count) ||
-       !SCREE_RESERVE(&scene->stays, count)))
-    c->out_of_memory = true;
-  if (!scree_codec_good(c)) return;
+  if (!HOLDS(c, SCREE_RESERVE(&scene->shape_of, count) &&
+                    SCREE_RESERVE(&scene->entered_at, count) &&
+                    SCREE_RESERVE(&scene->stays, count)))
+    return;
   scene->shape_of.count = scene->entered_at.count = scene->stays.count = count;
   for (size_t i = 0; i < count; i++) {
     scree_code_u32(c, &scene->shape_of.items[i]);
@@ -169,9 +169,7 @@ static void code_bodies(scree_codec *c, scree_scene *scene) {
 static void code_series(scree_codec *c, scree_scene *scene) {
   size_t rows = scene->row_count, columns = scene->columns.count;
   scree_code_count(c, &rows, columns * sizeof(double));
-  if (scree_codec_good(c) && !SCREE_RESERVE(&scene->series, rows * columns))
-    c->out_of_memory = true;
-  if (!scree_codec_good(c)) return;
+  if (!HOLDS(c, SCREE_RESERVE(&scene->series, rows * columns))) return;
   scene->row_count = rows;
   scree_code_reals(c, scene->series.items, rows * columns);
 }
@@ -259,11 +257,11 @@ static scree_status save(scree_codec *c, const scree_scene *scene, bool as_frame
   scree_code_text(c, scene->text, strlen(scene->text));
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++)
     scree_code_text(c, scene->shapes[i].source, strlen(scene->shapes[i].source));
-  scree_status status = scree_world_save_block(c, scene->gallery, true, error);
-  if (status == SCREE_OK) status = scree_world_save_block(c, scene->world, !as_frame, error);
+  SCREE_TRY(scree_world_save_block(c, scene->gallery, true, error));
+  SCREE_TRY(scree_world_save_block(c, scene->world, !as_frame, error));
   code_geometry(c, &state);
   code_state(c, &state);
-  return status == SCREE_OK ? scree_seal_end(c, &seal, error) : status;
+  return scree_seal_end(c, &seal, error);
 }
 
 scree_status scree_scene_pack(const void *scene, unsigned char **bytes, size_t *byte_count,
@@ -315,14 +313,13 @@ static scree_status fail_here(const loader *l) {
 
 static scree_status load_plan(loader *l) {
   scree_scene *scene = l->scene;
-  scree_scene_file *file;
+  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
   scene->name = scree_decode_text(&l->codec);
   scene->text = scree_decode_text(&l->codec);
   if (!scene->name || !scene->text) return fail_here(l);
   SCREE_TRY(scree_scene_file_parse(scene->text, strlen(scene->text), l->name, &file, l->error));
-  scree_status status = scree_scene_file_plan(file, &scene->arena, &scene->plan, l->error);
-  scree_scene_file_free(file);
-  return status == SCREE_OK ? scree_scene_prepare(scene, l->error) : status;
+  SCREE_TRY(scree_scene_file_plan(file, &scene->arena, &scene->plan, l->error));
+  return scree_scene_prepare(scene, l->error);
 }
 
 /* Particles of bodies in the world are taken from there, so that a shape stays one particle however

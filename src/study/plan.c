@@ -619,22 +619,18 @@ static scree_status read_text(scree_study *study, const char *path, scree_error 
 }
 
 scree_status scree_study_read(const char *path, scree_study **study, scree_error *error) {
-  scree_study *made = scree_alloc_zero(1, sizeof *made);
-  if (!made) return scree_fail_memory(error, sizeof *made, "a study");
-  scree_yaml root = {0};
+  SCREE_CLEANUP(scree_study_drop) scree_study *made = NULL;
+  SCREE_CLEANUP(scree_yaml_free) scree_yaml root = {0};
+  SCREE_TRY_ALLOC_ZERO(made, 1, error);
   reader r = {made, path, error};
-  scree_status status = start(made, path, error);
-  if (status == SCREE_OK) status = read_text(made, path, error);
-  if (status == SCREE_OK)
-    status = scree_yaml_parse(made->text, made->text_size, path, &root, error);
-  if (status == SCREE_OK) status = read_root(&r, &root);
-  if (status == SCREE_OK) status = scree_study_make_points(made, error);
-  scree_yaml_free(&root);
-  if (status == SCREE_OK)
-    *study = made;
-  else
-    scree_study_free(made);
-  return status;
+  SCREE_TRY(start(made, path, error));
+  SCREE_TRY(read_text(made, path, error));
+  SCREE_TRY(scree_yaml_parse(made->text, made->text_size, path, &root, error));
+  SCREE_TRY(read_root(&r, &root));
+  SCREE_TRY(scree_study_make_points(made, error));
+  *study = made;
+  made = NULL;
+  return SCREE_OK;
 }
 
 void scree_study_free(scree_study *study) {
