@@ -574,21 +574,58 @@ void scree_process_stop(long process) {
 
 /* ---- the program's surroundings ---- */
 
+typedef struct word_list {
+  char **items;
+  int count;
+  bool failed;
+} word_list;
+
+/* Slashes separate folders as well, and are what the program looks for. */
+static void push_word(word_list *list, const wchar_t *wide) {
+  size_t size = 4 * wcslen(wide) + 1;
+  char *text = malloc(size),
+       **items = realloc(list->items, ((size_t)list->count + 2) * sizeof *items);
+  if (items) list->items = items;
+  if (!text || !items || !narrow(wide, text, size)) {
+    list->failed = true;
+    free(text);
+    return;
+  }
+  for (char *c = text; *c; c++)
+    if (*c == '\\') *c = '/';
+  list->items[list->count++] = text;
+  list->items[list->count] = NULL;
+}
+
+/* Shells of Windows leave wildcards to the program: the files that match, or the word where none
+ * does. */
+static void push_matches(word_list *list, const wchar_t *wide) {
+  wchar_t path[MOST_PATH];
+  WIN32_FIND_DATAW found;
+  size_t folder = 0;
+  int before = list->count;
+  for (size_t i = 0; wide[i]; i++)
+    if (wide[i] == L'\\' || wide[i] == L'/') folder = i + 1;
+  HANDLE search = wcspbrk(wide, L"*?") ? FindFirstFileW(wide, &found) : INVALID_HANDLE_VALUE;
+  bool any = search != INVALID_HANDLE_VALUE;
+  for (; any; any = FindNextFileW(search, &found)) {
+    if (found.cFileName[0] == L'.' || folder + wcslen(found.cFileName) >= MOST_PATH) continue;
+    wmemcpy(path, wide, folder);
+    wcscpy(path + folder, found.cFileName);
+    push_word(list, path);
+  }
+  if (search != INVALID_HANDLE_VALUE) FindClose(search);
+  if (list->count == before) push_word(list, wide);
+}
+
 void scree_program_begin(int *count, char ***words) {
   int found = 0;
   wchar_t **wide = CommandLineToArgvW(GetCommandLineW(), &found);
-  char **made = wide ? calloc((size_t)found + 1, sizeof *made) : NULL;
-  for (int i = 0; made && i < found; i++) {
-    size_t size = 4 * wcslen(wide[i]) + 1;
-    made[i] = malloc(size);
-    if (!made[i] || !narrow(wide[i], made[i], size)) made = NULL;
-    /* slashes separate folders as well, and are what the program looks for */
-    for (char *c = made ? made[i] : NULL; c && *c; c++)
-      if (*c == '\\') *c = '/';
-  }
-  if (made) {
-    *count = found;
-    *words = made;
+  word_list list = {.failed = !wide};
+  for (int i = 0; i < found && !list.failed; i++) push_matches(&list, wide[i]);
+  if (!list.failed && list.items) {
+    *count = list.count;
+    *words = list.items;
   }
   for (int fd = 0; fd < 3; fd++) _setmode(fd, _O_BINARY);
   SetConsoleOutputCP(CP_UTF8);

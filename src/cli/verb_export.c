@@ -187,6 +187,9 @@ static scree_status make_clump(const cli_call *call, scree_particle **particle,
     return cli_name_in_error(word, error);
   const scree_clump *clump =
       a->count ? scree_clumps_of_count(&clumps, a->count) : &clumps.clumps[clumps.recommended];
+  if (clump->sphere_count < a->count)
+    cli_remark(word, "%zu sphere%s, not %zu: more cover it no better", clump->sphere_count,
+               cli_plural(clump->sphere_count), a->count);
   return scree_clump_particle(&clumps, clump, particle, error);
 }
 

@@ -282,7 +282,7 @@ static scree_status check_measured(const cli_call *call, pile_kind kind) {
   if (picture != (a->picture_width > 0))
     return cli_misuse(call->verb,
                       picture ? "%s is a picture: --picture-width says what it shows across"
-                              : "--picture-width is of pictures; %s is none",
+                              : "--picture-width is of pictures, which are PNG here; %s is none",
                       file);
   if (kind != SCAN && a->sectors)
     return cli_misuse(call->verb, "--sectors: %s is an outline, with two sides", file);
@@ -323,7 +323,8 @@ static scree_status run(const cli_call *call, scree_error *error) {
   if (a->vtp) SCREE_TRY(cli_check_ending(call->verb, a->vtp, CLI_VTP));
   if (a->picture) SCREE_TRY(cli_check_ending(call->verb, a->picture, CLI_PICTURE));
   if (kind != SCENE) return run_measured(call, kind, error);
-  if (a->particle_size > 0 || (a->picture_width > 0 && !a->picture))
+  bool there = !strcmp(call->inputs[0], "-") || scree_path_look(call->inputs[0], NULL);
+  if (there && (a->particle_size > 0 || (a->picture_width > 0 && !a->picture)))
     return cli_misuse(call->verb, "--%s does nothing here: %s",
                       a->particle_size > 0 ? "particle-size" : "picture-width",
                       a->particle_size > 0 ? "a scene knows its particles" : "give --output");

@@ -17,6 +17,7 @@ printf -- '-150,0\n0,75\n150,0\n' >plain.csv
 # what is wrong
 box 3 2 1 >box.off
 run pile outline.csv --picture-width 1m
+run pile nowhere.png --picture-width 1m
 run pile outline.csv --sectors 8
 run pile outline.csv -o heap.png
 run pile sample:icosphere-4

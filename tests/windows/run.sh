@@ -55,6 +55,10 @@ try "and told in UTF-8" grep -q "Gerät größer" out
 try "a file that is there is refused" expect_code 1 simplify "$name" -n 100 -o phone.stl
 try "with -f it is replaced" expect_code 0 simplify "$name" -n 100 -f -o b.stl
 try "and again" expect_code 0 simplify "$name" -n 60 -f -o b.stl
+mkdir -p scans && "$scree" sample box-12 sphere --resolution 3mm -q -o scans >/dev/null
+try "wildcards stand for files" expect_code 0 measure 'scans\*.stl'
+try "for all of them" test "$(grep -c '^scans/.*stl' out)" -eq 2
+try "or for themselves" expect_code 1 measure 'scans\*.ply'
 long=$(printf 'folder%.0s' 1 2 3 4 5 6 7 8 9 10)
 mkdir -p "$long/$long/$long/$long/$long"
 cp phone.stl "$long/$long/$long/$long/$long/p.stl"
