@@ -193,7 +193,10 @@ static void print_answers(FILE *stream, const scree_study_result *r) {
         fprintf(stream, "%10.5g %-32s", a->mean, a->count < 2 ? "" : "all runs alike");
       else
         fprintf(stream, "%10.5g [%9.4g, %9.4g] %9.4g", a->mean, a->mean_low, a->mean_high, a->sd);
-      fprintf(stream, " %8.3g\n", p->seconds.mean);
+      if (p->counts.done)
+        fprintf(stream, " %8.3g\n", p->seconds.mean);
+      else
+        fprintf(stream, " %8s\n", "-");
     }
   }
 }

@@ -22,8 +22,8 @@ const cli_option study_options[STUDY_OPTIONS] = {
                   "A run whose worker on another machine gave no sign of life for so long is taken "
                   "over. Default: 300."),
     CLI_FLAG_ROW("worker", worker,
-                 "Only work on runs, in this process, and print nothing: for more workers, here or "
-                 "on other machines that share the folder."),
+                 "Only work on runs, in this process, and print no results: for more workers, here "
+                 "or on other machines that share the folder."),
     CLI_FLAG_ROW("no-wait", no_wait, "Do not wait for runs that others are at work on."),
     CLI_FLAG_ROW(
         "slurm", slurm,

@@ -23,6 +23,10 @@ sed -n '1s/.*,\(all.count.*\)/\1/p' out/points.csv
 head -2 out/points.csv | cut -d, -f1-8
 head -1 out/scene.yaml | sed 's/of .*\//of /'
 run study status out | head -1
+# before the first run nothing is known
+"$SCREE" study study.yaml -o none --slurm --dry-run >/dev/null 2>&1
+"$SCREE" study status none | grep -c ' -$'
+"$SCREE" study status none | grep nan
 # other answers come from what the runs left
 touch before
 sed 's/^answers.*/answers: [all.mass: {at: 0.1}, load.force_z]/' study.yaml >other.yaml
