@@ -124,7 +124,7 @@ static scree_status choose(const clump_arguments *a, clump_object *object, scree
     object->chosen = &c->clumps[c->recommended];
   }
   if (object->chosen) return SCREE_OK;
-  const scree_clump *last = &c->clumps[c->clump_count - 1];
+  const scree_clump none = {0}, *last = c->clumps ? &c->clumps[c->clump_count - 1] : &none;
   return scree_fail(error, SCREE_LIMIT,
                     "%.300s: %zu spheres are on average within %.4f of the body's size, more than "
                     "the %g asked; raise --tolerance or --max",

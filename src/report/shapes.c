@@ -66,7 +66,7 @@ scree_status scree_shapes_find(const scree_world *world, scree_shapes *shapes, s
     found.of_body[i] = slots[slot] - 1;
   }
   *shapes = found;
-  found = (scree_shapes){0};
+  memset(&found, 0, sizeof found);
   return SCREE_OK;
 }
 
@@ -107,7 +107,7 @@ static scree_status mesh_of_spheres(const scree_particle *particle, size_t spher
           unit->triangles[i] + (uint32_t)(k * unit->vertex_count);
   }
   *mesh = made;
-  made = (scree_mesh){0};
+  memset(&made, 0, sizeof made);
   return SCREE_OK;
 }
 
