@@ -21,25 +21,23 @@ static void find_extent(const scree_target *body, const scree_lines *l, vec3 *lo
 }
 
 scree_status scree_ruler_make(const scree_target *body, scree_ruler *ruler, scree_error *error) {
-  SCREE_CLEANUP(scree_ruler_free)
-  scree_ruler g = {.body = body, .lines = {.cosine = cosine, .sine = sine}};
+  *ruler = (scree_ruler){.body = body, .lines = {.cosine = cosine, .sine = sine}};
+  scree_lines *l = &ruler->lines;
   vec3 low, high, section = vec3_sub(body->high, body->low);
-  find_extent(body, &g.lines, &low, &high);
+  find_extent(body, l, &low, &high);
   vec3 size = vec3_sub(high, low);
   double reach = SCREE_LARGEST_SPHERE, rim = 2 * reach;
   double step = fmax(sqrt(section.x * section.y / lines_over_body),
                      sqrt((size.x + rim) * (size.y + rim) / lines_over_all));
   double rim_lines = ceil(reach / step);
-  g.lines.nx = (size_t)(ceil(size.x / step) + 2 * rim_lines);
-  g.lines.ny = (size_t)(ceil(size.y / step) + 2 * rim_lines);
-  g.lines.x0 = low.x + (0.5 - rim_lines) * step;
-  g.lines.y0 = low.y + (0.5 - rim_lines) * step;
-  g.lines.step = step;
-  SCREE_TRY(scree_lines_cast(body, &g.lines, error));
-  SCREE_TRY_ALLOC(g.count, g.lines.nx * g.lines.ny, error);
-  SCREE_TRY_ALLOC(g.next, g.lines.nx * g.lines.ny, error);
-  *ruler = g;
-  g = (scree_ruler){0};
+  l->nx = (size_t)(ceil(size.x / step) + 2 * rim_lines);
+  l->ny = (size_t)(ceil(size.y / step) + 2 * rim_lines);
+  l->x0 = low.x + (0.5 - rim_lines) * step;
+  l->y0 = low.y + (0.5 - rim_lines) * step;
+  l->step = step;
+  SCREE_TRY(scree_lines_cast(body, l, error));
+  SCREE_TRY_ALLOC(ruler->count, l->nx * l->ny, error);
+  SCREE_TRY_ALLOC(ruler->next, l->nx * l->ny, error);
   return SCREE_OK;
 }
 

@@ -35,6 +35,7 @@ typedef struct scree_overlap {
  * the body's box: so the lines reach around all. */
 #define SCREE_LARGEST_SPHERE 0.7
 
+/* To be freed also where it fails. */
 scree_status scree_ruler_make(const scree_target *body, scree_ruler *ruler, scree_error *error);
 void scree_ruler_free(scree_ruler *ruler);
 

@@ -473,17 +473,15 @@ scree_status scree_halfmesh_build(const scree_mesh *mesh, const scree_halfmesh *
 
 scree_status scree_halfmesh_copy(const scree_halfmesh *s, scree_halfmesh *copy,
                                  scree_error *error) {
-  SCREE_CLEANUP(scree_halfmesh_free) scree_halfmesh made = *s;
-  made.vertex = NULL, made.half = NULL, made.flags = NULL, made.sums = NULL;
-  made.best = NULL, made.cost = NULL;
-  SCREE_TRY_ALLOC(made.vertex, s->vertex_count, error);
-  SCREE_TRY_ALLOC(made.half, 3 * s->triangle_count, error);
-  SCREE_TRY_ALLOC(made.flags, s->vertex_count, error);
-  memcpy(made.vertex, s->vertex, s->vertex_count * sizeof *made.vertex);
-  memcpy(made.half, s->half, 3 * s->triangle_count * sizeof *made.half);
-  memcpy(made.flags, s->flags, s->vertex_count);
-  *copy = made;
-  made = (scree_halfmesh){0};
+  *copy = *s;
+  copy->vertex = NULL, copy->half = NULL, copy->flags = NULL, copy->sums = NULL;
+  copy->best = NULL, copy->cost = NULL;
+  SCREE_TRY_ALLOC(copy->vertex, s->vertex_count, error);
+  SCREE_TRY_ALLOC(copy->half, 3 * s->triangle_count, error);
+  SCREE_TRY_ALLOC(copy->flags, s->vertex_count, error);
+  memcpy(copy->vertex, s->vertex, s->vertex_count * sizeof *copy->vertex);
+  memcpy(copy->half, s->half, 3 * s->triangle_count * sizeof *copy->half);
+  memcpy(copy->flags, s->flags, s->vertex_count);
   return SCREE_OK;
 }
 

@@ -95,7 +95,7 @@ scree_status scree_halfmesh_build(const scree_mesh *mesh, const scree_halfmesh *
                                   scree_halfmesh *surface, scree_error *error);
 void scree_halfmesh_free(scree_halfmesh *surface);
 
-/* A copy of a squeezed surface, without sums. */
+/* A copy of a squeezed surface, without sums; to be freed also where it fails. */
 scree_status scree_halfmesh_copy(const scree_halfmesh *surface, scree_halfmesh *copy,
                                  scree_error *error);
 
