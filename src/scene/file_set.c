@@ -288,8 +288,9 @@ scree_status scree_scene_file_try(scree_scene_file *file, const char *field, con
   if (status == SCREE_BAD_FILE) status = SCREE_BAD_ARGUMENT; /* no other field can mend it */
   if (status != SCREE_OK) return scree_fail(error, status, "%s", why.message);
   if (sound != SCREE_OK) status = scree_scene_file_check(file, &why);
-  if (status == SCREE_OUT_OF_MEMORY || (status != SCREE_OK && !strcmp(why.message, before.message)))
-    return scree_fail(error, status, "%s", why.message); /* it is not of this setting */
+  if (status == SCREE_OUT_OF_MEMORY) return scree_fail(error, status, "%s", why.message);
+  if (status != SCREE_OK && !strcmp(why.message, before.message)) /* it is not of this setting */
+    return scree_fail(error, SCREE_BAD_FILE, "%s", why.message);
   char *name = file->name, none[] = "";
   file->name = none; /* its errors say nothing of the file */
   status = scree_scene_file_check(file, &why);
