@@ -78,7 +78,7 @@ sed 's/seven: {answer: extra}/eight: {answer: extra}/; s/{answer: angle}/{answer
 sed -e 's/^targets:/limits:/; /angle:.*value/d; s/discharge: .*/least: {answer: angle, at_least: 27}/; /^predict/d; /twice/d' \
   -e 's/^limits:/minimise: {answer: time}\nlimits:/; s/runs: 50/runs: 40/' heap.yaml >search.yaml
 "$SCREE" optimise search.yaml -o search -q | sed -nE '1p; 3p; s/^ *(0\.[0-9])[0-9]* .*best$/friction \1/p'
-run calibrate search.yaml 2>&1 | head -2
+run calibrate search.yaml 2>&1 | lines 1,2
 # what is wrong
 wrong() {
   sed "$1" heap.yaml >wrong.yaml

@@ -53,5 +53,5 @@ cp metres.stl here.stl
 for unit in "" "-u mm" "-u m" "-u km"; do run measure here.stl $unit 2>&1 | grep -E "^(here|\\$)|dimensions x"; done
 # as small as a scan in metres would be: a question, but where the unit is said
 box 0.2 0.1 0.1 >stone.off
-for unit in "" "-u mm"; do run measure stone.off $unit 2>&1 | head -n 2; done
-run export here.stl -o there.stl -d 1.2 2>&1 | head -n 3
+for unit in "" "-u mm"; do run measure stone.off $unit 2>&1 | lines 1,2; done
+run export here.stl -o there.stl -d 1.2 2>&1 | lines 1,3

@@ -1,9 +1,9 @@
 # Counts and errors follow the decimation's details, so numbers are shown as N.
 shape() { sed 's/[0-9][0-9.,]*\(e-[0-9]*\)*/N/g; s/N %\*/N % /; s/  */ /g'; }
-run choose 2>&1 | sed -n 2p
-run choose --grid 1e-5 sample:icosphere-3 2>&1 | sed -n 2p
-run choose --json --csv sample:icosphere-3 2>&1 | sed -n 2p
-run choose --paper --method volume sample:icosphere-3 2>&1 | sed -n 2p
+run choose 2>&1 | lines 2
+run choose --grid 1e-5 sample:icosphere-3 2>&1 | lines 2
+run choose --json --csv sample:icosphere-3 2>&1 | lines 2
+run choose --paper --method volume sample:icosphere-3 2>&1 | lines 2
 run choose sample:nonsense 2>&1 | cut -c 1-40
 run choose missing.stl
 "$SCREE" choose sample:icosphere-2 sample:icosphere-3 --errors -o out | shape
@@ -16,7 +16,7 @@ cmp a.json b.json && grep -c '"rp"' a.json
 cp out/icosphere-3.stl again.stl
 "$SCREE" choose again.stl --no-repair --json | grep '"unit_m"'
 # the grid is the paper's; of a box, whose count does not depend on the scan's resolution, none is said to
-run choose --paper --grid 1e-4:1:3 sample:icosphere-3 2>&1 | sed -n 2p
+run choose --paper --grid 1e-4:1:3 sample:icosphere-3 2>&1 | lines 2
 box 3 2 1 >box.off
 "$SCREE" choose box.off --unit cm | shape
 # levels do not hang on the unit, though of such a ball many edges cost the same
@@ -36,9 +36,9 @@ lines=$(printf 'two\nlines.stl')
 for name in 'sp a ce' 'ünï-☃-ünï-☃' "${lines%.stl}" -dash; do cp plain.stl "./$name.stl"; done
 run choose -o named -- 'sp a ce.stl' 'ünï-☃-ünï-☃.stl' "$lines" -dash.stl
 ls named | grep lines
-run check -dash.stl 2>&1 | sed -n 2p
+run check -dash.stl 2>&1 | lines 2
 mv ./-dash.stl ./--dash.stl
-run check --dash.stl 2>&1 | sed -n 2p
+run check --dash.stl 2>&1 | lines 2
 # a file that cannot be used is said and left out, of one folder, table and set; the exit code says it too
 echo junk >junk.stl
 run choose plain.stl junk.stl again.stl missing.stl -o rest

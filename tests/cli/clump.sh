@@ -29,11 +29,11 @@ run clump box.off again/box.off -n 1 -o both -q
 ls both | grep csv
 # what is wrong is said
 run clump
-run clump box.off -n 301 2>&1 | head -2
-run clump box.off -n 2 -t 0.1 2>&1 | head -2
-run clump box.off --json --csv 2>&1 | head -2
+run clump box.off -n 301 2>&1 | lines 1,2
+run clump box.off -n 2 -t 0.1 2>&1 | lines 1,2
+run clump box.off --json --csv 2>&1 | lines 1,2
 run clump box.off --tolerance 1e-6 --max 2
-run clump box.off -m best 2>&1 | head -2
+run clump box.off -m best 2>&1 | lines 1,2
 run clump nowhere.stl
 run clump out/box.csv
 sed '$d' box.off | sed 's/8 6 0/8 5 0/' >open.off
@@ -66,8 +66,8 @@ run run scene.yaml --set shapes.fitted.clump=301
 run run scene.yaml --set shapes.cube.clump=cube.csv
 # clumps of the shapes in a drop
 run drop box.off=2 --clump 2 --time 0 --frames 0 --no-picture -o dropped 2>&1 | grep 'shape box' | cut -c1-34
-run drop box.off=2 --clump 0 -o none 2>&1 | head -2
-run drop --clump 2 --resume -o dropped 2>&1 | head -2
+run drop box.off=2 --clump 0 -o none 2>&1 | lines 1,2
+run drop --clump 2 --resume -o dropped 2>&1 | lines 1,2
 # a study of clumps beside the surface; one made on the way in `scree repose` has the bits of the study's table
 cat >study.yaml <<'END'
 replicates: 1

@@ -1,19 +1,19 @@
-run drop 2>&1 | sed -n 2p
-run drop sphere:40 -o no 2>&1 | sed -n 2p
-run drop sphere:40mm=0 -o no 2>&1 | sed -n 2p
+run drop 2>&1 | lines 2
+run drop sphere:40 -o no 2>&1 | lines 2
+run drop sphere:40mm=0 -o no 2>&1 | lines 2
 # what stands behind '=' of a shape that is there is a count; a file may be called so all the same
-for count in -3 3.5 1e3 x ''; do run drop "sphere:40mm=$count" -o no 2>&1 | sed -n 2p; done
+for count in -3 3.5 1e3 x ''; do run drop "sphere:40mm=$count" -o no 2>&1 | lines 2; done
 run drop no=body.off -o no
-box 1 1 1 >a && cp a a=b && run drop a=c -o no 2>&1 | sed -n 2p
+box 1 1 1 >a && cp a a=b && run drop a=c -o no 2>&1 | lines 2
 run drop a=b -o named --time 0.01 --frames 0 --no-picture -N 1 -q >/dev/null && ls named | grep -c report && rm -r a a=b named
-run drop sample:box-12 -r 0.1 -n 10 2>&1 | sed -n 2p
+run drop sample:box-12 -r 0.1 -n 10 2>&1 | lines 2
 run drop none.stl -o no
 run drop sphere:40mm=3 -w 30mm -o no
-run drop sphere:40mm=3 sample:box-12 -o out --resolution 0.02mm 2>&1 | sed -n 2p
+run drop sphere:40mm=3 sample:box-12 -o out --resolution 0.02mm 2>&1 | lines 2
 run drop none=5.stl -o no
 ls
-run drop sphere:40mm=3 --depth 30mm -o no 2>&1 | sed -n 2p
-run drop sphere:40mm=3 --width 0mm -o no 2>&1 | sed -n 2p
+run drop sphere:40mm=3 --depth 30mm -o no 2>&1 | lines 2
+run drop sphere:40mm=3 --width 0mm -o no 2>&1 | lines 2
 # numbers may differ in their last digits between compilers: only their form is compared
 shape() { sed 's/[0-9][0-9.]*\(e[-+][0-9]*\)*/N/g; s/-N/N/g; s/  */ /g'; }
 drop() {
@@ -92,6 +92,6 @@ run drop $pour --seed 3 --resume -o cut
 run drop --resume -o cut --frames 0.01
 run drop sphere:41mm=6 sphere:40mm=6 --stiffness 1e-2 --resume -o cut 2>&1 | grep -v mm
 run drop --resume -o none
-for words in '-r 0.5' '-n 12' '-N 5' --no-repair '-u m'; do run drop --resume -o cut $words 2>&1 | sed -n 2p; done
+for words in '-r 0.5' '-n 12' '-N 5' --no-repair '-u m'; do run drop --resume -o cut $words 2>&1 | lines 2; done
 head -c 300 cut/checkpoint.scree >short && mv short cut/checkpoint.scree
 run drop --resume -o cut 2>&1 | sed 's/announces [0-9]*/announces more/' # where it stopped

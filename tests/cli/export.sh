@@ -23,4 +23,4 @@ run export cut.scree sample:box-12 -o all.pvd
 run export sample:box-12 -o BOX.VTP -q
 run export sample:box-12 -o all.PVD
 # a clump of fewer spheres than were asked for says so
-run export sample:icosphere-2 --to lammps -n 5 -o fewer 2>&1 | sed -n 2p
+run export sample:icosphere-2 --to lammps -n 5 -o fewer 2>&1 | lines 2

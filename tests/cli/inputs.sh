@@ -51,7 +51,7 @@ for verb in 'check -q' 'repair -o r.ply -q' 'simplify --no-repair -n 4 -o s.ply'
 done
 for verb in check measure choose; do
   run $verb - </dev/null
-  run $verb - - <e 2>&1 | sed -n 2p
+  run $verb - - <e 2>&1 | lines 2
 done
 # nor is it shown twice, or obeyed by a terminal, where it has control characters
 escape=$(printf 'no\033[31m.stl')

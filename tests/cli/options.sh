@@ -15,7 +15,7 @@ LC_ALL=C sort -u seen | comm -13 - names
 for verb in '' $("$SCREE" help | sed -n 's/^  \([a-z]*\)  .*/\1/p' | grep -v 'help\|version'); do
   "$SCREE" help --man $verb | grep -q '^# SYNOPSIS' && "$SCREE" help --markdown $verb | grep -q '^| option' || echo "no page: $verb"
 done
-run help --man chose 2>&1 | sed -n 2p
+run help --man chose 2>&1 | lines 2
 for shell in bash zsh fish tcsh; do
   "$SCREE" help --completion $shell >completion 2>&1 || head -n 1 completion
   command -v $shell >/dev/null && [ $shell != tcsh ] && { $shell -n completion || echo "$shell does not read its completion"; }

@@ -8,7 +8,7 @@ for output in nowhere/x.stl folder there.stl; do
   run sample nonsense -o $output 2>&1 | sed 's|nonsense.*|nonsense|'
 done
 run simplify missing.stl -n 10 --density 1000 -o there.off
-run simplify missing.stl -n 10 --density 1000 -o - 2>&1 | sed -n 2p
+run simplify missing.stl -n 10 --density 1000 -o - 2>&1 | lines 2
 run repair missing.stl -f -o folder
 run simplify missing.stl -n 10 -o x.xyz
 run repair missing.stl -o -

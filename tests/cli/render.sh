@@ -1,6 +1,6 @@
 run render sample:icosphere-2
 for size in 64 0x0 63x64 64x20001 64x64x 64x -64x64 " 64x64" 99999999999999999999x64; do
-  run render sample:icosphere-2 -o a.png --size "$size" 2>&1 | sed -n 2p
+  run render sample:icosphere-2 -o a.png --size "$size" 2>&1 | lines 2
 done
 run pile missing.scree -o p.png --size 9x9
 run render none.stl -o a.png
@@ -24,4 +24,4 @@ head -c 4 a.png | tail -c 3
 echo
 "$SCREE" render sample:icosphere-2 -o a.png --size 64x64 --rays 1 2>&1 | grep -v "no ray tracer" | head -1
 run render sample:icosphere-2 -o a.jpg --size 64x64
-run pile missing.scree -o a.jpg 2>&1 | sed -n 2p
+run pile missing.scree -o a.jpg 2>&1 | lines 2

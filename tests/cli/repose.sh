@@ -4,7 +4,7 @@ run repose --rp 2 box.off
 run repose --lift-speed 99 box.off
 run repose -p tiny box.off
 run repose --resume -o none
-run repose sphere:40mm=3 sphere:30mm 2>&1 | sed -n 2p
+run repose sphere:40mm=3 sphere:30mm 2>&1 | lines 2
 "$SCREE" repose --print -p demo --friction 0.4 --seed 7 >printed.yaml
 grep "friction: 0.4\|^seed: 7\|^preset: demo" printed.yaml | cut -d"#" -f1
 "$SCREE" repose -c printed.yaml --print >again.yaml
@@ -39,7 +39,7 @@ run repose --resume -o whole -p demo 2>&1 | cut -d: -f-3
 run repose --resume -o whole --friction 0.5 --frames 0.1 --no-picture | grep -c "the phases are over"
 run repose --resume -o whole --frames 0.2
 for words in '--rp 0.5' '--rp 0.5,1 -m qecd' --spheres --no-repair '-u m'; do
-  run repose --resume -o whole $words 2>&1 | sed -n 2p
+  run repose --resume -o whole $words 2>&1 | lines 2
 done
 printf broken >whole/checkpoint.scree
 run repose $small box.off pair.csv -o whole --resume
@@ -63,11 +63,11 @@ run pile whole/last.scree --band-low 0.9
 run pile whole/last.scree --vtp contacts.vtp --view contacts
 run pile whole/last.scree --vtp contacts.txt
 # one thing on stdout
-for words in '--json --csv' '--json --vtp -' '--csv -o -'; do run pile whole/last.scree $words 2>&1 | sed -n 2p; done
+for words in '--json --csv' '--json --vtp -' '--csv -o -'; do run pile whole/last.scree $words 2>&1 | lines 2; done
 "$SCREE" pile whole/last.scree --csv | head -n 1 | cut -d, -f-3
-"$SCREE" pile whole/last.scree --vtp /dev/stdout --json 2>&1 | head -n 1
+"$SCREE" pile whole/last.scree --vtp /dev/stdout --json 2>&1 | lines 1
 "$SCREE" pile whole/last.scree --vtp - 2>said | head -n 1
-cmp said measured && "$SCREE" pile whole/last.scree -q --vtp - 2>&1 | head -n 1
+cmp said measured && "$SCREE" pile whole/last.scree -q --vtp - 2>&1 | lines 1
 head -c 100 whole/last.scree >short.scree
 run pile short.scree 2>&1 | sed 's/announces [0-9]*/announces N/'
 run pile nothing.scree

@@ -17,6 +17,8 @@ run() {
   code=$?
   [ $code -eq 0 ] || echo "exit code $code"
 }
+# `lines 2` or `lines 1,4`: so many of what was said; a line of progress, which a busy machine adds, is none of them.
+lines() { sed '/^scree, after /d' | sed -n "$1p"; }
 # `box X Y Z` writes a box from the origin to (X, Y, Z) in six quads, as OFF.
 box() {
   printf 'OFF\n8 6 0\n'

@@ -10,5 +10,5 @@ run sample dc-1 --noise 0.5mm 2>&1
 run sample dc-1 --noise 0.5 2>&1
 run sample --resolution 6mm 2>&1
 run sample dc-1 dc-2 -o both.stl 2>&1
-run sample box-12 sphere box-12 -o twice 2>&1 | sed -n 2p
+run sample box-12 sphere box-12 -o twice 2>&1 | lines 2
 ls -d twice 2>&1

@@ -1,28 +1,28 @@
 # Scenes from the command line: what is printed, what is told of wrong files and wrong calls, what a folder holds.
 numbers() { sed -E 's/[0-9]+(\.[0-9]+)?(e-?[0-9]+)?/N/g; s/  +/ /g'; }
-run run 2>&1 | head -2
-run run --template silo 2>&1 | head -2
+run run 2>&1 | lines 1,2
+run run --template silo 2>&1 | lines 1,2
 "$SCREE" run --template hopper >hopper.yaml
 head -2 hopper.yaml | tail -1
 "$SCREE" run --template hopper --print --set time=0.05 | grep ^time
-run run --template hopper --set time=0.001 -o built-in -q --no-picture 2>&1 | head -2
+run run --template hopper --set time=0.001 -o built-in -q --no-picture 2>&1 | lines 1,2
 ls built-in | head -3
-run run --template hopper hopper.yaml 2>&1 | head -2
+run run --template hopper hopper.yaml 2>&1 | lines 1,2
 "$SCREE" run hopper.yaml --print --set inlets.feed.count=20 --set time=0.05 >small.yaml
 grep -E '^time|count|sphere' small.yaml
 run run hopper.yaml --set inlets.feed.cuont=20 2>&1 | cut -c 1-120
-run run hopper.yaml --set inlets 2>&1 | head -2
+run run hopper.yaml --set inlets 2>&1 | lines 1,2
 # a name that the file lacks makes no thing that nothing uses
 run run hopper.yaml --set materials.grian.friction=0.3
 run run hopper.yaml --set outlets.chute.from=1
 run run hopper.yaml --set time=short
 # a field of a thing without its group, and a fault of the file itself, which no setting is blamed for
-run run hopper.yaml --set friction=0.3 2>&1 | head -2
-run run hopper.yaml --set grain.friction=0.3 2>&1 | head -2
+run run hopper.yaml --set friction=0.3 2>&1 | lines 1,2
+run run hopper.yaml --set grain.friction=0.3 2>&1 | lines 1,2
 sed 's/count: [0-9]*/count: few/' hopper.yaml >few.yaml
-run run few.yaml --set time=1 2>&1 | head -2
+run run few.yaml --set time=1 2>&1 | lines 1,2
 run run nowhere.yaml
-run run hopper.yaml --resume 2>&1 | head -2
+run run hopper.yaml --resume 2>&1 | lines 1,2
 # another encoding, a tab, a control character: in their line
 printf 'time: 1\ntitle: Gr\374n\n' >latin.yaml
 printf 'time: 1\nshapes:\n\tball: {sphere: 0.01}\n' >tab.yaml
@@ -42,7 +42,7 @@ run run places.yaml -o nothing
 sed -i 's/^geometry.*/domain: {min: [0, 0, 0], max: [0.02, 1, 1], periodic: x}/' places.yaml
 run run places.yaml -o nothing
 [ -e nothing ] || echo nothing written
-"$SCREE" run hopper.yaml --set materials.grain.friction=50 --set materials.grain.density=2.65 --set time=1e-5 2>&1 | head -n 2
+"$SCREE" run hopper.yaml --set materials.grain.friction=50 --set materials.grain.density=2.65 --set time=1e-5 2>&1 | lines 1,2
 run run small.yaml -o out --no-picture -q | numbers
 ls out
 run run small.yaml -o out --no-picture

@@ -24,9 +24,9 @@ run simplify icosphere-4.stl -n 10 -r 0.1 -o x.stl 2>&1
 run simplify missing.stl -n 10 -o x.stl 2>&1
 run curve icosphere-4.stl --grid 0.1:0.01:9 2>&1
 # a length or a share of nothing, and one in hexadecimal
-for e in 0 -0 1e-400m 0x1mm; do run simplify icosphere-4.stl -e $e -o x.stl 2>&1 | sed -n 2p; done
-run simplify icosphere-4.stl -r 0x10 -o x.stl 2>&1 | sed -n 2p
-run simplify icosphere-4.stl -n 0x10 -o x.stl 2>&1 | sed -n 2p
+for e in 0 -0 1e-400m 0x1mm; do run simplify icosphere-4.stl -e $e -o x.stl 2>&1 | lines 2; done
+run simplify icosphere-4.stl -r 0x10 -o x.stl 2>&1 | lines 2
+run simplify icosphere-4.stl -n 0x10 -o x.stl 2>&1 | lines 2
 # what is no closed surface is repaired first, or refused, or taken as it is when asked; as choose does
 printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >lone.off
 printf 'OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n' >flat.off
@@ -39,7 +39,7 @@ for name in lone flat; do
 done
 run simplify hole.off -r 1 --no-repair -o x.off
 run simplify hole.off -r 1 --unchecked -o open.off
-run simplify hole.off -r 1 --no-repair --unchecked -o x.off 2>&1 | sed -n 2p
+run simplify hole.off -r 1 --no-repair --unchecked -o x.off 2>&1 | lines 2
 run simplify hole.off -r 1 -o closed.off
 run check -q hole.off open.off closed.off
 # a sheet thinner than single precision resolves there: an STL would not hold it
@@ -55,7 +55,7 @@ ls thin*
 run curve hole.off --grid 1:1:9 2>&1
 run curve hole.off --grid 1:1:9 --unchecked
 run curve lone.off --no-repair 2>&1
-run curve hole.off --no-repair --unchecked 2>&1 | sed -n 2p
+run curve hole.off --no-repair --unchecked 2>&1 | lines 2
 run render hole.off --rp 1 -o levels.png 2>&1
 # the line of progress is gone when something else is printed, and keeps to a narrow terminal
 "$SCREE" sample icosphere-6 -o fine.ply >/dev/null

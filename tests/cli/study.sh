@@ -57,9 +57,9 @@ printf 'shapes: [sample:box]\nfactors: {rp: [7]}\n' >bad.yaml
 run study bad.yaml
 run study missing.yaml
 run study status nowhere
-run study status 2>&1 | sed -n 2p
-run study tiny.yaml other.yaml 2>&1 | sed -n 2p
-run study tiny.yaml --json --csv 2>&1 | sed -n 2p
+run study status 2>&1 | lines 2
+run study tiny.yaml other.yaml 2>&1 | lines 2
+run study tiny.yaml --json --csv 2>&1 | lines 2
 echo "no database" >whole/study.sqlite
 run study tiny.yaml -o whole
 rm whole/study.sqlite
