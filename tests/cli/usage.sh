@@ -69,12 +69,12 @@ for words in 'choose sample:box --tolerance mean=0,1%' 'simplify ball.stl --rp 0
 done
 
 # of several settings the one that is wrong is named
-run run --template drum --set materials.grain.young=0 --set time=0.1 2>&1 | sed -n 2p
+run run --template drum --set materials.grain.young=0 --set time=0.1 2>&1 | lines 2
 
 # a call that lasts says in a log where it stands, and what is left
 "$SCREE" export --to liggghts -n 300 sample:fp-1 -o long >/dev/null 2>said &
-while kill -0 $! 2>/dev/null && [ "$(grep -c '^scree, after .*: [0-9]* %, [0-9]* [a-z]* left$' said)" -lt 2 ]; do sleep 0.2; done
+while kill -0 $! 2>/dev/null && [ "$(grep -c '^scree, after .*: [0-9]* %, [0-9]* [a-z]* left$' said)" -lt 1 ]; do sleep 0.2; done
 kill -INT $!
 wait $!
 echo "exit code $?"
-grep -v '^scree, after ' said
+grep -v '^scree, after ' said | sed 's/decimation was cancelled at .*/cancelled/' # wherever it was
