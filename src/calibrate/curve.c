@@ -86,6 +86,6 @@ scree_status scree_curve_basis_make(const double *curves, size_t count, size_t p
       for (size_t j = 0; j < n; j++) covariance[i * n + j] -= variance * shape[i] * shape[j];
   }
   *basis = b;
-  b = (scree_curve_basis){0};
+  memset(&b, 0, sizeof b);
   return SCREE_OK;
 }

@@ -480,7 +480,7 @@ static scree_status change_to(scree_scene **scene, const scree_scene_file *file,
   SCREE_TRY(keep_history(&c, is));
   take_lists(was, is);
   *scene = is;
-  is = was;
+  memcpy(&is, &was, sizeof is); /* the old one ends with the block */
   return SCREE_OK;
 }
 

@@ -144,7 +144,7 @@ static bool expand_shapes(scree_plan *plan, const family *families, size_t total
     for (size_t k = 0; k < families[i].count; k++) {
       *made = plan->families.items[i];
       made->family = i;
-      if (made->size) {
+      if (families[i].classes) {
         made->scaled = families[i].classes[k].size;
         if (!made->file && !made->sample && !made->clump && !given(made->box))
           made->sphere = made->scaled;

@@ -212,7 +212,7 @@ static scree_status gather(const division *d, const bool *chosen, scree_mesh *me
   for (size_t c = 0; c < 3 * made.triangle_count; c++)
     made.triangles[c] = number[made.triangles[c]];
   *mesh = made;
-  made = (scree_mesh){0};
+  memset(&made, 0, sizeof made);
   return SCREE_OK;
 }
 

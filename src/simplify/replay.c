@@ -89,7 +89,7 @@ static scree_status number_vertices(scree_replay *r, scree_mesh *mesh, scree_err
       memcpy(made.positions + 3 * (size_t)r->number[v], r->position + 3 * v, 3 * sizeof(double));
   for (size_t i = 0; i < 3 * r->triangle_count; i++) made.triangles[i] = r->number[r->corner[i]];
   *mesh = made;
-  made = (scree_mesh){0};
+  memset(&made, 0, sizeof made);
   return SCREE_OK;
 }
 
