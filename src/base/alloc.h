@@ -41,12 +41,6 @@ static inline void scree_free_at(void *variable) {
   scree_free(block);
 }
 
-/* TYPE_drop, for a variable that holds what TYPE_free frees. */
-#define SCREE_DEFINE_DROP(type)                                                                    \
-  static inline void type##_drop(type **variable) {                                                \
-    type##_free(*variable);                                                                        \
-  }
-
 /* Allocates a typed array; where memory is out the function ends with `error` filled. */
 #define SCREE_TRY_ALLOC(pointer, count, error)                                                     \
   SCREE_TRY_BLOCK(pointer, scree_alloc((count), sizeof *(pointer)), count, error)

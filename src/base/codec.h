@@ -4,6 +4,7 @@
  * `failed` (the bytes ran out, or hold what they must not) and `out_of_memory`. */
 #pragma once
 
+#include "base/alloc.h"
 #include "base/vec.h"
 
 #include <stdbool.h>
@@ -33,6 +34,11 @@ void scree_code_count(scree_codec *codec, size_t *count, size_t record_bytes);
 /* A text with its length; reading one, it is to be freed, and NULL where it cannot be had. */
 void scree_code_text(scree_codec *codec, const char *text, size_t length);
 char *scree_decode_text(scree_codec *codec);
+
+/* Saving: frees the bytes. */
+static inline void scree_codec_free(scree_codec *codec) {
+  scree_free(codec->bytes);
+}
 
 static inline bool scree_codec_good(const scree_codec *codec) {
   return !codec->failed && !codec->out_of_memory;

@@ -125,8 +125,6 @@ struct scree_calibration {
   bool checked; /* the last round is this file's check: runs at the answer, unknown to the model */
 };
 
-SCREE_DEFINE_DROP(scree_calibration)
-
 /* read.c: the value at a coordinate as the scene takes it, in the arena; NULL: memory is out. The
  * coordinate of a value; NAN: it is none of the parameter's list. */
 const char *scree_parameter_text(const scree_plan_parameter *parameter, double x,

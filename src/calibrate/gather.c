@@ -67,7 +67,7 @@ static scree_status take_record(scree_answers *g, size_t experiment, const scree
 
 static scree_status gather_experiment(const scree_calibration *c, size_t e, scree_answers *g,
                                       scree_error *error) {
-  SCREE_CLEANUP(scree_study_drop) scree_study *study = NULL;
+  SCREE_OWNED(scree_study, study);
   SCREE_TRY(scree_rounds_study(c, e, &study, error));
   if (!study) return SCREE_OK;
   size_t count = scree_study_run_count(study), n = 0, d = c->parameter_count;

@@ -433,7 +433,7 @@ static scree_status find_settings(scree_gp *gp, scree_error *error) {
 }
 
 scree_status scree_gp_fit(const scree_gp_runs *runs, scree_gp **gp, scree_error *error) {
-  SCREE_CLEANUP(scree_gp_drop) scree_gp *made = NULL;
+  SCREE_OWNED(scree_gp, made);
   SCREE_TRY_ALLOC_ZERO(made, 1, error);
   SCREE_ASSERT(runs->active_count <= SCREE_MOST_PARAMETERS);
   made->d = runs->active_count;

@@ -2,7 +2,7 @@
  * setting of the parameters, how sure that is, and how much single runs scatter there. */
 #pragma once
 
-#include "base/alloc.h"
+#include "base/owned.h"
 
 enum { SCREE_MOST_PARAMETERS = 10, SCREE_GP_MOST_PLACES = 1000 };
 
@@ -30,7 +30,7 @@ typedef struct scree_gp_value {
  * some hundred times. */
 scree_status scree_gp_fit(const scree_gp_runs *runs, scree_gp **gp, scree_error *error);
 void scree_gp_free(scree_gp *gp);
-SCREE_DEFINE_DROP(scree_gp)
+SCREE_OWNABLE(scree_gp)
 
 /* x: dimension_count coordinates. O(n^2). Threads may ask at the same time. */
 scree_gp_value scree_gp_at(const scree_gp *gp, const double *x);

@@ -132,7 +132,7 @@ static scree_status check_experiment(const reader *r, const scree_plan_experimen
 static scree_status read_scene(const reader *r, const scree_experiment_plan *e,
                                scree_scene_file **file) {
   scree_error error;
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *made = NULL;
+  SCREE_OWNED(scree_scene_file, made);
   const scree_yaml *set = e->plan->set;
   if (scree_scene_file_read(e->scene_path, &made, &error) != SCREE_OK)
     return scree_fail_place(&r->in, &e->plan->place, "%s", error.message);
@@ -170,7 +170,7 @@ static scree_status find_active(const reader *r, scree_error *why, bool *anywher
   scree_calibration *c = r->c;
   for (size_t i = 0; i < c->experiment_count; i++) {
     scree_experiment_plan *e = &c->experiments[i];
-    SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
+    SCREE_OWNED(scree_scene_file, file);
     if (!is_command(e->plan)) SCREE_TRY(read_scene(r, e, &file));
     for (size_t p = 0; p < c->parameter_count; p++) {
       const scree_plan_parameter *parameter = &c->parameters[p];
@@ -333,7 +333,7 @@ static scree_status check_answer(const reader *r, const scree_quantity *q) {
     return scree_fail_place(&r->in, &p->place,
                             "take is over the sensor's window: without at, from, until, curve");
   if (outline) return SCREE_OK;
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
+  SCREE_OWNED(scree_scene_file, file);
   char name[96];
   enum { MOST_NAMES = 400 };
   const char *names[MOST_NAMES];
@@ -492,7 +492,7 @@ static scree_status read_all(scree_calibration *c, scree_error *error) {
 
 scree_status scree_calibration_read(const char *path, scree_calibration **calibration,
                                     scree_error *error) {
-  SCREE_CLEANUP(scree_calibration_drop) scree_calibration *c = NULL;
+  SCREE_OWNED(scree_calibration, c);
   SCREE_CLEANUP(scree_free_at) char *bytes = NULL;
   SCREE_TRY_ALLOC_ZERO(c, 1, error);
   SCREE_TRY(scree_file_read(path, LARGEST_FILE, &bytes, &c->text_size, error));

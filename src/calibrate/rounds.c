@@ -341,7 +341,7 @@ static scree_status write_study(const scree_calibration *c, size_t experiment, c
 scree_status scree_rounds_study(const scree_calibration *c, size_t experiment, scree_study **study,
                                 scree_error *error) {
   const char *folder = PATH(c, c->experiments[experiment].plan->place.name);
-  SCREE_CLEANUP(scree_study_drop) scree_study *made = NULL;
+  SCREE_OWNED(scree_study, made);
   *study = NULL;
   if (!scree_rounds_until(c, experiment, SIZE_MAX)) return SCREE_OK;
   SCREE_TRY(write_study(c, experiment, folder, error));

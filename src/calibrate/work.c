@@ -173,7 +173,7 @@ static scree_status work_on_runs(const scree_calibration *c, const scree_study_o
   scree_study_options options = *o;
   options.wait = false;
   for (size_t e = 0; e < c->experiment_count; e++) {
-    SCREE_CLEANUP(scree_study_drop) scree_study *study = NULL;
+    SCREE_OWNED(scree_study, study);
     SCREE_TRY(scree_rounds_study(c, e, &study, error));
     if (study) SCREE_TRY(scree_study_work(study, &options, progress, NULL, error));
   }

@@ -4,6 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/math.h"
+#include "base/owned.h"
 #include "base/progress.h"
 #include "simplify/curve.h"
 
@@ -49,9 +50,7 @@ void scree_fidelity_free(scree_fidelity *fidelity) {
   scree_free(fidelity);
 }
 
-static void free_fidelity_at(scree_fidelity **fidelity) {
-  scree_fidelity_free(*fidelity);
-}
+SCREE_OWNABLE(scree_fidelity)
 
 static scree_status check_indices(const scree_curve *curve, const size_t *indices, size_t count,
                                   scree_error *error) {
@@ -65,7 +64,7 @@ static scree_status check_indices(const scree_curve *curve, const size_t *indice
 
 static scree_status sweep(scree_fidelity *f, const scree_gauge *gauge, const scree_curve *curve,
                           const scree_progress *progress, scree_error *error) {
-  SCREE_CLEANUP(scree_replay_free_at) scree_replay *replay = NULL;
+  SCREE_OWNED(scree_replay, replay);
   scree_ticker ticker = {.progress = progress};
   SCREE_TRY(scree_replay_start(curve, &replay, error));
   for (size_t i = 0; i < f->count; i++) {
@@ -104,7 +103,7 @@ scree_status scree_fidelity_sweep(const scree_gauge *gauge, const scree_curve *c
                                   const scree_progress *progress, scree_fidelity **fidelity,
                                   scree_error *error) {
   SCREE_TRY(check_indices(curve, level_indices, level_count, error));
-  SCREE_CLEANUP(free_fidelity_at) scree_fidelity *made = NULL;
+  SCREE_OWNED(scree_fidelity, made);
   SCREE_TRY_ALLOC_ZERO(made, 1, error);
   SCREE_TRY_ALLOC_ZERO(made->rows, level_count, error);
   made->count = level_count;

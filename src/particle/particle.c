@@ -6,7 +6,7 @@
  * (inset.c), and thin plates are stacked right to 1 %. */
 #include "particle/particle.h"
 
-#include "base/alloc.h"
+#include "base/owned.h"
 #include "particle/closest.h"
 #include "particle/mass.h"
 
@@ -46,8 +46,6 @@ void scree_particle_free(scree_particle *p) {
   drop_features(p);
   scree_free(p);
 }
-
-SCREE_DEFINE_DROP(scree_particle)
 
 static scree_status make(scree_particle_kind kind, scree_particle **particle, scree_error *error) {
   scree_particle *p;
@@ -185,7 +183,7 @@ scree_status scree_particle_from_mesh(const scree_mesh *mesh, const scree_partic
   double rounding = options ? options->rounding : 0;
   if (!(rounding >= 0 && isfinite(rounding)))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "particle: rounding %g m; at least 0", rounding);
-  SCREE_CLEANUP(scree_particle_drop) scree_particle *p = NULL;
+  SCREE_OWNED(scree_particle, p);
   SCREE_TRY(make(SCREE_PARTICLE_MESH, &p, error));
   SCREE_TRY(scree_mesh_copy(mesh, &p->mesh, error));
   /* first as it stands, so that messages name what is wrong before the volume is asked for */
@@ -198,7 +196,7 @@ scree_status scree_particle_from_mesh(const scree_mesh *mesh, const scree_partic
 
 scree_status scree_particle_surface(const scree_mesh *mesh, double rounding, bool two_sided,
                                     scree_particle **particle, scree_error *error) {
-  SCREE_CLEANUP(scree_particle_drop) scree_particle *p = NULL;
+  SCREE_OWNED(scree_particle, p);
   SCREE_TRY(make(SCREE_PARTICLE_MESH, &p, error));
   p->measures.rounding = p->radius = rounding;
   p->sheet = two_sided;
@@ -239,7 +237,7 @@ static void add_circle(scree_particle *p, const scree_circle *circle) {
 
 scree_status scree_particle_circles(const scree_circle *circles, size_t count,
                                     scree_particle **particle, scree_error *error) {
-  SCREE_CLEANUP(scree_particle_drop) scree_particle *p = NULL;
+  SCREE_OWNED(scree_particle, p);
   SCREE_TRY(make(SCREE_PARTICLE_MESH, &p, error));
   SCREE_TRY_ALLOC(p->points, count * RIM_SIDES, error);
   SCREE_TRY_ALLOC(p->point_radii, count * RIM_SIDES, error);
@@ -298,7 +296,7 @@ scree_status scree_particle_clump(const double *centres, const double *radii, si
       return scree_fail(error, SCREE_BAD_ARGUMENT,
                         "particle: sphere %zu of the clump has radius %g m at %g %g %g", i,
                         radii[i], centres[3 * i], centres[3 * i + 1], centres[3 * i + 2]);
-  SCREE_CLEANUP(scree_particle_drop) scree_particle *p = NULL;
+  SCREE_OWNED(scree_particle, p);
   SCREE_TRY(make(SCREE_PARTICLE_CLUMP, &p, error));
   if (like) {
     p->measures = like->measures;
@@ -344,7 +342,7 @@ static scree_status restore(scree_particle *p, const scree_mesh *mesh, const dou
 scree_status scree_particle_restore(const scree_particle_measures *measures, const scree_mesh *mesh,
                                     const double *centres, const double *radii, size_t count,
                                     scree_particle **particle, scree_error *error) {
-  SCREE_CLEANUP(scree_particle_drop) scree_particle *p = NULL;
+  SCREE_OWNED(scree_particle, p);
   SCREE_TRY(make(measures->kind, &p, error));
   p->measures = *measures;
   SCREE_TRY(restore(p, mesh, centres, radii, count, error));

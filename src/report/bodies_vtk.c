@@ -112,8 +112,7 @@ scree_status scree_scene_bodies_vtp_write(const scree_scene *scene, const char *
   instances s = {world, place, points, rows};
   fill(&s, scene);
   SCREE_TRY(scree_world_visit_contacts(world, feel_contact, &s, error));
-  const scree_vtk_rows table = {rows, sizeof *rows, true, members,
-                                sizeof members / sizeof *members};
+  const scree_vtk_rows table = SCREE_VTK_ROWS(rows, true, members);
   const scree_vtk_data data = {
       .points_single = points, .point_count = count, .bare = true, .time = scree_world_time(world)};
   return scree_vtp_write_rows(&data, &table, path, overwrite, error);

@@ -18,6 +18,10 @@ typedef struct scree_vtk_rows {
   const scree_vtk_member *members;
   size_t member_count;
 } scree_vtk_rows;
+#define SCREE_VTK_ROWS(rows, of_points, members)                                                   \
+  (scree_vtk_rows) {                                                                               \
+    rows, sizeof *(rows), of_points, members, sizeof(members) / sizeof *(members)                  \
+  }
 
 /* scree_vtp_write with these arrays behind those of `data`. */
 scree_status scree_vtp_write_rows(const scree_vtk_data *data, const scree_vtk_rows *rows,

@@ -1,5 +1,5 @@
 /* Pictures of worlds and heaps: the bodies as items of the ray tracer. */
-#include "base/alloc.h"
+#include "base/owned.h"
 #include "base/vec.h"
 #include "report/image.h"
 #include "report/program.h"
@@ -106,9 +106,7 @@ static scree_status make_rays(const scree_mesh *mesh, scree_ray_scene **rays, sc
   return scree_ray_scene_commit(*rays, error);
 }
 
-static void free_rays(scree_ray_scene **rays) {
-  scree_ray_scene_free(*rays);
-}
+SCREE_OWNABLE(scree_ray_scene)
 
 /* Whether the wall stands before more than a few of the bodies, of which many are asked. */
 static scree_status find_hiding(const scree_mesh *mesh, const scree_render_item *item,
@@ -122,7 +120,7 @@ static scree_status find_hiding(const scree_mesh *mesh, const scree_render_item 
   const float direction[3] = {(float)along.x, (float)along.y, (float)along.z};
   size_t bodies = scree_world_body_count(world), stride = bodies / ASKED + 1;
   size_t asked = 0, hidden = 0;
-  SCREE_CLEANUP(free_rays) scree_ray_scene *rays = NULL;
+  SCREE_OWNED(scree_ray_scene, rays);
   SCREE_TRY(make_rays(mesh, &rays, error));
   for (size_t i = 0; i < bodies; i += stride) {
     scree_body body;

@@ -96,10 +96,6 @@ static scree_status write(const scree_world *world, scree_vtk_data data, scree_v
   data.time = scree_world_time(world);
   return scree_vtp_write_rows(&data, &rows, to->path, to->overwrite, error);
 }
-#define ROWS(rows, of_points, members)                                                             \
-  (scree_vtk_rows) {                                                                               \
-    rows, sizeof *(rows), of_points, members, sizeof(members) / sizeof *(members)                  \
-  }
 
 static scree_vtk_data triangles_of(const sheet *s) {
   return (scree_vtk_data){.points = s->points,
@@ -124,7 +120,7 @@ static scree_status write_surfaces(const scree_world *world, const output_name *
   SCREE_TRY(make_room(&s, points, triangles, error));
   SCREE_SCRATCH(surface_row, rows, triangles, error);
   fill_surfaces(world, &shapes, &s, rows);
-  return write(world, triangles_of(&s), ROWS(rows, false, surface_members), to, error);
+  return write(world, triangles_of(&s), SCREE_VTK_ROWS(rows, false, surface_members), to, error);
 }
 
 typedef struct point_row {
@@ -168,7 +164,7 @@ static scree_status write_points(const scree_world *world, const output_name *to
     memcpy(points + 3 * at++, state.position, sizeof state.position);
   }
   const scree_vtk_data data = {.points = points, .point_count = count};
-  return write(world, data, ROWS(rows, true, point_members), to, error);
+  return write(world, data, SCREE_VTK_ROWS(rows, true, point_members), to, error);
 }
 
 /* ---- Contacts ---- */
@@ -256,7 +252,7 @@ static scree_status write_contacts(const scree_world *world, const output_name *
   for (uint32_t i = 0; i < 2 * count; i++) lines[i] = i;
   const scree_vtk_data data = {
       .points = s.points, .point_count = 2 * count, .lines = lines, .cell_count = count};
-  return write(world, data, ROWS(pairs.items, false, pair_members), to, error);
+  return write(world, data, SCREE_VTK_ROWS(pairs.items, false, pair_members), to, error);
 }
 
 /* ---- Walls ---- */

@@ -306,12 +306,11 @@ static void take_inlets(const comparison *c, scree_scene *is) {
 /* What a sensor that stays as it was has gathered, by way of a checkpoint's bytes. */
 static scree_status take_sensor(scree_scene *was, size_t k, scree_scene *is, size_t i,
                                 scree_error *error) {
-  scree_codec out = {0};
+  SCREE_CLEANUP(scree_codec_free) scree_codec out = {0};
   scree_scene_code_sensor(&out, was, &was->sensors[k]);
   scree_codec in = {.source = out.bytes, .count = out.count, .loading = true};
   if (scree_codec_good(&out)) scree_scene_code_sensor(&in, is, &is->sensors[i]);
   bool good = scree_codec_good(&out) && scree_codec_good(&in);
-  scree_free(out.bytes);
   return good ? SCREE_OK : scree_fail_memory(error, out.count, "a sensor");
 }
 
@@ -380,7 +379,7 @@ static void take_lists(scree_scene *was, scree_scene *is) {
 /* ---- what the world must know ---- */
 
 static scree_status set_pairs(scree_scene *scene, scree_error *error) {
-  SCREE_CLEANUP(scree_world_drop) scree_world *fresh = NULL; /* of the new materials */
+  SCREE_OWNED(scree_world, fresh); /* of the new materials */
   SCREE_TRY(scree_scene_make_world(scene, scene->time_step, &fresh, error));
   size_t count = scene->plan.materials.count;
   for (size_t a = 0; a < count; a++)
@@ -515,7 +514,7 @@ static scree_status apply_file(scree_scene_file *file, const char *path, scree_e
 
 scree_status scree_scene_change(scree_scene **scene, const char *const *changes, size_t count,
                                 scree_error *error) {
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
+  SCREE_OWNED(scree_scene_file, file);
   const char *text = (*scene)->text;
   if ((*scene)->is_frame)
     return scree_fail(error, SCREE_UNSUPPORTED, "a frame has no contacts: nothing goes on from it");

@@ -195,7 +195,7 @@ static scree_status go_on(work *w, scree_error *error) {
 static scree_status take_over(scree_scene *scene, const scree_scene_file *file, const char *path,
                               scree_error *error) {
   scree_plan plan;
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *shrunk = NULL;
+  SCREE_OWNED(scree_scene_file, shrunk);
   SCREE_CLEANUP(scree_free_at) char *text = NULL;
   if (scree_scene_file_shrinks(file))
     SCREE_TRY(scree_scene_file_shrink(file, scree_scene_largest(scene), &shrunk, error));

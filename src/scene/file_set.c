@@ -221,7 +221,7 @@ static scree_status shrink(scree_scene_file *file, const scree_yaml *parameter, 
 scree_status scree_scene_file_shrink(const scree_scene_file *file, double largest,
                                      scree_scene_file **shrunk, scree_error *error) {
   scree_yaml root;
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *made = NULL;
+  SCREE_OWNED(scree_scene_file, made);
   SCREE_TRY(scree_yaml_copy(&file->root, &root, error));
   SCREE_TRY(scree_scene_file_keep(&root, file->name, &made, error));
   const scree_yaml *parameters = scree_yaml_find(&made->root, "parameters");
@@ -378,8 +378,8 @@ scree_status scree_scene_file_template(const char *name, scree_scene_file **file
 scree_status scree_scene_file_read_over(const char *path, const char *template_name,
                                         const char *preset, scree_scene_file **file,
                                         scree_error *error) {
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *read = NULL;
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *made = NULL;
+  SCREE_OWNED(scree_scene_file, read);
+  SCREE_OWNED(scree_scene_file, made);
   SCREE_TRY(scree_scene_file_read(path, &read, error));
   bool whole = read->root.kind != SCREE_YAML_MAPPING || scree_yaml_find(&read->root, "inlets");
   scree_scene_file **answer = whole ? &read : &made;

@@ -91,10 +91,6 @@ static scree_status fail_write(const scree_motion_file *file, scree_error *error
   return scree_fail(error, SCREE_IO, "%s: cannot write: %s", file->path, strerror(errno));
 }
 
-static void free_bytes(scree_codec *c) {
-  scree_free(c->bytes);
-}
-
 static scree_status write_bytes(const scree_motion_file *file, const scree_codec *c,
                                 scree_error *error) {
   if (!scree_codec_good(c)) return scree_fail_memory(error, c->count, "a motion");
@@ -131,7 +127,7 @@ static scree_status keep_frames(scree_motion_file *file, double time, scree_erro
 }
 
 static scree_status begin(scree_motion_file *file, scree_error *error) {
-  SCREE_CLEANUP(free_bytes) scree_codec c = {0};
+  SCREE_CLEANUP(scree_codec_free) scree_codec c = {0};
   char name[8];
   uint32_t version_order[2] = {VERSION, BYTE_ORDER_MARK};
   file->last = -INFINITY;
@@ -188,8 +184,8 @@ scree_status scree_motion_put(scree_motion_file *file, const scree_world *world,
   frame_header f = {.time = scree_world_time(world), .body_count = scree_world_body_count(world)};
   while (f.time >= scree_motion_next(file)) file->count++;
   if (!file->stream || f.time <= file->last) return SCREE_OK;
-  SCREE_CLEANUP(free_bytes) scree_codec bodies = {0};
-  SCREE_CLEANUP(free_bytes) scree_codec frame = {0};
+  SCREE_CLEANUP(scree_codec_free) scree_codec bodies = {0};
+  SCREE_CLEANUP(scree_codec_free) scree_codec frame = {0};
   code_walls(&bodies, world);
   code_bodies(&bodies, world, (size_t)f.body_count);
   f.body_count += scree_world_wall_count(world);

@@ -266,26 +266,21 @@ static scree_status save(scree_codec *c, const scree_scene *scene, bool as_frame
 
 scree_status scree_scene_pack(const void *scene, unsigned char **bytes, size_t *byte_count,
                               scree_error *error) {
-  scree_codec c = {0};
-  scree_status status = save(&c, scene, false, error);
-  if (status == SCREE_OK) {
-    *bytes = c.bytes;
-    *byte_count = c.count;
-  } else {
-    scree_free(c.bytes);
-  }
-  return status;
+  SCREE_CLEANUP(scree_codec_free) scree_codec c = {0};
+  SCREE_TRY(save(&c, scene, false, error));
+  *bytes = c.bytes;
+  *byte_count = c.count;
+  c.bytes = NULL;
+  return SCREE_OK;
 }
 
 static scree_status save_as(const scree_scene *scene, bool as_frame, const char *path,
                             bool overwrite, scree_error *error) {
-  scree_codec c = {0};
+  SCREE_CLEANUP(scree_codec_free) scree_codec c = {0};
   if (scene->is_frame && !as_frame)
     return scree_fail(error, SCREE_UNSUPPORTED, "%s: a frame cannot become a checkpoint", path);
-  scree_status status = save(&c, scene, as_frame, error);
-  if (status == SCREE_OK) status = scree_seal_write(c.bytes, c.count, path, overwrite, error);
-  scree_free(c.bytes);
-  return status;
+  SCREE_TRY(save(&c, scene, as_frame, error));
+  return scree_seal_write(c.bytes, c.count, path, overwrite, error);
 }
 
 scree_status scree_scene_save(const scree_scene *scene, const char *path, bool overwrite,
@@ -313,7 +308,7 @@ static scree_status fail_here(const loader *l) {
 
 static scree_status load_plan(loader *l) {
   scree_scene *scene = l->scene;
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
+  SCREE_OWNED(scree_scene_file, file);
   scene->name = scree_decode_text(&l->codec);
   scene->text = scree_decode_text(&l->codec);
   if (!scene->name || !scene->text) return fail_here(l);

@@ -90,7 +90,7 @@ static scree_status add_materials(const scree_scene *scene, scree_world *world,
 scree_status scree_scene_make_world(const scree_scene *scene, double time_step, scree_world **world,
                                     scree_error *error) {
   scree_world_options o = world_options(scene, time_step);
-  SCREE_CLEANUP(scree_world_drop) scree_world *made = NULL;
+  SCREE_OWNED(scree_world, made);
   SCREE_TRY(scree_world_create(&o, &made, error));
   SCREE_TRY(add_materials(scene, made, error));
   *world = made;
@@ -304,7 +304,7 @@ scree_status scree_scene_take_file(scree_scene *scene, const scree_scene_file *f
 static scree_status create(const scree_scene_file *file, scree_shape_store *store,
                            const scree_progress *progress, scree_scene **scene,
                            scree_error *error) {
-  SCREE_CLEANUP(scree_scene_drop) scree_scene *made = NULL;
+  SCREE_OWNED(scree_scene, made);
   SCREE_TRY_ALLOC_ZERO(made, 1, error);
   SCREE_TRY(scree_scene_take_file(made, file, error));
   SCREE_TRY(make_particles(made, file->folder, store, progress, error));
@@ -333,7 +333,7 @@ double scree_scene_largest(const scree_scene *scene) {
 scree_status scree_scene_file_largest(const scree_scene_file *file, scree_shape_store *store,
                                       const scree_progress *progress, double *diameter,
                                       scree_error *error) {
-  SCREE_CLEANUP(scree_scene_drop) scree_scene *made = NULL;
+  SCREE_OWNED(scree_scene, made);
   SCREE_TRY_ALLOC_ZERO(made, 1, error);
   SCREE_TRY(scree_scene_take_file(made, file, error));
   SCREE_TRY(make_particles(made, file->folder, store, progress, error));
@@ -346,8 +346,8 @@ scree_status scree_scene_create_from(const scree_scene_file *file, scree_shape_s
                                      const scree_progress *progress, scree_scene **scene,
                                      scree_error *error) {
   if (!scree_scene_file_shrinks(file)) return create(file, store, progress, scene, error);
-  SCREE_CLEANUP(scree_shape_store_drop) scree_shape_store *own = NULL;
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *shrunk = NULL;
+  SCREE_OWNED(scree_shape_store, own);
+  SCREE_OWNED(scree_scene_file, shrunk);
   double largest;
   if (!store) SCREE_TRY(scree_shape_store_create(&own, error));
   if (own) store = own;
@@ -363,7 +363,7 @@ scree_status scree_scene_create(const scree_scene_file *file, const scree_progre
 
 scree_status scree_scene_file_column(const scree_scene_file *file, size_t index, char name[96],
                                      const char **unit, scree_error *error) {
-  SCREE_CLEANUP(scree_scene_drop) scree_scene *made = NULL;
+  SCREE_OWNED(scree_scene, made);
   SCREE_TRY_ALLOC_ZERO(made, 1, error);
   SCREE_TRY(scree_scene_file_plan(file, &made->arena, &made->plan, error));
   SCREE_TRY(scree_scene_prepare(made, error));

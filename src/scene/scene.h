@@ -1,15 +1,11 @@
 /* A scene at work: what its parts share. */
 #pragma once
 
+#include "base/owned.h"
 #include "scene/fill.h"
 #include "scene/motion.h"
 #include "scene/plan.h"
 #include "world/world.h"
-
-SCREE_DEFINE_DROP(scree_shape_store)
-SCREE_DEFINE_DROP(scree_world)
-SCREE_DEFINE_DROP(scree_scene)
-SCREE_DEFINE_DROP(scree_scene_file)
 
 struct scree_scene_file {
   scree_yaml root;

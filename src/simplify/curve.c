@@ -26,10 +26,6 @@ void scree_curve_free(scree_curve *curve) {
   scree_free(curve);
 }
 
-static void free_curve_at(scree_curve **curve) {
-  scree_curve_free(*curve);
-}
-
 static size_t count_at(const scree_curve *curve, size_t level) {
   return curve->counts ? curve->counts[level] : curve->mesh->triangle_count - 2 * level;
 }
@@ -101,7 +97,7 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
   if (!options) options = &defaults;
   SCREE_TRY(check_options(options, error));
   SCREE_CLEANUP(scree_decimator_free) scree_decimator d = {0};
-  SCREE_CLEANUP(free_curve_at) scree_curve *made = NULL;
+  SCREE_OWNED(scree_curve, made);
   SCREE_TRY_ALLOC_ZERO(made, 1, error);
   SCREE_TRY(cut_flat_fans(mesh, made, error));
   SCREE_TRY(scree_decimator_start(&d, made->mesh, options, error));

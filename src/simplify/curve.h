@@ -1,6 +1,7 @@
 /* What curve.c builds and replay.c reads. */
 #pragma once
 
+#include "base/owned.h"
 #include "simplify/record.h"
 
 struct scree_curve {
@@ -11,7 +12,3 @@ struct scree_curve {
   uint32_t *counts;    /* triangles per level, NULL where every collapse takes two */
   double area, volume; /* of level 0 */
 };
-
-static inline void scree_replay_free_at(scree_replay **replay) {
-  scree_replay_free(*replay);
-}

@@ -323,7 +323,7 @@ static void write_back(const fit *f, const uint32_t *numbering, scree_mesh *leve
 
 scree_status scree_curve_fit(const scree_curve *curve, size_t level_index, scree_mesh *mesh,
                              scree_error *error) {
-  SCREE_CLEANUP(scree_replay_free_at) scree_replay *replay = NULL;
+  SCREE_OWNED(scree_replay, replay);
   SCREE_CLEANUP(fit_free) fit f = {0};
   const scree_mesh *level;
   bool better;

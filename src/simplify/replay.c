@@ -37,7 +37,7 @@ void scree_replay_free(scree_replay *replay) {
 scree_status scree_replay_start(const scree_curve *curve, scree_replay **replay,
                                 scree_error *error) {
   const scree_mesh *mesh = curve->mesh;
-  SCREE_CLEANUP(scree_replay_free_at) scree_replay *made = NULL;
+  SCREE_OWNED(scree_replay, made);
   SCREE_TRY_ALLOC_ZERO(made, 1, error);
   made->curve = curve;
   made->triangle_count = mesh->triangle_count;
@@ -111,7 +111,7 @@ scree_status scree_replay_step(scree_replay *replay, size_t level_index, const s
 
 scree_status scree_curve_mesh(const scree_curve *curve, size_t level_index, scree_mesh *mesh,
                               scree_error *error) {
-  SCREE_CLEANUP(scree_replay_free_at) scree_replay *replay = NULL;
+  SCREE_OWNED(scree_replay, replay);
   const scree_mesh *level;
   SCREE_TRY(scree_replay_start(curve, &replay, error));
   SCREE_TRY(scree_replay_step(replay, level_index, &level, error));

@@ -117,7 +117,7 @@ static scree_status put_shapes(writer *w) {
 static scree_status put_point(writer *w, size_t point, sqlite3_stmt *factor,
                               sqlite3_stmt *parameter) {
   const scree_study *s = w->study;
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
+  SCREE_OWNED(scree_scene_file, file);
   SCREE_CLEANUP(scree_free_at) char *text = NULL;
   for (size_t f = 0; f < s->factor_count; f++)
     SCREE_TRY(PUT(w, factor, whole_value(point), text_value(s->factors[f].key),

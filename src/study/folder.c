@@ -61,7 +61,7 @@ scree_status scree_study_open(scree_study *study, const char *folder, scree_erro
 
 scree_status scree_study_open_folder(const char *folder, scree_study **study, scree_error *error) {
   const char *path = SCREE_PATH_IN(folder, "study.yaml");
-  SCREE_CLEANUP(scree_study_drop) scree_study *made = NULL;
+  SCREE_OWNED(scree_study, made);
   if (!scree_path_exists(path))
     return scree_fail(error, SCREE_IO, "%s: is no folder of a study: no study.yaml in it", folder);
   SCREE_TRY(scree_study_read(path, &made, error));

@@ -619,7 +619,7 @@ static scree_status read_text(scree_study *study, const char *path, scree_error 
 }
 
 scree_status scree_study_read(const char *path, scree_study **study, scree_error *error) {
-  SCREE_CLEANUP(scree_study_drop) scree_study *made = NULL;
+  SCREE_OWNED(scree_study, made);
   SCREE_CLEANUP(scree_yaml_free) scree_yaml root = {0};
   SCREE_TRY_ALLOC_ZERO(made, 1, error);
   reader r = {made, path, error};

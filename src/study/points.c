@@ -62,7 +62,7 @@ static const char *make_label(scree_study *study, const char **values) {
 /* Checks what only a point's values together can say. */
 static scree_status check_point(const scree_study *study, const scree_study_point *point,
                                 scree_error *error) {
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
+  SCREE_OWNED(scree_scene_file, file);
   scree_error reason;
   if (study->command.count) return SCREE_OK; /* its values are the command's to judge */
   SCREE_TRY(scree_study_scene(study, point, &file, error));
@@ -159,7 +159,7 @@ static scree_status write_command_identity(const scree_study *study, size_t run,
  * written, the files that it names, the shapes' checksums and what is made of them. */
 static scree_status write_identity(const scree_study *study, size_t run, FILE *stream,
                                    scree_error *error) {
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
+  SCREE_OWNED(scree_scene_file, file);
   char unit[SCREE_NUMBER_SIZE];
   if (study->command.count) return write_command_identity(study, run, stream, error);
   SCREE_TRY(scree_study_run_scene(study, run, &file, error));

@@ -115,7 +115,7 @@ static scree_status pour_set(const scree_study *study, size_t set_index, scree_s
 
 scree_status scree_study_scene(const scree_study *study, const scree_study_point *point,
                                scree_scene_file **file, scree_error *error) {
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *made = NULL;
+  SCREE_OWNED(scree_scene_file, made);
   bool pours = point && study->own_shapes;
   SCREE_TRY(scree_scene_file_parse(study->scene_text, strlen(study->scene_text), study->scene_path,
                                    &made, error));
@@ -134,25 +134,26 @@ scree_status scree_study_scene(const scree_study *study, const scree_study_point
 scree_status scree_study_run_scene(const scree_study *study, size_t run, scree_scene_file **file,
                                    scree_error *error) {
   char seed[32];
+  SCREE_OWNED(scree_scene_file, made);
   SCREE_TRY(
-      scree_study_scene(study, &study->points[scree_study_run_point(study, run)], file, error));
+      scree_study_scene(study, &study->points[scree_study_run_point(study, run)], &made, error));
   snprintf(seed, sizeof seed, "%" PRIu64, scree_study_run_seed(study, run));
-  scree_status status = scree_scene_file_set(*file, "seed", seed, error);
-  if (status != SCREE_OK) scree_scene_file_drop(file);
-  if (status != SCREE_OK) *file = NULL;
-  return status;
+  SCREE_TRY(scree_scene_file_set(made, "seed", seed, error));
+  *file = made;
+  made = NULL;
+  return SCREE_OK;
 }
 
 scree_status scree_study_try(const scree_study *study, const char *key, const char *value,
                              scree_error *error) {
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
+  SCREE_OWNED(scree_scene_file, file);
   SCREE_TRY(scree_study_scene(study, NULL, &file, error));
   return scree_scene_file_try(file, key, value, error);
 }
 
 /* The plan's phases, and which is the first in which something moves; its seed and pile. */
 scree_status scree_study_look(scree_study *study, scree_error *error) {
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
+  SCREE_OWNED(scree_scene_file, file);
   scree_plan plan;
   SCREE_TRY(scree_study_scene(study, NULL, &file, error));
   SCREE_TRY(scree_scene_file_plan(file, &study->arena, &plan, error));
@@ -213,7 +214,7 @@ scree_status scree_study_stock(const scree_study *study, size_t run, const scree
 /* ---- answers ---- */
 
 bool scree_study_has_column(const scree_study *study, const char *column, const char **unit) {
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
+  SCREE_OWNED(scree_scene_file, file);
   char name[96] = "?";
   if (scree_study_scene(study, NULL, &file, NULL) != SCREE_OK) return false;
   for (size_t i = 0; *name; i++) {
@@ -225,7 +226,7 @@ bool scree_study_has_column(const scree_study *study, const char *column, const 
 
 const char *scree_study_column_hint(scree_study *study, const char *column) {
   enum { MOST = 200 };
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
+  SCREE_OWNED(scree_scene_file, file);
   char names[MOST][96], hint[SCREE_NAME_HINT];
   const char *known[MOST];
   size_t count = 0;

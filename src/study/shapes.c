@@ -246,7 +246,7 @@ static scree_status decimate(const scree_study *study, size_t index, scree_mesh 
                              const scree_progress *progress, scree_study_shape *made,
                              scree_error *error) {
   scree_simplify_options simplify = scree_default_simplify_options();
-  SCREE_CLEANUP(scree_curve_drop) scree_curve *curve = NULL;
+  SCREE_OWNED(scree_curve, curve);
   SCREE_CLEANUP(scree_choice_free) scree_choice choice = {0};
   simplify.method = study->method;
   SCREE_TRY(scree_curve_build_scaled(mesh, scale, &simplify, progress, &curve, error));

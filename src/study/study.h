@@ -1,6 +1,7 @@
 /* A study: what its file says, the points and runs that follow from it, and its folder. */
 #pragma once
 
+#include "base/owned.h"
 #include "base/path.h"
 #include "base/schema.h"
 #include "choice/criterion.h"
@@ -97,9 +98,6 @@ struct scree_study {
   size_t point_count;
   char (*keys)[SCREE_RUN_KEY_BYTES]; /* of every run; NULL before all shapes are known */
 };
-
-SCREE_DEFINE_DROP(scree_curve)
-SCREE_DEFINE_DROP(scree_study)
 
 static inline size_t scree_study_run_point(const scree_study *study, size_t run) {
   return run % study->point_count;

@@ -75,7 +75,7 @@ static bool watch(void *context, const scree_scene_state *state) {
 /* To its end; a checkpoint that cannot be read is thrown away once. */
 static scree_status simulate(work *w, const scree_scene_file *file, scree_shape_store *store,
                              scree_study_record *record, scree_error *error) {
-  SCREE_CLEANUP(scree_scene_drop) scree_scene *scene = NULL;
+  SCREE_OWNED(scree_scene, scene);
   scree_scene_job job = {.file = file,
                          .folder = RUN_FILE(w, "runs", ""),
                          .resume = true,
@@ -114,8 +114,8 @@ static scree_status run_command(work *w, scree_study_record *record, scree_error
 }
 
 static scree_status make_and_simulate(work *w, scree_study_record *record, scree_error *error) {
-  SCREE_CLEANUP(scree_scene_file_drop) scree_scene_file *file = NULL;
-  SCREE_CLEANUP(scree_shape_store_drop) scree_shape_store *store = NULL;
+  SCREE_OWNED(scree_scene_file, file);
+  SCREE_OWNED(scree_shape_store, store);
   if (w->study->command.count) return run_command(w, record, error);
   SCREE_TRY(scree_study_run_scene(w->study, w->run, &file, error));
   SCREE_TRY(scree_shape_store_create(&store, error));
@@ -241,7 +241,7 @@ static scree_status answer_again(const scree_study *study, size_t run, scree_stu
   bool command = study->command.count > 0;
   const char *path =
       SCREE_STUDY_PATH(study, "runs", study->keys[run], command ? "" : "/last.scree");
-  SCREE_CLEANUP(scree_scene_drop) scree_scene *scene = NULL;
+  SCREE_OWNED(scree_scene, scene);
   scree_status status = command ? scree_study_answer_command(study, path, record, error)
                                 : scree_scene_load(path, &scene, error);
   if (scene) status = scree_study_answer_scene(study, scene, record, error);

@@ -395,36 +395,29 @@ static void save_tail(scree_codec *c, const scree_world *world) {
 
 scree_status scree_world_pack(const scree_world *world, bool contacts, unsigned char **bytes,
                               size_t *byte_count, scree_error *error) {
-  scree_status status = scree_world_bring(
-      world, contacts ? SCREE_ALL_PARTS : SCREE_ALL_PARTS & ~SCREE_PART_LISTS, error);
-  if (status) return status;
+  SCREE_TRY(scree_world_bring(
+      world, contacts ? SCREE_ALL_PARTS : SCREE_ALL_PARTS & ~SCREE_PART_LISTS, error));
   scree_walls_settle(world);
-  scree_codec c = {0};
+  SCREE_CLEANUP(scree_codec_free) scree_codec c = {0};
   scree_seal_begin(&c);
   save_setup(&c, world);
   save_particles(&c, world);
   save_bodies(&c, world);
   save_pairs(&c, world, contacts);
   save_tail(&c, world);
-  status = scree_seal_end(&c, &seal, error);
-  if (status != SCREE_OK) {
-    scree_free(c.bytes);
-    return status;
-  }
+  SCREE_TRY(scree_seal_end(&c, &seal, error));
   *bytes = c.bytes;
   *byte_count = c.count;
+  c.bytes = NULL;
   return SCREE_OK;
 }
 
 scree_status scree_world_save(const scree_world *world, const char *path, bool overwrite,
                               scree_error *error) {
-  unsigned char *bytes;
+  SCREE_CLEANUP(scree_free_at) unsigned char *bytes = NULL;
   size_t count;
-  scree_status status = scree_world_pack(world, true, &bytes, &count, error);
-  if (status) return status;
-  status = scree_seal_write(bytes, count, path, overwrite, error);
-  scree_free(bytes);
-  return status;
+  SCREE_TRY(scree_world_pack(world, true, &bytes, &count, error));
+  return scree_seal_write(bytes, count, path, overwrite, error);
 }
 
 /* ---- loading ---- */
