@@ -2,6 +2,8 @@
 #   make         build/release/bin/scree; installs nothing
 #   make demo    installs what is missing, builds, runs the main job on the built-in samples
 #   make test    installs what is missing, builds, runs the tests
+#   make check DIR=src/world    builds and runs what tests that folder
+#   make quick   builds and runs a selection of a minute
 #   make page    build/page/scree.html, the page that does it in a browser (needs emscripten and npm)
 #   make npm     build/npm/scree-VERSION.tgz, the npm package
 #   make deb     Debian packages in build/deb
@@ -17,7 +19,7 @@ LABELS ?=
 JOBS ?= $(shell nproc)
 DEMO_DIR ?= demo
 
-.PHONY: all build packages demo test docs evidence page npm deb wheel install uninstall clean
+.PHONY: all build packages demo test check quick docs evidence page npm deb wheel install uninstall clean
 all: build
 
 packages:
@@ -33,11 +35,17 @@ demo: packages
 	@tools/demo.sh build/$(PRESET)/bin/scree "$(DEMO_DIR)"
 
 test:
-	@tools/install-packages.sh build test
+	@tools/install-packages.sh build test docs
 	@cmake --preset $(PRESET) -DSCREE_DATA_DIR="$(DATA_DIR)" -DBUILD_TESTING=ON >build.log 2>&1 || { cat build.log; exit 1; }
 	@rm -f build.log
 	@cmake --build --preset $(PRESET) -j $(JOBS)
 	@tools/test.sh $(PRESET) -j $(JOBS) $(LABELS)
+
+check:
+	@tools/check.sh $(PRESET) -j $(JOBS) $$(tools/tests-of.py "$(DIR)")
+
+quick:
+	@tools/check.sh $(PRESET) -j $(JOBS) $$(sed 's/ *#.*//' tests/quick.txt)
 
 page npm:
 	@tools/install-packages.sh build browser
@@ -53,6 +61,7 @@ wheel:
 	@tools/wheel.sh
 
 docs: build
+	@tools/install-packages.sh docs
 	@tools/site/build.sh build/$(PRESET) build/docs
 
 evidence: build

@@ -1,5 +1,5 @@
 # Small where speed is not asked for: the page has it all inside.
-file(GLOB cold src/report/*.c src/cli/*.c src/scene/*.c src/sample/*.c src/heap/*.c)
+file(GLOB cold src/report/*.c src/cli/*.c src/scene/*.c src/scene/*/*.c src/sample/*.c src/heap/*.c)
 set_source_files_properties(${cold} PROPERTIES COMPILE_OPTIONS -Os)
 target_compile_options(qhull_sources PRIVATE -Os)
 target_compile_options(yaml_sources PRIVATE -Os)
@@ -33,7 +33,7 @@ add_custom_target(page COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_SOUR
 
 set(package ${PROJECT_SOURCE_DIR}/build/npm)
 configure_file(${web}/npm/package.json ${CMAKE_BINARY_DIR}/npm/package.json @ONLY)
-foreach(file bin/scree.js index.js index.d.ts README.md)
+foreach(file bin/scree.js README.md)
   configure_file(${web}/npm/${file} ${CMAKE_BINARY_DIR}/npm/${file} COPYONLY)
 endforeach()
 configure_file(${PROJECT_SOURCE_DIR}/LICENSE ${CMAKE_BINARY_DIR}/npm/LICENSE COPYONLY)
@@ -41,7 +41,6 @@ set(lib ${CMAKE_BINARY_DIR}/npm/lib)
 set(bin ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 add_custom_target(npm COMMAND ${CMAKE_COMMAND} -E make_directory ${lib} ${package}
   COMMAND ${CMAKE_COMMAND} -E copy ${bin}/scree.js ${lib}/scree.cjs
-  COMMAND ${CMAKE_COMMAND} -E copy ${bin}/scree_web.js ${lib}/scree_web.cjs
-  COMMAND ${CMAKE_COMMAND} -E copy ${bin}/scree.wasm ${bin}/scree_web.wasm ${lib}
+  COMMAND ${CMAKE_COMMAND} -E copy ${bin}/scree.wasm ${lib}
   COMMAND ${NPM} pack --silent --pack-destination ${package}
-  DEPENDS scree scree_web WORKING_DIRECTORY ${CMAKE_BINARY_DIR}/npm VERBATIM)
+  DEPENDS scree WORKING_DIRECTORY ${CMAKE_BINARY_DIR}/npm VERBATIM)

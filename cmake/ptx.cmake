@@ -1,4 +1,4 @@
-# The kernels for NVIDIA devices, as text in the program (src/world/device/). AUTO makes them where there are
+# The kernels for NVIDIA devices, as text in the program (src/world/device/kernels/). AUTO makes them where there are
 # clang and llvm 14 with the NVPTX target (Debian: clang-14, llvm-14), ON asks for them, OFF leaves them out; a
 # build without them says so when it is asked for the backend.
 set(SCREE_CUDA AUTO CACHE STRING "Kernels for NVIDIA devices: AUTO, ON or OFF")
@@ -13,9 +13,9 @@ if(NOT SCREE_CUDA STREQUAL "OFF" AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
 endif()
 if(SCREE_WITH_CUDA)
   set(SCREE_PTX ${CMAKE_BINARY_DIR}/scree_kernels)
-  file(GLOB SCREE_PTX_SOURCES CONFIGURE_DEPENDS src/world/*.[ch] src/particle/*.[ch] src/base/*.[ch]
-       src/world/device/*.[ch] src/world/device/include/*.h include/scree/*.h)
-  list(FILTER SCREE_PTX_SOURCES EXCLUDE REGEX "/(cuda[a-z_]*|backend|save|keep|observe|visit|broad|material)\\.c$")
+  file(GLOB SCREE_PTX_SOURCES CONFIGURE_DEPENDS src/world/*/*.[ch] src/particle/*.[ch] src/base/*.[ch]
+       src/world/device/kernels/*.[ch] src/world/device/kernels/include/*.h include/scree/*.h)
+  list(FILTER SCREE_PTX_SOURCES EXCLUDE REGEX "/world/(device/[a-z_]*|[a-z]*/(load|code|save|keep|observe|visit|hits|replay|broad|material|describe|bodies))\\.c$")
   add_custom_command(OUTPUT ${SCREE_PTX}.ptx ${SCREE_PTX}.c
     COMMAND ${PROJECT_SOURCE_DIR}/cmake/ptx.sh ${SCREE_CLANG_NVPTX} ${SCREE_LLVM_BIN} ${SCREE_PTX}
     DEPENDS ${PROJECT_SOURCE_DIR}/cmake/ptx.sh ${SCREE_PTX_SOURCES} VERBATIM)

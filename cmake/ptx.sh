@@ -12,19 +12,18 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$root"
-sources=(src/world/device/{kernels,broad_kernels,observe_kernels}.c src/base/math.c src/particle/closest.c)
-for name in contact narrow spheres edges law candidates substep watch seam depth wall motion loop grids lists time_step pair pool step integrate sums; do
-  [ ! -e src/world/$name.c ] || sources+=(src/world/$name.c)
-done
+sources=(src/world/device/kernels/*.c src/world/contact/*.c src/base/math.c src/particle/closest.c
+  src/world/state/{loop,motion,pairs,parameters,pool,remote,wall_forces,wall_shape,walls}.c
+  src/world/broad/{candidates,grids,lists}.c src/world/observe/sums.c src/world/step/{integrate,step}.c)
 flags=(-std=c17 -target nvptx64-nvidia-cuda -Xclang -target-cpu -Xclang sm_70 -O2 -Xclang -disable-llvm-passes
   -ffp-contract=off -fno-math-errno -nostdinc -isystem "$("$clang" -print-resource-dir)/include"
-  -isystem src/world/device/include -Isrc -Iinclude -DNDEBUG -w -emit-llvm -c)
+  -isystem src/world/device/kernels/include -Isrc -Iinclude -DNDEBUG -w -emit-llvm -c)
 for source in "${sources[@]}"; do
   "$clang" "${flags[@]}" -o "$work/$(echo "$source" | tr / _).bc" "$source"
 done
 "$llvm/llvm-link" "$work"/*.bc -S -o "$work/all.ll"
 # what marks a kernel for llvm 14
-kernels=$(sed -n 's/^  X(\([a-z_]*\)).*/scree_kernel_\1/p' src/world/device/device.h)
+kernels=$(sed -n 's/^  X(\([a-z_]*\)).*/scree_kernel_\1/p' src/world/device/kernels/device.h)
 {
   number=9000 nodes=
   for kernel in $kernels; do

@@ -1,6 +1,6 @@
 # The verbs are the files src/cli/verb_*.c; each defines `const cli_verb cli_verb_NAME`. Their order in
 # the overview is that of the flow; a verb not named here comes last.
-set(flow sample check repair measure distance simplify curve choose clump run drop repose pile study calibrate optimise render report export)
+set(flow sample check repair measure distance simplify curve choose clump fracture run drop repose pile study calibrate optimise render report export)
 file(GLOB verb_files CONFIGURE_DEPENDS src/cli/verb_*.c)
 if(NOT SCREE_STUDY)
   list(REMOVE_ITEM flow study calibrate optimise)

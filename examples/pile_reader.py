@@ -1,13 +1,18 @@
 """Reads what `scree export CHECKPOINT -o FOLDER` writes, with nothing but Python: for the examples beside this."""
+from __future__ import annotations
+
 import json
 import pathlib
 import struct
+from typing import Any, Sequence
 
 
-def read_stl(path, unit):
+def read_stl(path: pathlib.Path, unit: float) -> tuple[list[list[float]], list[list[int]]]:
     """Vertices in metres and triangles of a binary STL, equal corners united."""
     data = pathlib.Path(path).read_bytes()
-    vertices, triangles, known = [], [], {}
+    vertices: list[list[float]] = []
+    triangles: list[list[int]] = []
+    known: dict[tuple[float, ...], int] = {}
     for k in range(struct.unpack_from("<I", data, 80)[0]):
         corners = []
         values = struct.unpack_from("<9f", data, 84 + 50 * k + 12)
@@ -21,7 +26,7 @@ def read_stl(path, unit):
     return vertices, triangles
 
 
-def rotation(q):
+def rotation(q: Sequence[float]) -> list[list[float]]:
     """The matrix of a unit quaternion w, x, y, z."""
     w, x, y, z = q
     return [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -29,21 +34,21 @@ def rotation(q):
             [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
 
 
-def turn(matrix, vector):
+def turn(matrix: Sequence[Sequence[float]], vector: Sequence[float]) -> list[float]:
     return [sum(a * b for a, b in zip(row, vector)) for row in matrix]
 
 
-def read_pile(folder):
+def read_pile(folder: str | pathlib.Path) -> dict[str, Any]:
     """pile.json as a dictionary; shapes of meshes get `vertices` and `triangles`, in their own frame."""
     folder = pathlib.Path(folder)
-    pile = json.loads((folder / "pile.json").read_text())
+    pile: dict[str, Any] = json.loads((folder / "pile.json").read_text())
     for shape in pile["shapes"]:
         if shape["mesh_file"]:
             shape["vertices"], shape["triangles"] = read_stl(folder / shape["mesh_file"], pile["unit_m"])
     return pile
 
 
-def inertia_in_space(pile, body):
+def inertia_in_space(pile: dict[str, Any], body: dict[str, Any]) -> list[float]:
     """Six values xx yy zz xy xz yz, kg m2, about the body's centre, along the axes of space."""
     shape = pile["shapes"][body["shape"]]
     density = body["mass"] / shape["volume"]

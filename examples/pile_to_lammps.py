@@ -9,8 +9,11 @@ in.pile reads the pile, writes the corners as LAMMPS has them to corners.dump, a
 gravity on the plane z = 0. LAMMPS takes the triangles of bodies that are not convex, but finds contacts as of convex
 ones. Other walls than that plane are not carried over. LAMMPS reads at most 32 lines of 255 bytes a body (MAXBODY in
 its read_data.cpp): enough for about 150 triangles."""
+from __future__ import annotations
+
 import pathlib
 import sys
+from typing import Any, Iterable, Sequence
 
 from pile_reader import inertia_in_space, read_pile, rotation, turn
 
@@ -35,11 +38,11 @@ run 100
 """
 
 
-def edges_of(triangles):
+def edges_of(triangles: Iterable[Sequence[int]]) -> list[tuple[int, int]]:
     return sorted({(min(t[i], t[i - 1]), max(t[i], t[i - 1])) for t in triangles for i in range(3)})
 
 
-def packed(values, width=250):
+def packed(values: Iterable[float], width: int = 250) -> list[str]:
     """The values in lines of at most so many bytes."""
     lines = [""]
     for word in (f"{value:.9g}" for value in values):
@@ -49,7 +52,7 @@ def packed(values, width=250):
     return lines
 
 
-def body_lines(number, pile, body):
+def body_lines(number: int, pile: dict[str, Any], body: dict[str, Any]) -> list[str]:
     """One entry of the section Bodies: corners relative to the centre, along the axes of space."""
     shape = pile["shapes"][body["shape"]]
     matrix, edges = rotation(body["orientation"]), edges_of(shape["triangles"])
@@ -63,13 +66,13 @@ def body_lines(number, pile, body):
     return lines
 
 
-def angular_momentum(pile, body):
+def angular_momentum(pile: dict[str, Any], body: dict[str, Any]) -> list[float]:
     xx, yy, zz, xy, xz, yz = inertia_in_space(pile, body)
     return turn([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], body["angular_velocity"])
 
 
-def main(folder, output):
-    pile, output = read_pile(folder), pathlib.Path(output)
+def main(folder: str, target: str) -> None:
+    pile, output = read_pile(folder), pathlib.Path(target)
     bodies = [b for b in pile["bodies"] if pile["shapes"][b["shape"]]["mesh_file"]]
     if len(bodies) < len(pile["bodies"]):
         print(f"{len(pile['bodies']) - len(bodies)} spheres and clumps are left out")

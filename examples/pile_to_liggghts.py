@@ -9,9 +9,12 @@ with its velocities.
 in.pile inserts the particles one by one, writes their spheres to pile.dump, and goes on for some steps under gravity
 on the plane z = 0. LIGGGHTS takes the spheres' common centre for the centre of mass, so that is where a particle is
 inserted. Other walls are not carried over."""
+from __future__ import annotations
+
 import math
 import pathlib
 import sys
+from typing import Any, Iterable, Sequence
 
 from pile_reader import read_pile, rotation, turn
 
@@ -55,11 +58,12 @@ run 200
 """
 
 
-def centre_of(spheres):
+def centre_of(spheres: Sequence[Sequence[float]]) -> list[float]:
     """Of the volume that they cover together, by a lattice."""
     low = [min(s[i] - s[3] for s in spheres) for i in range(3)]
     high = [max(s[i] + s[3] for s in spheres) for i in range(3)]
-    steps, inside = 30, []
+    steps = 30
+    inside: list[list[float]] = []
     for index in range(steps**3):
         numbers = index % steps, index // steps % steps, index // steps**2
         p = [l + (n + 0.5) * (h - l) / steps for l, h, n in zip(low, high, numbers)]
@@ -68,11 +72,11 @@ def centre_of(spheres):
     return [sum(p[i] for p in inside) / len(inside) for i in range(3)]
 
 
-def words(values):
+def words(values: Iterable[float]) -> str:
     return " ".join(f"{v:.12g}" for v in values)
 
 
-def template(pile, k, density, folder):
+def template(pile: dict[str, Any], k: int, density: float, folder: pathlib.Path) -> str:
     """The file of spheres and the lines that declare shape k."""
     shape = pile["shapes"][k]
     if shape["mesh_file"]:
@@ -85,10 +89,10 @@ def template(pile, k, density, folder):
                            inertia=words([xx, 0, 0, yy, 0, zz]))
 
 
-def main(folder, output):
-    pile, output = read_pile(folder), pathlib.Path(output)
+def main(folder: str, target: str) -> None:
+    pile, output = read_pile(folder), pathlib.Path(target)
     bodies, reach = pile["bodies"], max(s["bounding_radius"] for s in pile["shapes"])
-    ends = []
+    ends: list[float] = []
     for axis in range(3):
         where = [b["position"][axis] for b in bodies]
         ends += [min(where) - 4 * reach, max(where) + 4 * reach]

@@ -2,8 +2,8 @@
  * simulation.
  *
  * These headers are the whole public interface; each can be included alone. In the order in which
- * the data goes: base, mesh, measure, check, simplify, fidelity, choice, sample, particle, clump,
- * world, heap, scene, pile, study, report.
+ * the data goes: base, mesh, measure, check, fracture, simplify, fidelity, choice, sample,
+ * particle, clump, world, heap, scene, pile, study, report.
  *
  * What holds everywhere:
  *
@@ -32,7 +32,9 @@
 #include "scree/choice.h"
 #include "scree/clump.h"
 #include "scree/fidelity.h"
+#include "scree/fracture.h"
 #include "scree/heap.h"
+#include "scree/joints.h"
 #include "scree/measure.h"
 #include "scree/mesh.h"
 #include "scree/particle.h"

@@ -44,11 +44,27 @@ def _contents(library, version):
     yield "scree/VERSION", version.encode()
     yield f"scree/{_soname(library)}", library.resolve().read_bytes()
     info = f"scree-{version}.dist-info"
-    yield f"{info}/METADATA", (f"Metadata-Version: 2.1\nName: scree\nVersion: {version}\nRequires-Python: >=3.9\n"
-                               "Provides-Extra: arrays\nRequires-Dist: numpy; extra == 'arrays'\n").encode()
+    yield f"{info}/METADATA", _metadata(version).encode()
     yield f"{info}/WHEEL", ("Wheel-Version: 1.0\nGenerator: scree\nRoot-Is-Purelib: false\n"
                             f"Tag: {_tag(library)}\n").encode()
     yield f"{info}/LICENSE", (ROOT / "LICENSE").read_bytes()
+
+
+def _metadata(version):
+    """Of the table [project] in pyproject.toml, which Python reads from 3.11 on; before, the least that pip needs."""
+    try:
+        import tomllib
+        project = tomllib.loads((HERE / "pyproject.toml").read_text())["project"]
+    except ModuleNotFoundError:
+        project = {}
+    lines = ["Metadata-Version: 2.1", "Name: scree", f"Version: {version}", "Requires-Python: >=3.9", "License: MIT"]
+    if "description" in project:
+        lines += [f"Summary: {project['description']}", f"Keywords: {','.join(project['keywords'])}"]
+    lines += [f"Author: {author['name']}" for author in project.get("authors", [])]
+    lines += [f"Classifier: {classifier}" for classifier in project.get("classifiers", [])]
+    lines += [f"Project-URL: {name}, {url}" for name, url in project.get("urls", {}).items() if url.startswith("http")]
+    lines += ["Provides-Extra: arrays", "Requires-Dist: numpy; extra == 'arrays'", "Description-Content-Type: text/markdown"]
+    return "\n".join(lines) + "\n\n" + (HERE / "README.md").read_text()
 
 
 def _tag(library):

@@ -16,7 +16,7 @@ complain() {
 }
 
 earlier=""
-for header in base mesh measure check simplify fidelity choice sample particle clump world heap scene study calibrate report; do
+for header in base mesh measure check fracture simplify fidelity choice sample particle clump world joints heap scene study calibrate report; do
   for included in $(sed -n 's/^#include "scree\/\([a-z]*\)\.h"/\1/p' "$root/include/scree/$header.h"); do
     case " $earlier " in
       *" $included "*) ;;
@@ -47,12 +47,29 @@ for layer in $layers; do
   done
 done
 
+# The floors of the world climb one way.
+visible=""
+for floor in state broad contact observe step device; do
+  visible="$visible $floor"
+  for file in $(find "$root/src/world/$floor" -name '*.[ch]'); do
+    for included in $(sed -n 's/^ *# *include *"world\/\([a-z_]*\)\/.*/\1/p' "$file" | sort -u); do
+      case " $visible " in
+        *" $included "*) ;;
+        *) complain "${file#"$root"/}: floor $floor of the world must not include $included/" ;;
+      esac
+    done
+  done
+done
+for file in "$root"/src/world/*.[ch]; do
+  [ ! -e "$file" ] || complain "${file#"$root"/}: a file of the world stands on one of its floors"
+done
+
 for folder in src/cli examples bench web/wasm; do
   for file in $(find "$root/$folder" -name '*.[ch]' 2>/dev/null); do
     for included in $(sed -n 's/^ *# *include *"\([^"]*\)".*/\1/p' "$file" | sort -u); do
       case "$folder:$included" in
         *:scree.h | *:scree/*.h | src/cli:cli/* | src/cli:base/* | src/cli:report/provenance.h | src/cli:report/program.h | bench:bench.h | web/wasm:cli/surface.h | \
-          web/wasm:scene/scene.h | web/wasm:report/program.h | web/wasm:report/page_parts.h | web/wasm:report/provenance.h | web/wasm:report/shapes.h) ;;
+          web/wasm:scene/file.h | web/wasm:report/program.h | web/wasm:report/page_parts.h | web/wasm:report/provenance.h | web/wasm:report/shapes.h) ;;
         *) complain "${file#"$root"/}: only the public headers are to be seen from $folder, not $included" ;;
       esac
     done
@@ -62,7 +79,7 @@ done
 system='unistd|fcntl|dirent|sched|spawn|poll|termios|malloc|windows|io|sys\/[a-z]*'
 for file in $(grep -lE "^ *# *include *<($system)\.h>" $(find "$root/src" -name "*.[ch]")); do
   case "$file" in
-    */src/base/platform_*.c | */src/base/child.c) ;;
+    */src/base/platform_*.c) ;;
     *) complain "${file#"$root"/}: what differs between systems stands in src/base/platform.h" ;;
   esac
 done

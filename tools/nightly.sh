@@ -50,7 +50,7 @@ pour() {
   tests/pours/run.sh build/release/bin/scree build/release/bin/inside "$shapes" "$@"
 }
 
-tools/install-packages.sh build test ci
+tools/install-packages.sh build test docs ci codes
 part "release build" build release
 part "Windows" windows
 export SCREE_SLOW=1
@@ -81,6 +81,7 @@ part "scenes: every template to its end, and killed" tests/scenes/templates.sh b
 part "scenes: flow through round openings" tests/scenes/beverloo.sh build/release/bin/scree
 part "scenes: the surface in a drum over seeds" tests/scenes/drum.sh build/release/bin/scree
 part "sanitizer build" build asan
+part "10,000 mutated files of every format, each in 20 s and 2 GB" tests/fuzz/mutated.py build/asan/bin/scree 10000 1 build/asan/mutated
 part "slow and long tests under ASan and UBSan" tools/test.sh asan -L 'slow|long'
 part "fuzzing build" build fuzz -DSCREE_FUZZ_SECONDS=1200
 part "fuzzing, twenty minutes for each reader" ctest --preset fuzz

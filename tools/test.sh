@@ -12,7 +12,7 @@ log=build/$preset/Testing/Temporary/LastTest.log
 awk '/^[0-9]+\/[0-9]+ Testing: / { test = $3; why = "" }
   /^skipped: / { why = ": " substr($0, 10) }
   /^\[  SKIPPED \] [0-9]+ test/ { next }
-  /^\[  SKIPPED \] / { name = test " (" substr($0, 15) ")"; if (!seen[name]++) skipped[++count] = name }
+  /^\[  SKIPPED \] / { sub(/^[^]]*\] */, ""); name = test " (" $0 ")"; if (!seen[name]++) skipped[++count] = name }
   /^Test Skipped/ { skipped[++count] = test why }
   END { if (count) print "\nskipped:"
     for (i = 1; i <= count; i++) print "  " skipped[i] }' "$log"

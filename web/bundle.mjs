@@ -3,7 +3,7 @@ import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import { build } from 'esbuild';
 
-export const names = ['three', 'uplot', 'meshoptimizer'];
+export const names = ['three', 'meshoptimizer'];
 
 // {script, style} of a module and all that it imports, fit to stand in a page.
 export async function bundle(entry, options = {}) {

@@ -54,6 +54,8 @@ boulders() {
   piece "$here/boulders/boulders.py" grid "$results/boulders-grid.csv" $words --every 16 --variant $shapes
   piece "$here/boulders/boulders.py" grid "$results/boulders-corner.csv" "${corner[@]}" --every 4 --variant $shapes
   piece "$here/boulders/boulders.py" rolling "$results/boulders-rolling.csv"
+  piece "$here/boulders/boulders.py" ground "$results/boulders-ground.csv" 0.15 0.2 0.25 0.3 --every 16
+  compared "$results/boulders-ground.csv" "$results/boulders-ground-compared.csv" "$here/boulders/compare.py" ground
   for part in grid corner; do
     compared "$results/boulders-$part.csv" "$results/boulders-$part-places.csv" "$here/boulders/compare.py" places
     compared "$results/boulders-$part.csv" "$results/boulders-$part-shapes.csv" "$here/boulders/compare.py" shapes
@@ -63,6 +65,7 @@ boulders() {
 drum() {
   [ -s "$results/drum-measured.csv" ] || "$here/drum/drum.py" outlines "$results/drum-measured.csv"
   table "$results/drum-acces.csv" "$here/drum/drum.py" acces
+  [ ! -s "$results/drum-30.csv" ] || table "$results/drum-held.csv" "$here/drum/drum.py" held "$results"
   piece "$here/drum/drum.py" sizes "$results/drum-sizes.csv" 6.0 4.5 3.5 --measured "$results/drum-measured.csv"
   fitted drum
   [ -s "$results/drum-fit.csv" ] || return 0
@@ -121,7 +124,7 @@ turning() {
   heaps turning 40:3,20:1 liggghts-no-dashpot
   heaps turning 40:3 liggghts-no-sliding
   compared "$results/turning.csv" "$results/turning-compared.csv" "$here/codes/turning.py" compare
-  # made by a scree built with rolling_damping_ratio 0 (src/world/constants.h)
+  # made by a scree built with rolling_damping_ratio 0 (src/world/state/constants.h)
   compared "$results/turning-bare.csv" "$results/turning-bare-compared.csv" "$here/codes/turning.py" compare
 }
 

@@ -93,7 +93,6 @@ typedef enum scree_build_part {
   SCREE_BUILD_PICTURES, /* figures as PNG, SVG and PDF (cairo) */
   SCREE_BUILD_RAYS,     /* rendered pictures (Embree) */
   SCREE_BUILD_STUDY,    /* scree_study_... (SQLite) */
-  SCREE_BUILD_IMPORT,   /* COLLADA, X3D, AMF, FBX and 3DS (assimp) */
   SCREE_BUILD_COUNT
 } scree_build_part;
 SCREE_API bool scree_build_has(scree_build_part part);

@@ -55,12 +55,22 @@ SCREE_API scree_status scree_calibration_look(scree_calibration *calibration,
 
 /* ---- What it says ---- */
 
+/* Whether the model gives what was measured, by runs at the setting nearest to it. Where it does
+ * not, the settings are no answer: there are no intervals, pairs, predictions, samples or advice.
+ */
+typedef enum scree_agreement {
+  SCREE_AGREEMENT_OPEN,
+  SCREE_AGREEMENT_YES,
+  SCREE_AGREEMENT_NO
+} scree_agreement;
+
 /* Texts belong to the result. Intervals are of `confidence`. */
 typedef struct scree_parameter_result {
-  const char *name;
+  const char *name, *unit; /* unit: "" where none was given */
   bool logarithmic;
-  double from, to; /* the range given */
-  double mean, sd, median, low, high;
+  double from, to;                    /* the range given */
+  double nearest;                     /* of the setting nearest to what was measured */
+  double mean, sd, median, low, high; /* NaN where the model does not give it */
   double narrowed; /* width of the interval beside that of the range (of logarithms on a log scale):
                       1 says nothing was learnt */
   bool identified; /* narrowed to a half at most, between both ends of the range,
@@ -80,7 +90,7 @@ typedef struct scree_trade {
 
 /* An answer: one that was measured, one on offer, one to be predicted. */
 typedef struct scree_answer_result {
-  const char *name, *experiment, *answer;
+  const char *name, *experiment, *answer, *unit; /* unit: "" where it is not known */
   bool measured, predicted;
   double value, uncertainty, scatter; /* NaN: not measured */
   double repeat_count;
@@ -88,11 +98,18 @@ typedef struct scree_answer_result {
   double single_low, single_high; /* of a single measurement */
   double noise;                   /* standard deviation of single runs */
   size_t run_count, missing;      /* runs that gave it; that gave none */
-  /* Runs at the posterior's mean, which nothing else is told from; the interval that their mean
+  /* Of all runs. */
+  double lowest, highest;
+  /* At the nearest setting, by the runs there: how far that is from what was measured, and the
+     standard deviation of such a difference if the model is right; whether it is within it. */
+  double gap, gap_sd;
+  bool met;
+  /* Runs at the nearest setting, which nothing else is told from; the interval that their mean
      was expected in, such that those of all answers hold together with `confidence`. Of a curve
      none. */
   size_t check_count;
   double check_mean, check_low, check_high;
+  double counted_low, counted_high; /* of a prediction: low and high with what the check missed */
   bool inside; /* what was measured lies in the interval of such measurements */
   /* Of a curve, else 0 points. */
   size_t point_count;
@@ -108,6 +125,23 @@ typedef struct scree_advice {
   size_t identified; /* of how many parameters it would be a half at most */
 } scree_advice;
 
+/* Another fit, without one of the measurements: whether the others agree. */
+typedef struct scree_refit {
+  const char *without;          /* the answer's name */
+  bool fits;                    /* the others agree, as the processes have it */
+  double *nearest, *low, *high; /* of every parameter: the setting, its interval where they do */
+  double *answers;              /* of every answer at that setting; NaN of a curve */
+  double value_low, value_high; /* of the one left out, where they do; else NaN */
+} scree_refit;
+
+/* A run that was made. */
+typedef struct scree_calibration_run {
+  const char *experiment;
+  uint64_t seed;
+  bool check;
+  double *values, *answers; /* of every parameter; of every answer, NaN: none, or a curve */
+} scree_calibration_run;
+
 /* The best settings of a search, and others that were tried and may be as good. */
 typedef struct scree_setting {
   double *values;         /* of every parameter */
@@ -118,7 +152,12 @@ typedef struct scree_setting {
 
 typedef struct scree_calibration_result {
   const char *title, *version, *stopped; /* why it stopped; NULL: it has not */
+  scree_origin origin;
   bool is_search, maximise;
+  scree_agreement agreement;
+  /* Squared distance of what was measured from the nearest setting, in the scatter and uncertainty
+     of both; beyond the limit the model does not give it. */
+  double misfit, misfit_limit;
   double confidence;
   uint64_t seed;
   scree_calibration_progress progress;
@@ -135,7 +174,11 @@ typedef struct scree_calibration_result {
   scree_setting *settings; /* the best first */
   size_t failure_count;
   const char **failures; /* why runs failed, each reason once */
-  void *memory;          /* private */
+  size_t refit_count;    /* of a model that does not give what was measured */
+  scree_refit *refits;
+  size_t run_count;
+  scree_calibration_run *runs; /* those that gave answers */
+  void *memory;                /* private */
 } scree_calibration_result;
 
 /* From the results so far; the same bits for the same results. Free with

@@ -142,7 +142,8 @@ SCREE_API scree_status scree_mesh_check(const scree_mesh *mesh, const scree_chec
   X(FILL_CAVITY, "filled_cavities", "small cavity filled", "small cavities filled")                \
   X(DROP_NESTED, "dropped_nested_shells", "shell inside the material of another dropped",          \
     "shells inside the material of another dropped")                                               \
-  X(INVERT_SHELL, "inverted_shells", "shell turned outside out", "shells turned outside out")
+  X(INVERT_SHELL, "inverted_shells", "shell turned outside out", "shells turned outside out")      \
+  X(CUT_HANDLE, "cut_handles", "handle cut", "handles cut")
 
 typedef enum scree_repair_action {
 #define SCREE_REPAIR_ENUM(name, key, one, several) SCREE_REPAIR_##name,
@@ -173,16 +174,15 @@ typedef struct scree_repair_options {
    * where that closes a seam, in [0, 0.01]; default 1e-4. The smallest distance that does is used,
    * never more than a quarter of a boundary edge there. */
   double seam_tolerance;
-  /* Holes of at most this many edges are filled; default 128, 0 fills none. */
-  size_t hole_edges;
-  /* Fill larger holes as well, up to 4,096 edges; default false. Fillings of more than 32 edges get
-   * vertices as dense as those round the hole, and go on with its slope (Liepa, SGP 2003), unless
-   * the surface would then meet itself, or the rim lies in a plane and the surface comes to it
-   * steeply (docs/reference/defects.md): then they are flat. */
-  bool fill_large_holes;
-  /* Give none of these fillings vertices of its own, as where flat faces with rough rims are
-   * missing; default false. */
-  bool flat_large_holes;
+  /* Holes are filled whose filling is at most this share of the area then, in [0, 1], of up to
+   * 16,384 edges; default 0.45, what is more is a sheet and no body; 0 fills none. A filling that
+   * neither is a missing flat face nor follows the rim within 4 % of the body's size gets vertices
+   * as dense as those round the hole, and goes on with its slope (Liepa, SGP 2003), unless the
+   * surface would then meet itself. */
+  double hole_share;
+  /* Give no filling vertices of its own, as where flat faces with rough rims are missing; default
+   * false. */
+  bool flat_holes;
   /* Shells with less than this share of the area of the largest are debris, in [0, 1); default
    * 0.01. Cavities are none, nor are shells that are merged with what they meet. */
   double debris_share;
@@ -190,6 +190,8 @@ typedef struct scree_repair_options {
   bool drop_cavities;
   /* Keep only the shell of the largest area (and its cavities), after merging; default false. */
   bool keep_largest;
+  /* Keep only this one of the bodies, by their areas, 1 the largest; default 0: all. */
+  size_t keep_body;
   /* Cut facets that meet others of the same shell out and fill the hole; default true. */
   bool cut_intersections;
   /* Unite shells that cross, overlap or touch: what is kept is the surface of the space where the
@@ -208,8 +210,12 @@ typedef struct scree_repair_options {
   /* Refuse where cutting and merging change the volume by more than this share of it, in [0, 1];
    * default 0.01. Dropping debris and cavities is no such change. */
   double volume_change;
-  /* Default none. Of what is left the largest shell is kept, and holes up to 4,096 edges are closed
-   * without new vertices, so that the body is flat where it stood. */
+  /* Handles round which a loop of at most so many mean edges leads are cut there, and both ends
+   * capped: slots that the scan's net has bridged, which cannot be decimated away. Default 6; 0
+   * keeps all. */
+  double handle_edges;
+  /* Default none. Of what is left the largest shell is kept, and all holes are closed without new
+   * vertices, so that the body is flat where it stood. */
   scree_cut_kind cut;
   scree_cut_plane plane;
 } scree_repair_options;
@@ -222,7 +228,14 @@ typedef struct scree_repair_report {
   /* m^3. Before: of the mesh given where its check knows it, else of the first closed surface that
    * came of it; NaN where none did. */
   double volume_before, volume_after;
-  double filled_volume;      /* of the small cavities, m^3 */
+  /* m^2, of fillings that are a hundredth of the area or more, or neither flat nor as the rim goes
+   * on; the largest share of the area of a hole that was left open for that. */
+  double guessed_area, refused_share;
+  double filled_volume;                  /* of the small cavities, m^3 */
+  double handle_length, handle_place[3]; /* of the longest loop along which a handle was cut, m */
+  /* How far the surface given and the result lie from each other, the larger of both ways, m, and
+   * where; measured where the area has changed by a thousandth, else 0. */
+  double moved_mean, moved_most, moved_place[3];
   scree_cut_plane plane;     /* at which facets were cut off, with done[SCREE_REPAIR_CUT_OFF] */
   scree_check before, after; /* after: of the result, or of what the failed attempt came to */
 } scree_repair_report;

@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* From a curve to a triangle count, by one of three rules.
+/* From a curve to a triangle count, by one of two rules.
  *
  * recommended, the default: the coarsest level that keeps a tolerance on each of several errors
  * against the scan (scree/fidelity.h). It is the same for scans of any resolution and noise, and
@@ -21,17 +21,12 @@ extern "C" {
  *
  * with S the surface area at N triangles, Nm the scan's count, S_ref the scan's area and w = 1.
  *
- * robust: the least of (worst eps_s at N or any finer level) + w N / Nm, over every level. eps_s
- * falls to zero where S crosses S_ref by accident, the worst so far does not: the paper's criterion
- * for a single scan.
- *
- * Beside them stands the criterion in the paper's form with a scale that is the cost of simulating
- * and not the scan's count, I = mean distance / D + N / SCREE_COST_COUNT: no tolerances, but unlike
- * bodies get unlike fidelities. docs/background/method.md says why, with figures. */
+ * Beside them reports show the robust level: the least of (worst eps_s at N or any finer level) +
+ * w N / Nm, over every level. eps_s falls to zero where S crosses S_ref by accident, the worst so
+ * far does not. docs/background/method.md says why, with figures. */
 
 #define SCREE_CHOICE_RULE_LIST(X)                                                                  \
   X(RECOMMENDED, "recommended")                                                                    \
-  X(ROBUST, "robust")                                                                              \
   X(PAPER, "paper")
 
 typedef enum scree_choice_rule {
@@ -43,10 +38,6 @@ typedef enum scree_choice_rule {
 
 SCREE_API const char *scree_choice_rule_name(scree_choice_rule rule);
 
-/* Triangles that cost what one more share of mean distance does: a particle of 1,500 triangles
- * costs about 1.07 times one of 100 at rest, 2.5 times in a flowing heap. */
-#define SCREE_COST_COUNT 1e5
-
 typedef enum scree_reference {
   SCREE_REFERENCE_SCAN,   /* "scan", the default: Sm, the scan's own area, as in the paper */
   SCREE_REFERENCE_SMOOTH, /* "smooth": the area on the plateau past the scanner's noise, measured on
@@ -57,7 +48,7 @@ typedef struct scree_choice_options {
   double weight;         /* w, > 0; 1: the paper, eq. 2 */
   double rp_min, rp_max; /* ends of the grid, 0 < rp_min <= rp_max <= 1; 1e-5, 1e-1: the paper */
   int per_decade;        /* grid points per factor of ten, 1..1000; 9 */
-  scree_reference reference; /* S_ref of paper, robust and plain; SCREE_REFERENCE_SCAN */
+  scree_reference reference; /* S_ref of paper and robust; SCREE_REFERENCE_SCAN */
   /* Of the recommended choice, by error: the most it may be, a share; INFINITY: any. Of those that
    * a scan has none of (NaN) nothing is asked. */
   double tolerances[SCREE_SHAPE_ERROR_COUNT];
@@ -92,23 +83,20 @@ typedef struct scree_choice_level {
   double worst_eps_s, robust_ip;          /* the monotone envelope and its criterion; with
                                              SCREE_REFERENCE_SMOOTH the levels finer than
                                              noise.level_index do not count */
-  double smooth_ip;                       /* robust_ip against the area free of noise, where the
-                                             levels finer than noise.level_index do not count */
   double errors[SCREE_SHAPE_ERROR_COUNT]; /* NaN where not measured */
 } scree_choice_level;
 
 /* A chosen level. */
 typedef struct scree_pick {
-  double rp;             /* of a choice on the grid: the grid's; else Nr / Nm */
-  size_t level_index;    /* in the curve */
-  size_t triangle_count; /* Nr */
-  double area, volume;   /* m2, m3 */
-  double eps_s, ip;      /* what the choice minimised: ip = eps_s + w Nr / Nm; for a robust choice
-                            eps_s is the worst at this or any finer level */
-  double level_eps_s;    /* eq. 1 at this level alone */
-  /* How sharp the choice is: the coarsest and the finest level whose ip is at most SCREE_SIMILAR_IP
-   * times this one's, of the trace (of the paper's choice: of the grid) and this level itself. Not
-   * every level between need be as good. */
+  double rp;                     /* of a choice on the grid: the grid's; else Nr / Nm */
+  size_t level_index;            /* in the curve */
+  size_t triangle_count;         /* Nr */
+  double area, volume;           /* m2, m3 */
+  double eps_s, ip;              /* eq. 1 and 2 */
+  double worst_eps_s, robust_ip; /* as of a level; NaN where not minimised over finer levels */
+  /* How sharp the choice is: the coarsest and the finest level whose ip (of the robust choice:
+   * robust_ip) is at most SCREE_SIMILAR_IP times this one's, of the trace (of the paper's choice:
+   * of the grid) and this level itself. Not every level between need be as good. */
   size_t fewest, most;
 } scree_pick;
 
@@ -127,8 +115,9 @@ typedef struct scree_noise {
 /* What is known of one object. */
 typedef struct scree_choice {
   size_t triangle_count, floor_count; /* Nm, and the fewest triangles reached */
-  double area, volume;                /* Sm, Vm: m2, m3 */
-  double reference_area;              /* S_ref, m2 */
+  int order;             /* of the curve, which level indices are of (scree_curve_reorder) */
+  double area, volume;   /* Sm, Vm: m2, m3 */
+  double reference_area; /* S_ref, m2 */
   scree_noise noise;
   scree_choice_level *levels; /* the grid, Rp rising */
   size_t level_count;
@@ -137,23 +126,23 @@ typedef struct scree_choice {
                  Rp, from rp_min to 1, rising; equal neighbours occur at the floor */
   size_t trace_count;
   scree_pick paper; /* least ip on the grid; ties: fewest triangles, then the Rp nearest to Nr/Nm */
-  scree_pick robust; /* least robust_ip of all levels; ties: fewest triangles */
-  scree_pick plain;  /* least ip of all levels, for diagnosis: often an accident */
-  /* The error there is below a tenth of the worst at finer levels. */
-  bool paper_is_accident, plain_is_accident;
-  scree_pick smooth; /* robust with the area free of noise; robust where none was found */
-  /* What robust and paper would choose were the scan's spacing half as large (Nm four times as
-   * large) and the curve the same, which it will not be: an estimate. */
-  size_t finer_count, paper_finer_count;
+  bool paper_is_accident; /* the error there is below a tenth of the worst at finer levels */
+  scree_pick robust;      /* least robust_ip of all levels; ties: fewest triangles */
+  /* What paper would choose were the scan's spacing half as large (Nm four times as large) and the
+   * curve the same, which it will not be: an estimate. */
+  size_t paper_finer_count;
   size_t best[SCREE_SHAPE_ERROR_COUNT]; /* grid index of the least error + w Nr/Nm; level_count
                                            where a level not measured could have less */
   /* Errors of levels, those of the grid among them; NULL with area_only or without the scan. Then
    * what follows is 0, and `recommended` is `robust`. */
   scree_fidelity *fidelity;
-  scree_pick recommended;       /* ip: the largest error over its tolerance there, below 1 */
-  size_t recommended_row;       /* in fidelity */
-  scree_shape_error limited_by; /* the error that has it */
-  scree_pick cost;              /* least I = mean distance / D + N / SCREE_COST_COUNT; ip: I */
+  scree_pick recommended;
+  double largest_over_tolerance; /* of the recommended level's errors, below 1 */
+  size_t recommended_row;        /* in fidelity */
+  /* What the next coarser level is refused for, and how much of it that has; NaN: there is none,
+   * and limited_by is what is nearest to its tolerance. */
+  scree_shape_error limited_by;
+  double limit_beyond;
 } scree_choice;
 
 /* What was asked of one error of this object, a share: a length is over its size D. */
@@ -182,20 +171,18 @@ typedef struct scree_set_choice {
   size_t level_count;
   scree_set_pick paper; /* least mean ip on the grid; ties: the smaller Rp, but of several that give
                            the same levels the one nearest to Nr/Nm */
-  scree_set_pick robust;              /* least mean robust_ip on the trace; ties likewise */
-  scree_set_pick smooth;              /* the same against the areas free of noise */
-  double paper_spread, robust_spread; /* largest over smallest Rp chosen by the objects alone */
-  /* How many times the triangles they would have at half the spacing, the curves staying the same
-   */
-  double paper_growth, robust_growth;
+  double paper_spread;  /* largest over smallest Rp chosen by the objects alone */
+  double paper_growth;  /* how many times the triangles at half the spacing, the curves the same */
 } scree_set_choice;
 
-/* Chooses from the curve of one object. scan is the mesh that the curve was built from; it may be
- * NULL, which is as area_only. options NULL means the defaults, progress may be NULL.
- * Errors: SCREE_BAD_MESH where the scan has no area, SCREE_BAD_ARGUMENT, SCREE_OUT_OF_MEMORY,
- * SCREE_CANCELLED. Cost: with area_only one pass over the levels, some ms for 400,000 of them; else
- * 0.2 to 2 times that of the curve, the more the smaller the scan. */
-SCREE_API scree_status scree_choose(const scree_curve *curve, const scree_mesh *scan,
+/* Chooses from the curve of one object: the recommended level is the coarsest that any of the
+ * curve's orders has, and the curve is left in that order, which all level indices are of. scan is
+ * the mesh that the curve was built from; it may be NULL, which is as area_only. options NULL means
+ * the defaults, progress may be NULL. Errors: SCREE_BAD_MESH where the scan has no area,
+ * SCREE_BAD_ARGUMENT, SCREE_OUT_OF_MEMORY, SCREE_CANCELLED. Cost: with area_only one pass over the
+ * levels, some ms for 400,000 of them; else 0.2 to 2 times that of the curve, the more the smaller
+ * the scan. */
+SCREE_API scree_status scree_choose(scree_curve *curve, const scree_mesh *scan,
                                     const scree_choice_options *options,
                                     const scree_progress *progress, scree_choice *choice,
                                     scree_error *error);

@@ -103,6 +103,7 @@ SCREE_API scree_status scree_height_field_scan(const scree_mesh *scan, double ce
 typedef struct scree_outline {
   size_t count;
   double *x, *z; /* m; x rises */
+  double ruler;  /* m: of a picture, the length of what lay beside the heap as a ruler does; or 0 */
 } scree_outline;
 SCREE_API void scree_outline_free(scree_outline *outline);
 /* Of a CSV: x, z, a point a line, at least three; a head `x [mm], z [mm]` says the unit, else it is
@@ -112,8 +113,9 @@ SCREE_API scree_status scree_outline_read(const char *path, double unit_m, scree
 /* Of a picture (rows from the top, three bytes a pixel) whose pixels are `pixel` m wide: the
  * largest piece that is unlike most of the uppermost row, dark or bright by the threshold of Otsu
  * (1979). The ground is the silhouette's top at both edges of the picture, or its lower side where
- * it does not reach them; the picture may be tilted. x is from the heap's axis. SCREE_BAD_FILE
- * where greys are no silhouette, or the heap is cut off. */
+ * it does not reach them; the picture may be tilted. A bar beside the heap or at its foot is a
+ * ruler, and left out. x is from the heap's axis. SCREE_BAD_FILE where greys are no silhouette, the
+ * heap is cut off, or something else lies beside it. */
 SCREE_API scree_status scree_outline_trace(const uint8_t *rgb, size_t width, size_t height,
                                            double pixel, scree_outline *outline,
                                            scree_error *error);

@@ -176,6 +176,10 @@ SCREE_API scree_status scree_surface_distance(const scree_surface *a, const scre
 SCREE_API void scree_surface_distances(const scree_surface *surface, const double *points,
                                        size_t point_count, double *distances);
 
+/* The same, negative inside, of a closed, outward surface. Cost: with three rays a point. */
+SCREE_API void scree_surface_signed_distances(const scree_surface *surface, const double *points,
+                                              size_t point_count, double *distances);
+
 /* The distance of every vertex of the mesh from the surface of the reference; distances holds
  * vertex_count values, m. What a colour map shows. */
 SCREE_API scree_status scree_mesh_distance_field(const scree_mesh *mesh,

@@ -37,6 +37,9 @@ typedef struct scree_read_options {
   size_t max_bytes;
   /* Use unit_m also where scree's own comment in the file names another; default false. */
   bool ignore_comment_unit;
+  /* Read one of the parts that the file names, counted from 1: nodes of a glTF with a mesh, items
+   * of a 3MF's build, in their order. Default 0: all; files of other formats are read whole. */
+  size_t part;
 } scree_read_options;
 
 SCREE_API scree_read_options scree_default_read_options(void);
@@ -46,16 +49,17 @@ typedef struct scree_scan {
   scree_mesh mesh;         /* metres; vertices and triangles in canonical order (scree_mesh_weld) */
   scree_checksum checksum; /* of the file's bytes, and of those beside it that it names */
   size_t byte_count;
-  double unit_m;           /* metres per unit of the file: of the options, or what it states */
-  bool states_unit;        /* the file does */
-  double comment_unit_m;   /* the unit that scree's own comment in the file names, m; 0: none */
-  char format[32];         /* for example "STL binary", "3MF, inch" (with the unit it states) */
-  size_t facet_count;      /* triangles in the file; a polygon counts as its triangles */
-  size_t degenerate_count; /* of these, dropped: fewer than three different corners */
-  size_t solid_count;      /* `solid`s of an ASCII STL; else 1 */
-  size_t
-      ignored_byte_count; /* bytes after the last facet of a binary STL, fewer than a facet has */
-  char warning[192];      /* in what it contradicts itself or what is left out; "": nothing */
+  double unit_m;             /* metres per unit of the file: of the options, or what it states */
+  bool states_unit;          /* the file does */
+  double comment_unit_m;     /* the unit that scree's own comment in the file names, m; 0: none */
+  char format[32];           /* for example "STL binary", "3MF, inch" (with the unit it states) */
+  size_t facet_count;        /* triangles in the file; a polygon counts as its triangles */
+  size_t degenerate_count;   /* of these, dropped: fewer than three different corners */
+  size_t solid_count;        /* `solid`s of an ASCII STL; else 1 */
+  size_t part_count;         /* as of scree_read_options; 0: its format names none */
+  char part_name[64];        /* of the one that was asked for */
+  size_t ignored_byte_count; /* of an STL: bytes behind the last facet, and attributes */
+  char warning[192];         /* in what it contradicts itself or what is left out; "": nothing */
 } scree_scan;
 
 SCREE_API void scree_scan_free(scree_scan *scan);
@@ -64,14 +68,12 @@ SCREE_API void scree_scan_free(scree_scan *scan);
  * STL (binary, also big-endian, with colours or a header that begins with `solid`; ASCII), PLY
  * (ASCII, both byte orders, polygons, triangle strips), OBJ (polygons, v/vt/vn, negative indices),
  * OFF (also with colours, normals, texture coordinates), 3MF, glTF (binary or text, with data
- * inside or in files beside it); in a build with assimp also COLLADA, X3D, AMF, FBX and 3DS,
- * imported in a child process with limits on memory and time (docs/reference/mesh-files.md).
- * options NULL means the defaults.
+ * inside or in files beside it). options NULL means the defaults.
  *
  * Sizes in the file are believed only where its length allows them, so memory stays within a fixed
- * multiple of the file's length (of its triangles for 3MF and glTF). Errors: SCREE_IO, also where
- * no child process can be made; SCREE_LIMIT above max_bytes or 2^32 - 2 vertices, or above a limit
- * of the child; SCREE_UNSUPPORTED for a format known but not read; SCREE_BAD_FILE with the line or
+ * multiple of the file's length (of its triangles for 3MF and glTF). Errors: SCREE_IO;
+ * SCREE_LIMIT above max_bytes or 2^32 - 2 vertices; SCREE_UNSUPPORTED for a format known but not
+ * read, as COLLADA, X3D, AMF, FBX and 3DS; SCREE_BAD_FILE with the line or
  * byte, the value and the limit; SCREE_BAD_MESH where every facet is degenerate;
  * SCREE_OUT_OF_MEMORY. Free *scan with scree_scan_free. */
 SCREE_API scree_status scree_scan_read(const char *path, const scree_read_options *options,
@@ -114,6 +116,11 @@ typedef struct scree_wall_mending {
  * has an area, with a place. Cost n log n. Free *wall with scree_mesh_free. */
 SCREE_API scree_status scree_wall_mend(const scree_mesh *soup, scree_mesh *wall,
                                        scree_wall_mending *mending, scree_error *error);
+/* A sheet `thickness` m thick, half of it to each side of an open, consistently wound surface. What
+ * bends more sharply than it is thick may meet itself, as a particle's check tells. SCREE_BAD_MESH
+ * where more than two facets share an edge or neighbours are wound unlike. Free *solid. */
+SCREE_API scree_status scree_mesh_thicken(const scree_mesh *sheet, double thickness,
+                                          scree_mesh *solid, scree_error *error);
 /* Brings a mesh into canonical order by welding equal positions: what reading gives back of a
  * lossless file of it. A mesh that was read stays as it is. A particle's forces add up in the order
  * of its mesh, so that runs of the same bits need the same order. On failure *mesh is untouched. */

@@ -103,6 +103,8 @@ typedef struct scree_shape_spec {
   double unit_m;            /* m per unit of the files; 0: as they say, else mm */
   double resolution, noise; /* m, of a sample; 0, of noise NaN: as usual */
   uint64_t sample_seed;
+  double thickness;    /* m; the file's surface is open, and of a sheet (scree_mesh_thicken) */
+  size_t part;         /* of the file (scree_read_options), or of its bodies; 0: all */
   bool no_repair;      /* refuse a scan that is no closed surface */
   scree_method method; /* of decimation */
   /* Of scans, samples and boxes: "all" or "scan", "recommended" (as `scree choose` does), a
@@ -122,8 +124,10 @@ typedef struct scree_shape_made {
   scree_particle *particle;                   /* to be freed */
   size_t scan_triangle_count, triangle_count; /* 0: of spheres */
   double scan_volume;                         /* m3, before decimation */
-  double recommended;      /* the Rp chosen, where it was asked for or taken; else NaN */
-  bool repaired;           /* it was no closed surface */
+  double recommended; /* the Rp chosen, where it was asked for or taken; else NaN */
+  bool repaired;      /* it was no closed surface */
+  size_t part_count;  /* of the file, by parts that it names or else by separate bodies */
+  char part_name[64];
   scree_checksum checksum; /* of the file; zero: of none */
 } scree_shape_made;
 

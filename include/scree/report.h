@@ -4,6 +4,7 @@
 
 #include "scree/choice.h"
 #include "scree/clump.h"
+#include "scree/fracture.h"
 #include "scree/measure.h"
 #include "scree/particle.h"
 #include "scree/scene.h"
@@ -36,7 +37,7 @@ typedef struct scree_render_options {
   size_t columns;       /* of cells; 0 (default): chosen from the shape of the picture */
   double azimuth_deg;   /* of the camera about the vertical z; default 35 */
   double elevation_deg; /* of the camera above the horizontal; default 25 */
-  size_t samples;       /* per pixel; default 24 */
+  size_t samples;       /* per pixel, fewer where the first agree; default 8 */
   bool edges;           /* draw the triangles' edges; default false */
   bool wire;            /* only the edges, seen through; default false */
   bool ground;          /* a white floor under the lowest point, with shadows; default true */
@@ -247,6 +248,52 @@ SCREE_API scree_status scree_world_picture(const scree_world *world,
                                            const scree_render_options *options,
                                            const scree_progress *progress, scree_image *image,
                                            scree_error *error);
+
+/* The answer of a choice as `scree choose` begins with it: the first sentence, lengths in mm.
+ * options as it was made with. */
+enum { SCREE_CHOICE_SENTENCE_BYTES = 512 };
+SCREE_API void scree_choice_sentence(const scree_choice *choice,
+                                     const scree_choice_options *options,
+                                     char text[SCREE_CHOICE_SENTENCE_BYTES]);
+
+/* ---- Particles in other codes ---- */
+
+/* The name of a code; NULL behind the last. */
+SCREE_API const char *scree_code_name(size_t index);
+/* Its index; that behind the last where there is none. */
+SCREE_API size_t scree_code_find(const char *name);
+/* Whether it takes such particles; spheres are clumps. */
+SCREE_API bool scree_code_takes(size_t code, scree_particle_kind kind);
+/* What a surface becomes for it: where it takes both, that with which it computes best. */
+SCREE_API scree_particle_kind scree_code_kind(size_t code);
+
+typedef struct scree_code_write_options {
+  const char *name; /* of the files; default particle. Borrowed */
+  double density;   /* kg/m3, default 2000 */
+  size_t count;     /* of particles that the scripts let fall; default 50 */
+  bool overwrite;
+  /* Pa, of the scripts; default 0: so soft that a body that falls from the script's height presses
+   * itself a tenth of its radius into the floor, at least 1e6. */
+  double young;
+  scree_convex_options convex; /* for codes that take convex pieces */
+  const scree_progress *progress;
+} scree_code_write_options;
+SCREE_API scree_code_write_options scree_default_code_write_options(void);
+
+/* Of codes that take convex pieces: how many, and what they cost, as in scree_convex; else 0. */
+typedef struct scree_code_written {
+  size_t piece_count;
+  double volume_error, inertia_error;
+} scree_code_written;
+
+/* Writes a particle into an existing folder as the code reads it, in SI units: its shape about the
+ * centre of mass along the principal axes, its mass and inertia (EDEM and MFiX work these out for
+ * themselves), and scripts with made-up materials that let it fall, alone and in a heap. In file
+ * names, characters other than letters, digits, points, - and _ become _. result may be NULL.
+ * SCREE_BAD_ARGUMENT where the code does not take such a particle. */
+SCREE_API scree_status scree_code_write(const scree_particle *particle, size_t code,
+                                        const scree_code_write_options *options, const char *folder,
+                                        scree_code_written *result, scree_error *error);
 
 #ifdef __cplusplus
 }

@@ -116,9 +116,9 @@ SCREE_API const scree_world *scree_scene_view(const scree_scene *scene);
  * room and stay in. */
 typedef struct scree_scene_forecast {
   double step_count, body_count, body_steps;
-  double seconds;     /* on one core, of 1e-6 s a body and step, 3e-6 of meshes: to a factor of 3 */
-  double frame_count; /* of output.frames */
-  double frame_bytes; /* of one, at most */
+  double seconds; /* on one core, by what its steps so far cost, before them by the usual cost */
+  double frame_count;         /* of output.frames */
+  double frame_bytes;         /* of one, at most */
   double frame_interval;      /* s: output.frames */
   bool frames_are_instances;  /* output.bodies: scree_scene_bodies_vtp_write, not surfaces */
   char time_step_reason[256]; /* of its worst pair of shapes, as of scree_world_time_step */
@@ -128,7 +128,7 @@ SCREE_API void scree_scene_foretell(const scree_scene *scene, scree_scene_foreca
  * that is not given, a mesh in another unit, an inlet without room, frames by the million. To be
  * called with 0, 1, 2,
  * ... until it is false. */
-enum { SCREE_REMARK = 600 };
+enum { SCREE_REMARK = 1000 };
 SCREE_API bool scree_scene_remark(const scree_scene *scene, size_t index, char text[SCREE_REMARK]);
 
 /* What cannot be read off it, and why, as a sentence: an index of mixing whose cells hold too few
@@ -161,6 +161,16 @@ typedef struct scree_scene_book {
   double ledger; /* energy unaccounted for, as a share of all that was turned over */
 } scree_scene_book;
 SCREE_API void scree_scene_get_book(const scree_scene *scene, scree_scene_book *book);
+
+/* Two materials of which bodies were pressed beyond their overlap limit, by scree_world_hardening.
+ * To be called with 0, 1, 2, ... until it is false. Names: NULL where the scene names none. */
+typedef struct scree_scene_hardening {
+  const char *material, *other;
+  uint64_t count;
+  double deepest, stiffness_missing;
+} scree_scene_hardening;
+SCREE_API bool scree_scene_get_hardening(const scree_scene *scene, size_t index,
+                                         scree_scene_hardening *hardening);
 
 /* The same of one inlet, of one outlet; the outlet past the last is the domain's rim. */
 SCREE_API size_t scree_scene_inlet_count(const scree_scene *scene, size_t index, double *mass,
@@ -248,21 +258,21 @@ SCREE_API size_t scree_scene_wall_cells(const scree_scene *scene, size_t wall);
 SCREE_API bool scree_scene_wall_map(const scree_scene *scene, size_t wall, scree_wall_map map,
                                     double *values);
 
-/* How long bodies stayed that have left, as a `residence` sensor counts them: a histogram by class.
- */
-typedef struct scree_residence {
-  size_t class_count, bin_count;
-  double from, until; /* s: the bins' ends, equally wide; NaN where none has left */
-  double *counts;     /* of class c in bin b the one at c bin_count + b */
-} scree_residence;
-/* The sensor of that index, and its classes; NULL past the last. */
-SCREE_API const char *scree_scene_residence_name(const scree_scene *scene, size_t index);
-SCREE_API const char *scree_scene_residence_class(const scree_scene *scene, size_t index,
-                                                  size_t class_index);
-SCREE_API scree_status scree_scene_measure_residence(const scree_scene *scene, size_t index,
-                                                     scree_residence *residence,
-                                                     scree_error *error);
-SCREE_API void scree_residence_free(scree_residence *residence);
+/* What a sensor has besides columns: rows of numbers under names. */
+typedef struct scree_scene_table {
+  size_t row_count, column_count;
+  const char **names, **units; /* of columns; "" for a pure number */
+  double *values;              /* row by row */
+  const char **texts;          /* likewise; NULL: it is a number. The scene's own. */
+  bool is_long;                /* a row for each body or triangle */
+} scree_scene_table;
+/* "stay.histogram" of a sensor `stay`, in a run's folder sensor-stay-histogram.csv; NULL past the
+ * last. */
+SCREE_API const char *scree_scene_table_name(const scree_scene *scene, size_t index);
+/* As it stands; to be freed, before the scene. Cost: one pass over what the sensor has. */
+SCREE_API scree_status scree_scene_make_table(const scree_scene *scene, size_t index,
+                                              scree_scene_table *table, scree_error *error);
+SCREE_API void scree_scene_table_free(scree_scene_table *table);
 
 /* ---- Piles ---- */
 
@@ -320,7 +330,7 @@ typedef struct scree_scene_state {
   const scree_scene *scene;
   double time, fraction;   /* s; of the simulated time */
   double steps_per_second; /* over the last seconds on the clock; NaN at first */
-  double seconds_left;     /* on the clock, at that speed; NaN at first */
+  double seconds_left;     /* on the clock, by what the steps cost so far; NaN at first */
 } scree_scene_state;
 
 typedef struct scree_scene_job {

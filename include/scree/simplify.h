@@ -106,6 +106,17 @@ SCREE_API size_t scree_curve_find(const scree_curve *curve, size_t target_triang
 SCREE_API scree_status scree_curve_mesh(const scree_curve *curve, size_t level_index,
                                         scree_mesh *mesh, scree_error *error);
 
+/* Below some 7,000 triangles a curve may go on in several orders of collapse, all as good as each
+ * other by their costs, which differ by 2 per cent at most: scanning again would change them by
+ * more. Order 0 is the one it was built in; all levels below change with it. scree_choose
+ * leaves the one in which the fewest triangles keep the tolerances. SCREE_BAD_ARGUMENT where order
+ * is not below the count, which is 1 with SCREE_METHOD_QECD. The first other order costs what that
+ * part of the decimation did. */
+enum { SCREE_ORDER_COUNT = 3 };
+SCREE_API int scree_curve_order_count(const scree_curve *curve);
+SCREE_API int scree_curve_order(const scree_curve *curve);
+SCREE_API scree_status scree_curve_reorder(scree_curve *curve, int order, scree_error *error);
+
 /* The same level with its vertices moved to where its surface is nearer to the mesh given (the mean
  * distance, by area, falls by some per cent; docs/background/decimation.md). Triangles are those of
  * scree_curve_mesh, and so is the volume of a closed level, to rounding; area and distances are

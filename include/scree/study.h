@@ -75,7 +75,7 @@ SCREE_API void scree_study_free(scree_study *study);
 typedef struct scree_study_run {
   size_t point, replicate;
   uint64_t seed;
-  const char *label;  /* the point's factors and values, "rp 0.001, contact.friction 0.3" */
+  const char *label;  /* the point's factors and values, "rp 0.001, friction 0.3" */
   const char *rp;     /* a number, "scan", "spheres" or "clump:20" */
   const char *shapes; /* names, joined by + */
   const char *key;    /* names the run by what its numbers follow from; NULL before
@@ -144,18 +144,13 @@ typedef struct scree_point_result {
   const char *pile; /* key of its first run done: the heap to look at; NULL: none yet */
   double rp_value;  /* 1 for the scan, NaN for spheres and clumps */
   scree_study_counts counts;
-  size_t heap_count;           /* runs done that have an angle */
-  double triangle_count;       /* mean over the particles; 0 for spheres and clumps */
-  scree_summary angle_deg;     /* of repose, by the study's way, of the runs with a heap */
-  scree_summary seconds;       /* processor time of a run */
-  scree_summary height;        /* m */
-  scree_summary run_out;       /* m */
-  scree_summary coordination;  /* */
-  scree_summary packing;       /* fraction */
-  scree_summary left;          /* share of the particles that fell off the disc */
-  scree_summary peak_rotation; /* rad/s: the greatest mean rotation after the lift began */
-  scree_summary *answers;      /* of a scene, as many as the study has */
-  const char **values;         /* of the factors, as many as the study has */
+  size_t heap_count;       /* runs done that have an angle */
+  double triangle_count;   /* mean over the particles; 0 for spheres and clumps */
+  scree_summary angle_deg; /* of repose, by the study's way, of the runs with a heap */
+  scree_summary seconds;   /* processor time of a run */
+  scree_summary *numbers;  /* of its heaps, as the result's `numbers` are called */
+  scree_summary *answers;  /* of a scene, as many as the study has */
+  const char **values;     /* of the factors, as many as the study has */
   /* Mean over the replicates of the particles' mean |omega|, against the time since the cylinder
    * began to rise, with one standard deviation either way. A run that ended still counts with its
    * last value, another one no longer. */
@@ -198,9 +193,30 @@ typedef struct scree_failure {
   size_t replicate;
 } scree_failure;
 
+/* A file that a result is of. */
+typedef struct scree_input {
+  const char *path;
+  scree_checksum checksum; /* of its bytes; of a built-in sample, of its name and options */
+} scree_input;
+
+/* By which command a result was made, when, on what and of which files. */
+typedef struct scree_origin {
+  const char *command;   /* the caller may set it; NULL: not known */
+  const char *machine;   /* of the last run; NULL: none has ended */
+  double started, ended; /* of the runs that have ended, s since 1970; 0: none has */
+  size_t input_count;
+  scree_input *inputs;
+} scree_origin;
+
 typedef struct scree_study_result {
   const char *name, *design, *method, *angle, *version;
+  scree_origin origin;
   size_t replicate_count, point_count, factor_count;
+  /* What is told of the heaps of a scene with a pile besides the angle: columns of the runs' table,
+   * "left", the share of the particles that fell off the disc, and "peak_rotation", rad/s: the
+   * greatest mean rotation after the lift began. */
+  const char **numbers;
+  size_t number_count;
   const char **answers; /* of a scene: their names */
   const char **units;   /* of the answers; "" of pure numbers */
   const char **factors; /* their keys */

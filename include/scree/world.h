@@ -20,6 +20,10 @@ typedef enum scree_law {
                       clump touches anything; two meshes touch by the linear law */
 } scree_law;
 
+/* What mu_r b F limits of rolling resistance: the whole couple; or its spring alone, to which a
+ * dashpot is added until it is there, as in LIGGGHTS's EPSD: heaps of spheres are 6 % steeper. */
+typedef enum scree_rolling { SCREE_ROLLING_COUPLE, SCREE_ROLLING_EPSD } scree_rolling;
+
 typedef struct scree_world_options {
   double gravity[3];        /* m/s2; default 0 0 -9.81 */
   scree_law law;            /* default linear (Katagiri and Koyanaka 2020) */
@@ -32,10 +36,11 @@ typedef struct scree_world_options {
   double size;             /* m, the L of K = E L; 0 (default): each pair its smaller body's */
   double smoothing;        /* l0 over L; default 4e-5, 2 um at 50 mm: overlaps this close share */
   double sharing;          /* kappa, in [0, 0.5]; default 0.1: deeper contacts share more widely */
-  double overlap_limit;    /* over L; default 0.1, 5 mm at 50 mm: beyond it meshes of which edges
-                              lie in each other part (depenetration_count), else the run stops with
-                              SCREE_DIVERGED. Walls may be thinner: a point keeps to the side that
-                              it came from */
+  scree_rolling rolling;   /* default SCREE_ROLLING_COUPLE */
+  double overlap_limit;    /* over L; default 0.1, 5 mm at 50 mm: beyond it springs harden
+                              (scree_world_get_hardening); at four times that meshes part
+                              (depenetration_count), else the run stops with SCREE_DIVERGED. Walls
+                              may be thinner: a point keeps to the side that it came from */
   double skin;             /* over L; default 0.02: reach of the candidate lists. Speed only */
   double floor_height;     /* m; bodies whose centre falls below are removed; default -infinity */
   double period[3];        /* m, along x, y and z: what leaves at one side enters at the other; 0
@@ -53,7 +58,7 @@ typedef struct scree_material {
   double density;          /* kg/m3; default 2000 (not in the paper) */
   double restitution;      /* in (0, 1]; default 0.3 (the paper) */
   double friction;         /* at least 0; default 0.5 (the paper) */
-  double rolling_friction; /* of spheres, at least 0; default 0: rolls freely */
+  double rolling_friction; /* at least 0; default 0: rolls freely */
   double surface_energy;   /* J/m2, at least 0; default 0: does not stick */
   double poisson;          /* in [0, 0.5]; default 0.3; of SCREE_LAW_HERTZ */
 } scree_material;
@@ -77,8 +82,9 @@ SCREE_API scree_status scree_world_set_contact(scree_world *world, size_t materi
 /* What two materials do to each other. */
 typedef struct scree_material_contact {
   double restitution, friction; /* as of scree_material */
-  double rolling_friction; /* mu_r: a sphere resists rolling with a torque of up to mu_r R F, 1/R
-                              the sum of both spheres' 1/r (docs/background/physics.md) */
+  double rolling_friction; /* mu_r: bodies resist rolling with a torque of up to mu_r b F, 1/b the
+                              sum of 1/b of both, how far a centre is from where they press, along
+                              the normal, r of a sphere (docs/background/physics.md) */
   double pull_off;         /* N with which any two that touch hold each other; default 0 */
   double surface_energy;   /* J/m2, w: holds with 3/2 pi w R besides, the pull-off force of Johnson,
                               Kendall and Roberts 1971; 1/R the sum of both sides' 1/r, where r of
@@ -241,9 +247,9 @@ SCREE_API void scree_world_remove_body(scree_world *world, size_t index);
 SCREE_API scree_status scree_world_set_backend(scree_world *world, const char *name,
                                                scree_error *error);
 /* Advances by step_count steps. SCREE_DIVERGED, with step, body and cause in the message, when the
- * run leaves the model's range: an overlap beyond the limit, a body moving more than that in one
- * step or two past each other by more than the thinner's thinnest wall, bodies put into each other
- * by more than their roundings, a value that is not finite. The world then
+ * run leaves the model's range: two are pressed through each other, a body moves by more than the
+ * overlap limit in one step or two past each other by more than the thinner's thinnest wall, bodies
+ * put into each other by more than their roundings, a value that is not finite. The world then
  * stands as after the last good step, readable, and refuses to go on. Same bits for every number of
  * threads. Once warm, a step allocates nothing. About 1 to 2 us per body and step at rest on one
  * core. */
@@ -260,6 +266,7 @@ typedef struct scree_observation {
   double kinetic, rotational, potential, elastic; /* J; potential of gravity, zero at the origin */
   double dissipated_dashpot,
       dissipated_friction;                 /* J since the start; hysteresis counts as dashpot */
+  double fracture;                         /* J that breaking joints freed since the start */
   double wall_work;                        /* J done on bodies by moving walls since the start */
   double applied_work;                     /* J by forces of scree_world_set_body_force */
   double momentum[3], angular_momentum[3]; /* N s; N m s about the origin */
@@ -268,12 +275,26 @@ typedef struct scree_observation {
   double highest_speed;                    /* m/s */
   double coordination;                     /* mean number of touching bodies and walls */
   size_t body_count, removed_count;
+  size_t broken_joints;         /* since the start */
   size_t pair_count;            /* touching pairs of bodies, and of body and wall */
   size_t depenetrating_pairs;   /* of them, those that held each other and are being moved apart */
   size_t contact_count;         /* touching features */
   uint64_t depenetration_count; /* how often two bodies that held each other had to be moved apart
                              since the start (docs/background/physics.md); 0 in most runs */
+  uint64_t hardened_count;      /* how often two bodies were pressed beyond the overlap limit, where
+                             their spring hardens, since the start */
+  double stiffness_missing; /* by this factor stiffer no spring would have hardened; 0: none did */
 } scree_observation;
+/* How often bodies of two materials were pressed beyond their overlap limit, where their spring
+ * hardens, since the start; the largest overlap over the limit; and the factor by which stiffer
+ * springs would have kept them within: by what impacts bore of energy, or lasting contacts of
+ * force. */
+typedef struct scree_world_hardening {
+  uint64_t count;
+  double deepest, stiffness_missing;
+} scree_world_hardening;
+SCREE_API scree_world_hardening scree_world_get_hardening(const scree_world *world,
+                                                          size_t material_a, size_t material_b);
 /* Cost one pass over the bodies. */
 SCREE_API void scree_world_observe(const scree_world *world, scree_observation *observation);
 

@@ -5,20 +5,34 @@ import base64
 import html as _html
 import pathlib
 import tempfile
+from typing import Any
 
 from ._library import Error, lib
-from ._values import Record, rows_html, set_fields
+from ._values import Fields, rows_html, set_fields
 
 
-def html(thing, draw, facts: Record) -> str:
+class Picture:
+    """A PNG that a notebook shows; data are its bytes."""
+
+    def __init__(self, draw: Any, width: int, height: int, path: Any = None) -> None:
+        """draw(options) answers an image."""
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "picture.png"
+            lib.image_write_png(draw({"width": width, "height": height}), file, False)
+            self.data = file.read_bytes()
+        if path is not None:
+            pathlib.Path(path).write_bytes(self.data)
+
+    def _repr_png_(self) -> bytes:
+        return self.data
+
+
+def html(thing, draw, facts: Fields) -> str:
     """draw(options) answers an image."""
-    options = {"width": 400, "height": 300, "samples": 8}
     picture = ""
     try:
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "picture.png"
-            lib.image_write_png(draw(options), path, False)
-            picture = f'<img alt="" src="data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}">'
+        data = Picture(draw, 400, 300).data
+        picture = f'<img alt="" src="data:image/png;base64,{base64.b64encode(data).decode()}">'
     except Error as refused:  # nothing to draw, or a library without pictures
         picture = f"<p>{_html.escape(str(refused))}</p>"
     return f"<div><p>{_html.escape(repr(thing))}</p>{picture}{rows_html(vars(facts))}</div>"

@@ -18,7 +18,7 @@ class Page(type(pathlib.Path())):  # type: ignore[misc]
         return f'<iframe title="{html.escape(self.name, quote=True)}" width="100%" height="700" srcdoc="{page}"></iframe>'
 
 
-def report(folders: str | os.PathLike | Sequence[str | os.PathLike], path: str | os.PathLike, overwrite: bool = False) -> Page:
+def report(folders: str | os.PathLike | Sequence[str | os.PathLike], path: str | os.PathLike, overwrite: bool = True) -> Page:
     """One page for the browser of folders with results (`scree report`): its path, which a notebook shows as the page."""
     folders = [folders] if isinstance(folders, (str, os.PathLike)) else list(folders)
     names = (ctypes.c_char_p * max(1, len(folders)))(*[os.fsencode(f) for f in folders])

@@ -11,7 +11,7 @@ from . import _picture
 from ._library import Callback, Error, lib
 from ._mesh import Progress, Shared
 from ._saved import Saved
-from ._values import Record, column, record, set_fields, table
+from ._values import Record, column, record, set_fields, table, text_of
 from ._world import Particle, World, of_each
 
 
@@ -79,13 +79,13 @@ class Scene(Saved):
         made._file = made._store = None
         return made._take(lib.scene_load(path))
 
-    def save(self, path: str | os.PathLike, overwrite: bool = False) -> None:
+    def save(self, path: str | os.PathLike, overwrite: bool = True) -> None:
         lib.scene_save(self, path, overwrite)
 
     def __reduce__(self) -> tuple:
         return (*super().__reduce__(), {"_hooks": [list(hook) for hook in self._hooks]})
 
-    def complete(self, folder: str | os.PathLike | None = None, resume: bool = False, overwrite: bool = False,
+    def complete(self, folder: str | os.PathLike | None = None, resume: bool = False, overwrite: bool = True,
                  progress: Progress = None) -> Scene:
         """Runs the scene from its beginning to its end as `scree run -o` does; this is then how it stands. The folder gets
         checkpoint.scree, series.csv, motion.scree, last.scree, and at the end scene.yaml and result.json, of which
@@ -117,7 +117,7 @@ class Scene(Saved):
             self.write_json(pathlib.Path(folder) / "result.json", overwrite=True)
         return self
 
-    def write_json(self, path: str | os.PathLike, overwrite: bool = False) -> None:
+    def write_json(self, path: str | os.PathLike, overwrite: bool = True) -> None:
         """Why it ended, what it cost, piles, shapes and every column (docs/reference/formats.md): with this as result.json
         and its text as scene.yaml in its folder, `report` shows the scene."""
         entry = lib.type("scene_entry")(scene=self._c.pointer, seconds=self.costs().wall_seconds)
@@ -132,6 +132,17 @@ class Scene(Saved):
         body_count, packing_fraction, size. settings: cell, sectors, band_low, band_high, for the scene's own."""
         return {name: record(lib.scene_measure_pile(self, i, set_fields(lib.scene_pile_settings(self, i), settings, "pile")))
                 for i, name in enumerate(lib.names("scene_pile_name", self))}
+
+    def tables(self) -> dict[str, dict[str, Any]]:
+        """What its sensors have besides columns, by name, as "stay.histogram": columns of numbers or names by their names."""
+        found = {}
+        for i, name in enumerate(lib.names("scene_table_name", self)):
+            made = lib.scene_make_table(self, i)
+            width = made.column_count
+            values, texts = ((cells[:made.row_count * width] if cells else []) for cells in (made.values, made.texts))
+            found[name] = {text_of(made.names[k]): [text_of(text) for text in texts[k::width]] if any(texts[k::width])
+                           else column(values[k::width]) for k in range(width)}
+        return found
 
     @property
     def phase(self) -> str | None:

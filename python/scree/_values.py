@@ -2,9 +2,11 @@
 from __future__ import annotations
 
 import ctypes
+import difflib
 import html
 import operator
 import types
+from typing import TYPE_CHECKING, Any
 
 from ._headers import Enum
 
@@ -17,11 +19,24 @@ WHOLE_KINDS = (ctypes.c_int, ctypes.c_size_t, ctypes.c_uint32, ctypes.c_uint64)
 UNITS = {"m": 1, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "km": 1e3, "inch": 0.0254, "in": 0.0254, "ft": 0.3048}
 
 
-class Record(types.SimpleNamespace):
-    """Values by name; vars() makes a dictionary of it. A notebook shows it as a table."""
+if TYPE_CHECKING:
+    class Fields:
+        """Values by name, each with its type."""
 
-    def _repr_html_(self) -> str:
-        return rows_html(vars(self))
+        def __init__(self, **values: Any) -> None: ...
+
+    class Record(Fields):
+        def __getattr__(self, name: str) -> Any: ...
+else:
+    class Record(types.SimpleNamespace):
+        """Values by name; vars() makes a dictionary of it. A notebook shows it as a table."""
+
+        def _repr_html_(self) -> str:
+            return rows_html(vars(self))
+
+    Fields = Record
+
+KINDS: dict[str, Any] = {}  # the classes of _records.py by the C struct
 
 
 def rows_html(values):
@@ -56,7 +71,7 @@ def whole(value, what, kind=ctypes.c_size_t):
     bits, signed = 8 * ctypes.sizeof(kind), kind(-1).value < 0
     low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if signed else (0, (1 << bits) - 1)
     if not low <= number <= high:
-        raise ValueError(f"{what} is {number}; from {low} to {high}")
+        raise ValueError(f"{what} is {number}; at " + (f"least {low}" if number < low else f"most {high}"))
     return number
 
 
@@ -73,8 +88,14 @@ def vector(values, what, kind):
 
 def index_of(word, words, what):
     if word not in words:
-        raise ValueError(f"{what} '{word}' is none of {', '.join(words)}")
+        near = difflib.get_close_matches(str(word), words, 1)
+        raise ValueError(f"{what} '{word}' is none of {', '.join(words)}" + (f": do you mean {near[0]}?" if near else ""))
     return words.index(word)
+
+
+def given(**values):
+    """Those that are not None."""
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def word_of(kind, word, what):
@@ -148,7 +169,7 @@ def record(struct):
         elif kind is ctypes.c_void_p or isinstance(value, (ctypes._Pointer, ctypes._CFuncPtr)):
             continue
         result[name] = value
-    return Record(**result)
+    return KINDS.get(type(struct).__name__, Record)(**result)
 
 
 def set_fields(struct, values, what):

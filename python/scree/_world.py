@@ -7,9 +7,10 @@ import math
 import os
 from typing import Any, Sequence
 
-from . import _picture
+from . import _mesh, _picture
 from ._library import Handle, lib
-from ._mesh import Mesh, Progress, Shared
+from ._mesh import Mesh, Progress, Shared, write_code
+from ._records import CodeWritten, MaterialContact, Observation, ParticleMeasures
 from ._saved import Saved
 from ._values import Record, c_array, column, metres, record, set_fields, table
 
@@ -41,7 +42,13 @@ class Particle(Shared):
         inertia. A mesh of about 2,000 triangles has all the detail that spheres show."""
         return cls._of(lib.clump_fit(mesh, count, progress))
 
-    def measure(self) -> Record:
+    def export(self, code: str, folder: str | os.PathLike | None = None, *, density: float = 2000, particles: int = 50,
+               pieces: int = 64, young: float = 0, overwrite: bool = True) -> CodeWritten:
+        """Files and scripts for another code, as Mesh.export; by default into the folder particle-CODE."""
+        return write_code(self, code, folder, None, density=density, particles=particles, pieces=pieces, young=young,
+                          overwrite=overwrite)
+
+    def measure(self) -> ParticleMeasures:
         """The fields of scree_particle_measures: volume, size, centre, orientation, inertia, ..."""
         return record(lib.particle_measure(self))
 
@@ -59,6 +66,9 @@ class Particle(Shared):
 
     def _repr_html_(self) -> str:
         return _picture.html(self, lambda options: lib.world_picture(_world_of(self), options, None), self.measure())
+
+
+_mesh.Particle = Particle  # type: ignore[misc]  # which stands before this file
 
 
 class World(Saved):
@@ -83,7 +93,7 @@ class World(Saved):
         """From a checkpoint of save()."""
         return cls._of(lib.world_load(path))
 
-    def save(self, path: str | os.PathLike, overwrite: bool = False) -> None:
+    def save(self, path: str | os.PathLike, overwrite: bool = True) -> None:
         lib.world_save(self, path, overwrite)
 
     def add_material(self, wall: bool = False, **values: Any) -> int:
@@ -95,7 +105,7 @@ class World(Saved):
         """Between two materials."""
         lib.world_set_contact(self, a, b, restitution, friction)
 
-    def set_pair(self, a: int, b: int, **values: float) -> Record:
+    def set_pair(self, a: int, b: int, **values: float) -> MaterialContact:
         """Between two materials: restitution, friction, rolling_friction, pull_off (N), surface_energy (J/m2); what is
         not given stays. All of them."""
         contact = set_fields(lib.world_get_pair(self, a, b), values, "pair")
@@ -141,6 +151,25 @@ class World(Saved):
     def add_body(self, particle: Particle, material: int, **state: Any) -> int:
         """Its index. position (m), orientation (w x y z), velocity (m/s), angular_velocity (rad/s)."""
         return lib.world_add_body(self, particle, material, state)
+
+    def add_joint(self, a: int, b: int | None = None, face: Record | None = None, young: float = 0, **values: Any) -> int:
+        """Its index. Holds two bodies, or one where it is (b None): by a face of Mesh.fracture and Young's modulus (Pa), and
+        the fields of scree_joint, as tension, cohesion, friction, toughness, damping."""
+        joint = lib.default_joint()
+        if face is not None:
+            lib.joint_of_face(vars(face), young, joint)
+        ends = {"a": self._body(a), "b": ctypes.c_size_t(-1).value if b is None else self._body(b)}
+        return lib.world_add_joint(self, set_fields(joint, {**values, **ends}, "joint"))
+
+    def joints(self) -> list[Record]:
+        """a, b, state, mode, position, force, moment, load (1: it breaks), energy, fracture (J), broke_at (s)."""
+        return [record(lib.world_observe_joint(self, k)) for k in range(lib.world_joint_count(self))]
+
+    def fragments(self) -> Any:
+        """By body: the number of what hangs together."""
+        numbers = (ctypes.c_size_t * max(1, len(self)))()
+        lib.world_fragments(self, numbers)
+        return column(numbers[:len(self)])
 
     def _wall(self, index):
         return _below(index, lib.world_wall_count(self), "wall")
@@ -230,7 +259,7 @@ class World(Saved):
         checksum = lib.world_hash(self)
         return f"{checksum.high:016x}{checksum.low:016x}"
 
-    def observe(self) -> Record:
+    def observe(self) -> Observation:
         """Energies, momenta, coordination, counts: the fields of scree_observation."""
         return record(lib.world_observe(self))
 
@@ -245,11 +274,11 @@ class World(Saved):
         lib.world_visit_contacts(self, visit, None)
         return found
 
-    def write_vtp(self, path: str | os.PathLike, view: str = "surfaces", overwrite: bool = False) -> None:
+    def write_vtp(self, path: str | os.PathLike, view: str = "surfaces", overwrite: bool = True) -> None:
         """For ParaView: surfaces, points, contacts or walls."""
         lib.world_vtp_write(self, view, path, overwrite)
 
-    def export(self, folder: str | os.PathLike, unit: str | float = "mm", overwrite: bool = False) -> None:
+    def export(self, folder: str | os.PathLike, unit: str | float = "mm", overwrite: bool = True) -> None:
         """pile.json, bodies.csv and an STL per shape."""
         lib.world_export(self, {"unit_m": metres(unit), "overwrite": overwrite}, folder)
 
@@ -283,7 +312,7 @@ def _particle_in(world):
 
 
 def write_pvd(path: str | os.PathLike, files: Sequence[str | os.PathLike], times: Sequence[float],
-              overwrite: bool = False) -> None:
+              overwrite: bool = True) -> None:
     """A series for ParaView: .pvd, or .vtp.series by the path's ending."""
     names = (ctypes.c_char_p * max(1, len(files)))(*[os.fsencode(f) for f in files])
     when, count = c_array(ctypes.c_double, times)

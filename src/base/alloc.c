@@ -104,9 +104,8 @@ void *scree_alloc(size_t count, size_t size) {
   return block;
 }
 
-static void touch_pages(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
-  scree_pages_touch((char *)context + begin, end - begin);
+static void touch_pages(void *context, scree_block block) {
+  scree_pages_touch((char *)context + block.begin, block.end - block.begin);
 }
 
 void scree_populate(void *block, size_t size) {
@@ -147,6 +146,10 @@ void scree_discard_tail(void *block, size_t size) {
   uintptr_t first = (address + size + mask) & ~mask, last = (address + end) & ~mask;
   if (hook == default_reallocate && size < end && first < last)
     scree_pages_drop((char *)block + (first - address), last - first);
+}
+
+bool scree_memory_failed_at_limit(void) {
+  return atomic_load(&failed_at_limit);
 }
 
 /* 307200 as "300 KiB" */

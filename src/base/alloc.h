@@ -32,6 +32,8 @@ size_t scree_allocation_count(void);
 
 /* What scree_set_memory_limit set. */
 size_t scree_memory_limit(void);
+/* Whether it was the limit, and not the system, that refused memory last. */
+bool scree_memory_failed_at_limit(void);
 
 /* A variable whose end is its block's: the function is called with its address then. */
 #define SCREE_CLEANUP(function) __attribute__((cleanup(function)))

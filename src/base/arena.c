@@ -34,6 +34,13 @@ void *scree_arena_take(scree_arena *arena, size_t count, size_t size) {
   return block;
 }
 
+const char *scree_arena_text(scree_arena *arena, const char *text) {
+  size_t size = strlen(text) + 1;
+  char *copy = scree_arena_take(arena, size, 1);
+  if (copy) memcpy(copy, text, size);
+  return copy;
+}
+
 void scree_arena_free(scree_arena *arena) {
   while (arena->newest) {
     struct scree_arena_chunk *before = arena->newest->before;

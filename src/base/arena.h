@@ -16,5 +16,7 @@ void *scree_arena_take(scree_arena *arena, size_t count, size_t size);
     SCREE_TRY_BLOCK(pointer, scree_arena_take((arena), (count), sizeof *(pointer)), count, error); \
     memset((pointer), 0, (size_t)(count) * sizeof *(pointer));                                     \
   } while (0)
+/* A copy of a text; NULL when memory is out. */
+const char *scree_arena_text(scree_arena *arena, const char *text);
 /* Gives everything back; the arena is as new. */
 void scree_arena_free(scree_arena *arena);

@@ -1,12 +1,18 @@
 /* A growing array in three fields, for plain types:
  *
- *   typedef struct { edge *items; size_t count, capacity; } edge_list;
- *   if (!SCREE_PUSH(&list, value)) return scree_fail_memory(...);
+ *   SCREE_LIST(edge) list = {0};
+ *   SCREE_TRY_PUSH(&list, error, value);
  *
  * One declared with SCREE_CLEANUP(scree_free_at) is freed with its block. */
 #pragma once
 
 #include "base/alloc.h"
+
+#define SCREE_LIST(type)                                                                           \
+  struct {                                                                                         \
+    type *items;                                                                                   \
+    size_t count, capacity;                                                                        \
+  }
 
 /* Makes room for at least `needed` items, or for half as many again as there was; false when memory
  * is out (content stays). */
@@ -27,3 +33,11 @@ static inline bool scree_array_reserve(void **items, size_t *capacity, size_t ne
 #define SCREE_PUSH(list, ...)                                                                      \
   (SCREE_RESERVE(list, (list)->count + 1) ? ((list)->items[(list)->count++] = (__VA_ARGS__), true) \
                                           : false)
+
+/* Adds an item; where memory is out the function ends with `error` filled. */
+#define SCREE_TRY_PUSH(list, error, ...)                                                           \
+  do {                                                                                             \
+    if (SCREE_PUSH(list, __VA_ARGS__)) break;                                                      \
+    scree_tell_memory((error), sizeof *(list)->items, NULL, #list);                                \
+    return SCREE_OUT_OF_MEMORY;                                                                    \
+  } while (0)

@@ -21,13 +21,6 @@ static inline double scree_box_distance2(const scree_box *box, vec3 p) {
          z = scree_outside(box->low.z, box->high.z, p.z);
   return x * x + y * y + z * z;
 }
-/* How far apart two boxes are, squared. */
-static inline double scree_boxes_apart2(const scree_box *a, const scree_box *b) {
-  double x = scree_larger(scree_larger(a->low.x - b->high.x, b->low.x - a->high.x), 0),
-         y = scree_larger(scree_larger(a->low.y - b->high.y, b->low.y - a->high.y), 0),
-         z = scree_larger(scree_larger(a->low.z - b->high.z, b->low.z - a->high.z), 0);
-  return x * x + y * y + z * z;
-}
 /* That holds nothing. */
 static inline scree_box scree_box_empty(void) {
   return (scree_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};

@@ -1,11 +1,11 @@
 #include "base/curve_file.h"
 
+#include "base/array.h"
 #include "base/file.h"
-#include "base/number.h"
+#include "base/rows.h"
 #include "base/unit.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { LARGEST_FILE = 16 << 20 };
 
@@ -15,76 +15,59 @@ void scree_curve_file_free(scree_curve_file *c) {
   *c = (scree_curve_file){0};
 }
 
-/* The next number of a line, behind what parts them; NULL: there is none. */
-static const char *next_number(const char *at, const char *end, double *value) {
-  while (at < end && strchr(" \t,;", *at)) at++;
-  return scree_number_parse(at, end, value);
+/* Names with units; how many columns before the first of the two: one that counts the rows. */
+static size_t read_names(const scree_text_rows *rows, scree_curve_file *c) {
+  size_t first = rows->count == 3 && scree_cell_is_index(rows->cells[0]);
+  for (size_t k = 0; k < 2 && first + k < rows->count; k++)
+    snprintf(c->units[k], sizeof c->units[k], "%s", scree_cell_unit(rows->cells[first + k]));
+  return first;
 }
 
-/* What stands in brackets of either kind, one after the other. */
-static void read_units(const char *line, const char *end, scree_curve_file *c) {
-  for (int k = 0; k < 2; k++) {
-    const char *open = line + strcspn(line, "[(\r\n");
-    const char *shut = open + strcspn(open, "])\r\n");
-    if (shut >= end) return;
-    snprintf(c->units[k], sizeof c->units[k], "%.*s", (int)(shut - open) - 1, open + 1);
-    line = shut + 1;
-  }
-}
-
-static scree_status read_line(const char *line, const char *end, size_t number, bool *begun,
-                              scree_curve_file *c, const char *path, scree_error *error) {
-  if (line == end || *line == '#') return SCREE_OK;
-  const char *at = next_number(line, end, &c->x[c->count]);
-  if (at) at = next_number(at, end, &c->y[c->count]);
-  if (!at && *begun)
-    return scree_fail(error, SCREE_BAD_FILE, "%s, line %zu: needs two numbers", path, number);
-  *begun = true;
-  if (!at) {
-    read_units(line, end, c);
-    return SCREE_OK;
-  }
-  double more;
-  if (next_number(at, end, &more))
-    return scree_fail(error, SCREE_BAD_FILE, "%s, line %zu: has more than two numbers", path,
-                      number);
-  double x = c->x[c->count], y = c->y[c->count];
-  if (!isfinite(x) || !isfinite(y))
-    return scree_fail(error, SCREE_BAD_FILE, "%s, line %zu: a number that is not finite", path,
-                      number);
-  if (c->count > 0 && !(x > c->x[c->count - 1]))
-    return scree_fail(error, SCREE_BAD_FILE, "%s, line %zu: %g does not come after %g", path,
-                      number, x, c->x[c->count - 1]);
+static scree_status read_row(const scree_text_rows *rows, size_t first, size_t capacity[2],
+                             scree_curve_file *c) {
+  if (rows->count < first + 2) return scree_rows_fail(rows, "needs two numbers");
+  if (rows->count > first + 2) return scree_rows_fail(rows, "has more than two numbers");
+  if (!scree_array_reserve((void **)&c->x, &capacity[0], c->count + 1, sizeof *c->x) ||
+      !scree_array_reserve((void **)&c->y, &capacity[1], c->count + 1, sizeof *c->y))
+    return scree_fail_memory(rows->error, c->count * sizeof *c->x, rows->name);
+  double *x = &c->x[c->count], *y = &c->y[c->count];
+  SCREE_TRY(scree_rows_number(rows, first, "the first of two numbers", x));
+  SCREE_TRY(scree_rows_number(rows, first + 1, "the second of two numbers", y));
+  if (!isfinite(*x) || !isfinite(*y)) return scree_rows_fail(rows, "a number that is not finite");
+  if (c->count > 0 && !(*x > x[-1]))
+    return scree_rows_fail(rows, "%g does not come after %g", *x, x[-1]);
   c->count++;
   return SCREE_OK;
 }
 
+static scree_status read_rows(const char *path, char *bytes, size_t size, scree_curve_file *c,
+                              scree_error *error) {
+  scree_text_rows rows;
+  size_t first = 0, capacity[2] = {0};
+  SCREE_TRY(scree_rows_open(&rows, path, bytes, size, error));
+  for (bool there, begun = false;; begun = true) {
+    SCREE_TRY(scree_rows_next_row(&rows, &there));
+    if (!there) break;
+    if (!begun && !scree_rows_has_number(&rows, 0) && !scree_rows_has_number(&rows, 1))
+      first = read_names(&rows, c);
+    else
+      SCREE_TRY(read_row(&rows, first, capacity, c));
+  }
+  if (c->count >= 3) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_FILE, "%s: a curve needs three points, not %zu", path,
+                    c->count);
+}
+
 scree_status scree_curve_file_read(const char *path, scree_curve_file *columns,
                                    scree_error *error) {
-  char *bytes;
-  size_t size, number = 0;
-  scree_curve_file c = {0};
-  bool begun = false;
-  scree_status status = scree_file_read(path, LARGEST_FILE, &bytes, &size, error);
-  if (status != SCREE_OK) return status;
-  c.x = scree_alloc(size / 2 + 1, sizeof *c.x);
-  c.y = scree_alloc(size / 2 + 1, sizeof *c.y);
-  if (!c.x || !c.y) status = scree_fail_memory(error, size, path);
-  for (const char *line = bytes; status == SCREE_OK && *line;) {
-    const char *end = line + strcspn(line, "\r\n");
-    number++;
-    status = read_line(line, end, number, &begun, &c, path, error);
-    line = *end == '\r' && end[1] == '\n' ? end + 2 : *end ? end + 1 : end;
-  }
-  scree_free(bytes);
-  if (status == SCREE_OK && c.count < 3)
-    status =
-        scree_fail(error, SCREE_BAD_FILE, "%s: a curve needs three points, not %zu", path, c.count);
-  if (status == SCREE_OK)
-    *columns = c;
-  else
-    scree_curve_file_free(&c);
-  return status;
+  SCREE_CLEANUP(scree_free_at) char *bytes = NULL;
+  SCREE_CLEANUP(scree_curve_file_free) scree_curve_file c = {0};
+  size_t size;
+  SCREE_TRY(scree_file_read(path, LARGEST_FILE, &bytes, &size, error));
+  SCREE_TRY(read_rows(path, bytes, size, &c, error));
+  *columns = c;
+  c = (scree_curve_file){0};
+  return SCREE_OK;
 }
 
 scree_status scree_curve_file_convert(scree_curve_file *c, int column, const char *wanted,

@@ -9,8 +9,8 @@ typedef struct scree_curve_file {
   char units[2][24]; /* as the head says, `x [mm], z [mm]`; "" where it says none */
 } scree_curve_file;
 
-/* The first line may be a head, lines that begin with # are none; x rises. SCREE_BAD_FILE with the
- * line. Free with scree_curve_file_free. */
+/* A table (base/rows.h) whose first row may be a head; x rises. SCREE_BAD_FILE with the line. Free
+ * with scree_curve_file_free. */
 scree_status scree_curve_file_read(const char *path, scree_curve_file *columns, scree_error *error);
 void scree_curve_file_free(scree_curve_file *columns);
 /* Brings a column, 0 or 1, into `wanted`; a column without a unit is in units of `otherwise`. */

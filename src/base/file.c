@@ -1,11 +1,13 @@
 #include "base/file.h"
 
 #include "base/parallel.h"
+#include "base/path.h"
 #include "base/platform.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <string.h>
+#define XXH_INLINE_ALL /* no library to link */
 #include <xxhash.h>
 
 enum {
@@ -104,10 +106,10 @@ static part read_range(int fd, char *bytes, size_t begin, size_t end) {
   return p;
 }
 
-static void read_part(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void read_part(void *context, scree_block block) {
   const regular_file *file = context;
-  file->parts[block] = read_range(file->fd, file->buffer + begin, begin, end);
+  file->parts[block.index] =
+      read_range(file->fd, file->buffer + block.begin, block.begin, block.end);
 }
 
 /* Reads a regular file of known size into one block; in parts on all threads, for half of the time
@@ -197,6 +199,43 @@ scree_status scree_file_read_judged(const char *path, size_t max_bytes, scree_fi
   SCREE_TRY(read_file(path, max_bytes, &end, bytes, byte_count, error));
   *whole_count = end.whole_count ? end.whole_count : *byte_count;
   return SCREE_OK;
+}
+
+/* Why a name does not lead down from a folder, on any system; NULL: it does. */
+static const char *leads_elsewhere(const char *name) {
+  for (const char *p = name; *p; p++)
+    if ((unsigned char)*p < ' ' || *p == '\\' || *p == ':' || *p == 127)
+      return "it holds a character that no such name has";
+  if (*name == '/') return "it begins at the root";
+  for (const char *p = name; p; p = strchr(p, '/') ? strchr(p, '/') + 1 : NULL)
+    if (!strncmp(p, "..", 2) && (p[2] == '/' || !p[2])) return "it leads out of the folder";
+  return *name ? NULL : "it is empty";
+}
+
+scree_status scree_file_read_beneath(const char *from, const char *name, size_t byte_count,
+                                     char **bytes, scree_error *error) {
+  char folder[SCREE_PATH_BYTES];
+  const char *reason = leads_elsewhere(name), *slash = strrchr(from, '/');
+  int length = !slash ? 0 : slash == from ? 1 : (int)(slash - from);
+  snprintf(folder, sizeof folder, "%.*s", length, from);
+  int fd = reason ? -1 : scree_open_beneath(folder, name);
+  if (fd < 0 && !reason)
+    reason = errno == ELOOP    ? "it is a link"
+             : errno == EXDEV  ? "it leads out of the folder"
+             : errno == EINVAL ? "it is no file"
+                               : strerror(errno);
+  if (fd < 0)
+    return scree_fail(error, SCREE_BAD_FILE,
+                      "%s: only files beside this one are read: '%.100s': %s", from, name, reason);
+  scree_path_info info = {.byte_count = 0};
+  size_t count;
+  scree_status status =
+      scree_descriptor_look(fd, &info) && info.byte_count >= byte_count
+          ? read_regular(fd, name, byte_count, bytes, &count, error)
+          : scree_fail(error, SCREE_BAD_FILE, "%s: '%.100s' should have %zu bytes, and has %zu",
+                       from, name, byte_count, (size_t)info.byte_count);
+  scree_close(fd);
+  return status;
 }
 
 bool scree_stream_open(const char *path, scree_stream *stream) {
@@ -291,7 +330,7 @@ static bool copy_bytes(int from, int to) {
   }
 }
 
-/* Of a nameless file, as one that has a name beside the target. */
+/* Copies a nameless file to one that has a name beside the target. */
 static bool copy_beside(const scree_output *output) {
   int from = scree_nameless_read(fileno(output->stream));
   if (from < 0) return false;
@@ -392,8 +431,8 @@ scree_status scree_output_check(const char *path, bool overwrite, scree_error *e
   return status;
 }
 
-/* Of an errno; of 0, where an earlier write that failed left only the stream's mark, what is
- * likely.
+/* The reason for an errno; for 0, where an earlier write that failed left only the stream's mark,
+ * what is likely.
  */
 static const char *reason_to_tell(int reason) {
   return reason ? strerror(reason) : "the disk is full, or a limit is reached";

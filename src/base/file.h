@@ -12,6 +12,12 @@
 scree_status scree_file_read(const char *path, size_t max_bytes, char **bytes, size_t *byte_count,
                              scree_error *error);
 
+/* Reads the first byte_count bytes of a regular file that the file `from` names: `name`, decoded,
+ * from the folder of `from` down, with '/' between folders on every system. Nothing else is opened:
+ * no link, no device or pipe, no other folder. A shorter file is SCREE_BAD_FILE. */
+scree_status scree_file_read_beneath(const char *from, const char *name, size_t byte_count,
+                                     char **bytes, scree_error *error);
+
 /* How many bytes of a file of whole_count bytes (SCREE_NO_END: a stream) are worth reading, by its
  * first SCREE_JUDGED_BYTES, or all where it has fewer; SIZE_MAX: all that come. */
 typedef size_t scree_file_judge(const char *bytes, size_t byte_count, size_t whole_count);
@@ -37,7 +43,7 @@ typedef struct scree_stream {
 bool scree_stream_open(const char *path, scree_stream *stream);
 /* The next bytes; false where there are not as many, or they cannot be read. */
 bool scree_stream_read(scree_stream *stream, void *bytes, size_t byte_count);
-/* Of what was read. */
+/* The checksum of what was read. */
 scree_checksum scree_stream_checksum(const scree_stream *stream);
 void scree_stream_close(scree_stream *stream);
 

@@ -33,7 +33,7 @@ static double power_of_two(int n) {
 
 /* ---- sine and cosine ---- */
 
-/* Of r + rest, |r| at most pi/4. */
+/* The sine of r + rest, |r| at most pi/4. */
 static double sine_near_0(double r, double rest) {
   double z = r * r, v = z * r,
          p = 8.33333333332248946124e-03 +
@@ -98,8 +98,8 @@ double scree_cos(double x) {
 
 /* ---- arc tangent and arc cosine ---- */
 
-/* Of a number that is not negative: by the tangent of the difference to 0, 1/2, pi/4, 3/2 or
- * pi/2. */
+/* The arc tangent of a number that is not negative: by the tangent of the difference to 0, 1/2,
+ * pi/4, 3/2 or pi/2. */
 static double arc_tangent(double x) {
   double base = 0, rest = 0;
   if (x >= 2.4375) {
@@ -219,7 +219,7 @@ static two divide(two a, double b) {
   return (two){quotient, error};
 }
 
-/* Of |x| up to 1.2: the series of x/64, squared six times. */
+/* The exponential of |x| up to 1.2: the series of x/64, squared six times. */
 static two exponential(two x) {
   two small = divide(x, 64), sum = {1, 0};
   for (int k = 14; k > 0; k--) sum = add((two){1, 0}, divide(multiply(small, sum), k));

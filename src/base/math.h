@@ -19,10 +19,11 @@ double scree_log(double x);
 double scree_cbrt(double x);
 /* 10^x for |x| up to 22: the double nearest to the true value, but for one x in some 1e12. */
 double scree_power_of_ten(double x);
-/* Of 1e-22 to 1e22, within two ulps; exact for powers of ten. */
+/* The decimal logarithm of 1e-22 to 1e22, within two ulps; exact for powers of ten. */
 double scree_log10(double x);
 
-/* Of two equal ones, which zeros of either sign are, the first; a number rather than NaN. */
+/* The smaller; of two equal ones, which zeros of either sign are, the first; a number rather than
+ * NaN. */
 static inline double scree_min(double a, double b) {
   return b < a || a != a ? b : a;
 }

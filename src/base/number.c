@@ -42,7 +42,7 @@ static double round_by_library(const char *first, const char *end, int64_t scale
   return strtod(text, NULL);
 }
 
-/* Of w 10^power, the digits' value where they are few. */
+/* The nearest number to w 10^power, where the digits are few. */
 static bool round_exactly(uint64_t w, int64_t power, double *value) {
   static const double tens[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
@@ -181,5 +181,16 @@ const char *scree_count_text(size_t count, char text[SCREE_NUMBER_SIZE]) {
     text[used++] = digits[i];
   }
   text[used] = 0;
+  return text;
+}
+
+const char *scree_seconds_text(double seconds, char text[SCREE_NUMBER_SIZE]) {
+  double minutes = seconds / 60;
+  if (minutes < 1.5)
+    snprintf(text, SCREE_NUMBER_SIZE, "%.0f s", fmax(1, seconds));
+  else if (minutes < 90)
+    snprintf(text, SCREE_NUMBER_SIZE, "%.0f minutes", minutes);
+  else
+    snprintf(text, SCREE_NUMBER_SIZE, "%.3g hours", minutes / 60);
   return text;
 }

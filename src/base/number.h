@@ -29,3 +29,5 @@ const char *scree_rp_text(double rp, char text[SCREE_NUMBER_SIZE]);
 const char *scree_percent_text(double share, char text[SCREE_NUMBER_SIZE]);
 /* 12345 as 12,345 */
 const char *scree_count_text(size_t count, char text[SCREE_NUMBER_SIZE]);
+/* 12 s, 7 minutes, 3.5 hours */
+const char *scree_seconds_text(double seconds, char text[SCREE_NUMBER_SIZE]);

@@ -93,14 +93,16 @@ void scree_leave_alone(void) {
   pthread_mutex_unlock(&pool.alone);
 }
 
+static scree_block block_of(size_t index, size_t count, size_t size, int worker) {
+  size_t begin = index * size;
+  return (scree_block){begin, count - begin < size ? count : begin + size, index, worker};
+}
+
 static void take_blocks(int worker) {
   size_t block;
   inside_loop = true;
-  while ((block = atomic_fetch_add_explicit(&pool.next, 1, memory_order_relaxed)) < pool.blocks) {
-    size_t begin = block * pool.block_size,
-           end = pool.count - begin < pool.block_size ? pool.count : begin + pool.block_size;
-    pool.body(pool.context, begin, end, block, worker);
-  }
+  while ((block = atomic_fetch_add_explicit(&pool.next, 1, memory_order_relaxed)) < pool.blocks)
+    pool.body(pool.context, block_of(block, pool.count, pool.block_size, worker));
   inside_loop = false;
 }
 
@@ -199,15 +201,6 @@ static void close_loop(void) {
   pthread_mutex_unlock(&pool.lock);
 }
 
-static void run_serially(size_t count, size_t block_size, size_t blocks, scree_block_function *body,
-                         void *context) {
-  for (size_t block = 0; block < blocks; block++) {
-    size_t begin = block * block_size,
-           end = count - begin < block_size ? count : begin + block_size;
-    body(context, begin, end, block, 0);
-  }
-}
-
 void scree_parallel_for(size_t count, size_t block_size, scree_block_function *body,
                         void *context) {
   size_t blocks = scree_block_count(count, block_size);
@@ -226,7 +219,7 @@ void scree_parallel_for(size_t count, size_t block_size, scree_block_function *b
     close_loop();
     pthread_mutex_unlock(&pool.caller);
   } else { /* one thread, or the pool works for another one */
-    run_serially(count, block_size, blocks, body, context);
+    for (size_t i = 0; i < blocks; i++) body(context, block_of(i, count, block_size, 0));
   }
 }
 
@@ -253,13 +246,12 @@ static void tell_end(tasking *t) {
   pthread_cond_broadcast(&t->ended);
 }
 
-static void do_tasks(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)begin, (void)end, (void)block;
+static void do_tasks(void *context, scree_block block) {
   tasking *t = context;
   size_t task;
   pthread_mutex_lock(&t->lock);
   for (;;) {
-    if (t->tasks->take(t->context, worker, &task)) {
+    if (t->tasks->take(t->context, block.worker, &task)) {
       t->running++;
       pthread_mutex_unlock(&t->lock);
       t->tasks->run(t->context, task);

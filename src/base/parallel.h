@@ -6,9 +6,12 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Handles items [begin, end) of block `block`; worker is in [0, scree_worker_count()). */
-typedef void scree_block_function(void *context, size_t begin, size_t end, size_t block,
-                                  int worker);
+/* Items [begin, end), the block of that index; worker is in [0, scree_worker_count()). */
+typedef struct scree_block {
+  size_t begin, end, index;
+  int worker;
+} scree_block;
+typedef void scree_block_function(void *context, scree_block block);
 
 /* Calls body for every block of block_size items in [0, count), on all threads, in any order;
  * returns when all are done. Blocks are handed out as workers come free. */

@@ -8,7 +8,6 @@ static const struct {
     [SCREE_BUILD_PICTURES] = {SCREE_HAS_PICTURES, "figures as PNG, SVG and PDF (cairo)"},
     [SCREE_BUILD_RAYS] = {SCREE_HAS_RAYS, "rendered pictures (Embree)"},
     [SCREE_BUILD_STUDY] = {SCREE_HAS_STUDY, "studies of many runs (SQLite)"},
-    [SCREE_BUILD_IMPORT] = {SCREE_HAS_IMPORT, "COLLADA, X3D, AMF, FBX and 3DS (assimp)"},
 };
 
 bool scree_build_has(scree_build_part part) {

@@ -79,10 +79,16 @@ bool scree_path_full(const char *path, char *full, size_t size);
 
 /* A descriptor of bytes, closed in child processes; -1. */
 int scree_open_read(const char *path);
-/* Of what is there already. */
+/* A regular file below a folder ("": the current one), by a path of names with '/' between them, of
+ * which none may be a link, "..", or a place of the system's own. */
+int scree_open_beneath(const char *folder, const char *path);
+/* Opens what is there already. */
 int scree_open_write(const char *path);
 /* Fails with EEXIST where something has that name. */
 int scree_open_new(const char *path);
+/* A file, made where it is missing, that nobody else may open so until it is closed or its process
+ * ends: EWOULDBLOCK. */
+int scree_lock_open(const char *path);
 /* As fopen. */
 FILE *scree_open_stream(const char *path, const char *mode);
 /* As read, write, close. */
@@ -152,9 +158,11 @@ void scree_machine_identity(char text[SCREE_SYSTEM_TEXT]);
 uint64_t scree_random_number(void);
 
 /* Starts a program with its words, the first its name (NULL: this program again, under the name
- * "scree"), the last NULL. What it prints goes to the file `output`, made new; NULL: where ours
- * goes. 0, or errno's number. */
-int scree_process_run(const char *const *words, const char *output, long *process);
+ * "scree"), the last NULL. What it prints goes to the file `output`, made new, what it prints of
+ * errors to `errors`, and it leads a group of all that it starts; NULL, both: where ours goes. 0,
+ * or errno's number. */
+int scree_process_run(const char *const *words, const char *output, const char *errors,
+                      long *process);
 typedef enum scree_process_state {
   SCREE_PROCESS_RUNS,
   SCREE_PROCESS_ENDED,  /* by itself: *code is its exit code */
@@ -162,8 +170,9 @@ typedef enum scree_process_state {
 } scree_process_state;
 /* Once a process has ended, it is forgotten. */
 scree_process_state scree_process_look(long process, bool wait, int *code);
-/* Asks it to end. */
+/* Asks it to end, and all of its group; ends all of its group, where it leads one. */
 void scree_process_stop(long process);
+void scree_process_kill(long process);
 /* This program's own file; false where it is not known. */
 bool scree_program_path(char *path, size_t size);
 

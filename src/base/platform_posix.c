@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/utsname.h>
 #include <time.h>
@@ -115,11 +116,51 @@ bool scree_path_full(const char *path, char *full, size_t size) {
 int scree_open_read(const char *path) {
   return open(path, O_RDONLY | O_CLOEXEC);
 }
+
+/* The last one is looked at first: to open a device or a pipe may do something, or wait. */
+static int open_step(int folder, const char *name, bool is_last) {
+  struct stat found;
+  const int flags = O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY;
+  errno = EXDEV;
+  if (!strcmp(name, "..")) return -1;
+  if (fstatat(folder, name, &found, AT_SYMLINK_NOFOLLOW) != 0) return -1;
+  errno = S_ISLNK(found.st_mode) ? ELOOP : EINVAL;
+  if (is_last ? !S_ISREG(found.st_mode) : !S_ISDIR(found.st_mode)) return -1;
+  int fd = openat(folder, name, flags | (is_last ? 0 : O_DIRECTORY));
+  if (fd < 0 || !is_last || (fstat(fd, &found) == 0 && S_ISREG(found.st_mode))) return fd;
+  close(fd);
+  errno = EINVAL;
+  return -1;
+}
+
+int scree_open_beneath(const char *folder, const char *path) {
+  char name[NAME_MAX + 1];
+  int at = open(*folder ? folder : ".", O_RDONLY | O_CLOEXEC | O_DIRECTORY);
+  for (const char *slash = path; at >= 0 && slash; path = slash + 1) {
+    slash = strchr(path, '/');
+    int above = at, length = slash ? (int)(slash - path) : (int)strlen(path);
+    errno = ENAMETOOLONG;
+    snprintf(name, sizeof name, "%.*s", length, path);
+    at = length <= NAME_MAX ? open_step(above, name, !slash) : -1;
+    int reason = errno;
+    close(above);
+    errno = reason;
+  }
+  return at;
+}
 int scree_open_write(const char *path) {
   return open(path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
 }
 int scree_open_new(const char *path) {
   return open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+}
+int scree_lock_open(const char *path) {
+  int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (fd < 0 || flock(fd, LOCK_EX | LOCK_NB) == 0) return fd;
+  int reason = errno;
+  close(fd);
+  errno = reason;
+  return -1;
 }
 FILE *scree_open_stream(const char *path, const char *mode) {
   return fopen(path, mode);

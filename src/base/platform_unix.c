@@ -181,7 +181,8 @@ bool scree_program_path(char *path, size_t size) {
   return scree_path_full("/proc/self/exe", path, size);
 }
 
-int scree_process_run(const char *const *words, const char *output, long *process) {
+int scree_process_run(const char *const *words, const char *output, const char *errors,
+                      long *process) {
   enum { MOST_WORDS = 64 };
   /* spawn takes no const words, and changes none */
   union {
@@ -195,14 +196,25 @@ int scree_process_run(const char *const *words, const char *output, long *proces
   bool self = !strcmp(words[0], "scree");
   pid_t started;
   posix_spawn_file_actions_t actions;
+  posix_spawnattr_t attributes;
+  const char *files[] = {output, errors};
   int code = posix_spawn_file_actions_init(&actions);
   if (code != 0) return code;
-  if (output)
-    code = posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output,
-                                            O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  code = posix_spawnattr_init(&attributes);
+  if (code != 0) {
+    posix_spawn_file_actions_destroy(&actions);
+    return code;
+  }
+  for (int i = 0; i < 2 && code == 0; i++)
+    if (files[i])
+      code = posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO + i, files[i],
+                                              O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  if (output && code == 0) code = posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   if (code == 0)
-    code = self ? posix_spawn(&started, "/proc/self/exe", &actions, NULL, line.words, environ)
-                : posix_spawnp(&started, words[0], &actions, NULL, line.words, environ);
+    code = self
+               ? posix_spawn(&started, "/proc/self/exe", &actions, &attributes, line.words, environ)
+               : posix_spawnp(&started, words[0], &actions, &attributes, line.words, environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (code == 0) *process = started;
   return code;
@@ -219,7 +231,10 @@ scree_process_state scree_process_look(long process, bool wait, int *code) {
 }
 
 void scree_process_stop(long process) {
-  kill((pid_t)process, SIGTERM);
+  if (kill((pid_t)-process, SIGTERM) != 0) kill((pid_t)process, SIGTERM);
+}
+void scree_process_kill(long process) {
+  kill((pid_t)-process, SIGKILL);
 }
 
 /* ---- the program's surroundings ---- */
@@ -231,6 +246,7 @@ void scree_program_begin(int *count, char ***words) {
   for (int fd = 0; fd < 3; fd++)
     if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", fd ? O_RDONLY : O_WRONLY) != fd) _exit(1);
   signal(SIGXFSZ, SIG_IGN);
+  signal(SIGPIPE, SIG_DFL); /* a reader that has enough ends it, whoever started it */
   scree_pages_give_back();
 }
 

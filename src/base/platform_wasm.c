@@ -57,14 +57,18 @@ bool scree_program_path(char *path, size_t size) {
   (void)path, (void)size;
   return false;
 }
-int scree_process_run(const char *const *words, const char *output, long *process) {
-  (void)words, (void)output, (void)process;
+int scree_process_run(const char *const *words, const char *output, const char *errors,
+                      long *process) {
+  (void)words, (void)output, (void)errors, (void)process;
   return ENOSYS;
 }
 scree_process_state scree_process_look(long process, bool wait, int *code) {
   (void)process, (void)wait;
   *code = 1;
   return SCREE_PROCESS_ENDED;
+}
+void scree_process_kill(long process) {
+  (void)process;
 }
 void scree_process_stop(long process) {
   (void)process;

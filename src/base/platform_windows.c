@@ -238,11 +238,50 @@ static int open_descriptor(const char *path, int flags) {
 int scree_open_read(const char *path) {
   return open_descriptor(path, _O_RDONLY);
 }
+/* Names of devices (NUL, COM1) are found by what they open; a point where a folder leads elsewhere
+ * is one of the links. */
+int scree_open_beneath(const char *folder, const char *path) {
+  char whole[MOST_PATH];
+  scree_path_info info;
+  wide_path wide;
+  int start = snprintf(whole, sizeof whole, "%s%s", folder, *folder ? "/" : "");
+  errno = EXDEV;
+  if (strpbrk(path, "\\:") || start < 0 || (size_t)start + strlen(path) >= sizeof whole) return -1;
+  for (const char *slash = path; slash; path = slash + 1) {
+    slash = strchr(path, '/');
+    int length = slash ? (int)(slash - path) : (int)strlen(path);
+    start += snprintf(whole + start, sizeof whole - (size_t)start, "%.*s", length, path);
+    errno = EXDEV;
+    if (length == 2 && !strncmp(path, "..", 2)) return -1;
+    if (!widen(whole, &wide)) return -1;
+    DWORD marks = GetFileAttributesW(wide.text);
+    if (!done(marks != INVALID_FILE_ATTRIBUTES)) return -1;
+    errno = ELOOP;
+    if (marks & FILE_ATTRIBUTE_REPARSE_POINT) return -1;
+    whole[start++] = slash ? '/' : 0;
+    whole[start] = 0;
+  }
+  errno = EINVAL;
+  return scree_path_look(whole, &info) && info.kind == SCREE_PATH_FILE ? scree_open_read(whole)
+                                                                       : -1;
+}
 int scree_open_write(const char *path) {
   return open_descriptor(path, _O_WRONLY);
 }
 int scree_open_new(const char *path) {
   return open_descriptor(path, _O_WRONLY | _O_CREAT | _O_EXCL);
+}
+
+/* A byte far behind what is in it is locked, so that others may read it. */
+int scree_lock_open(const char *path) {
+  int fd = open_descriptor(path, _O_RDWR | _O_CREAT);
+  OVERLAPPED place = {.Offset = 1 << 20};
+  if (fd < 0 || LockFileEx((HANDLE)_get_osfhandle(fd),
+                           LOCKFILE_EXCLUSIVE_LOCK | LOCKFILE_FAIL_IMMEDIATELY, 0, 1, 0, &place))
+    return fd;
+  _close(fd);
+  errno = EWOULDBLOCK;
+  return -1;
 }
 
 FILE *scree_open_stream(const char *path, const char *mode) {
@@ -520,7 +559,8 @@ static HANDLE open_for_child(const char *path) {
                      FILE_ATTRIBUTE_NORMAL, NULL);
 }
 
-int scree_process_run(const char *const *words, const char *output, long *process) {
+int scree_process_run(const char *const *words, const char *output, const char *errors,
+                      long *process) {
   enum { LINE = 32000 };
   static wchar_t line[LINE], word[LINE], program[MOST_PATH];
   STARTUPINFOW start = {.cb = sizeof start};
@@ -536,17 +576,19 @@ int scree_process_run(const char *const *words, const char *output, long *proces
   line[used] = 0;
   if (self && !GetModuleFileNameW(NULL, program, MOST_PATH)) return ENOENT;
   HANDLE file = output ? open_for_child(output) : INVALID_HANDLE_VALUE;
+  HANDLE second = errors ? open_for_child(errors) : INVALID_HANDLE_VALUE;
   if (output && file == INVALID_HANDLE_VALUE) return errno_of(GetLastError());
   if (output) {
     start.dwFlags = STARTF_USESTDHANDLES;
     start.hStdOutput = file;
     start.hStdInput = GetStdHandle(STD_INPUT_HANDLE);
-    start.hStdError = GetStdHandle(STD_ERROR_HANDLE);
+    start.hStdError = errors ? second : GetStdHandle(STD_ERROR_HANDLE);
   }
   bool started = CreateProcessW(self ? program : NULL, line, NULL, NULL, output != NULL,
                                 CREATE_NEW_PROCESS_GROUP, NULL, NULL, &start, &made);
   DWORD reason = GetLastError();
   if (output) CloseHandle(file);
+  if (second != INVALID_HANDLE_VALUE) CloseHandle(second);
   if (!started) return errno_of(reason);
   CloseHandle(made.hThread);
   *place = (child){(long)made.dwProcessId, made.hProcess};
@@ -567,6 +609,12 @@ scree_process_state scree_process_look(long process, bool wait, int *code) {
   /* how the system ends programs: 0xC000..., by Ctrl-C or a crash */
   *code = (int)(result & 0xff);
   return result >> 30 == 3 ? SCREE_PROCESS_KILLED : SCREE_PROCESS_ENDED;
+}
+
+/* Its children end with the console's group, which is asked to. */
+void scree_process_kill(long process) {
+  child *found = find_child(process);
+  if (found) TerminateProcess(found->handle, 1);
 }
 
 void scree_process_stop(long process) {

@@ -24,17 +24,16 @@ static uint32_t digit_of(const sorting *s, size_t i) {
   return s->from[i].key >> s->shift & (RADIX - 1);
 }
 
-static void count_slice(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void count_slice(void *context, scree_block block) {
   sorting *s = context;
-  memset(s->place[block], 0, sizeof s->place[block]);
-  for (size_t i = begin; i < end; i++) s->place[block][digit_of(s, i)]++;
+  memset(s->place[block.index], 0, sizeof s->place[block.index]);
+  for (size_t i = block.begin; i < block.end; i++) s->place[block.index][digit_of(s, i)]++;
 }
 
-static void move_slice(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void move_slice(void *context, scree_block block) {
   sorting *s = context;
-  for (size_t i = begin; i < end; i++) s->to[s->place[block][digit_of(s, i)]++] = s->from[i];
+  for (size_t i = block.begin; i < block.end; i++)
+    s->to[s->place[block.index][digit_of(s, i)]++] = s->from[i];
 }
 
 scree_keyed *scree_radix_sort(scree_keyed *items, scree_keyed *swap, size_t count, int bits) {

@@ -16,7 +16,7 @@ scree_keyed *scree_radix_sort(scree_keyed *items, scree_keyed *swap, size_t coun
 void scree_sort_keys(uint64_t *keys, size_t count);
 /* Ascending. */
 void scree_sort_numbers(double *values, size_t count);
-/* Of ascending numbers, between neighbours as on a straight line; NaN of none. */
+/* A quantile of ascending numbers, between neighbours as on a straight line; NaN of none. */
 double scree_quantile(const double *ascending, size_t count, double share);
 
 /* Declares i: the first of [low, high) of which `before`, which speaks of i and holds up to some
@@ -30,3 +30,26 @@ double scree_quantile(const double *ascending, size_t count, double share);
     else                                                                                           \
       high_ = i;                                                                                   \
   }
+
+/* Define a comparison for qsort, of structs by one to four members, the first that differs. */
+#define SCREE_ORDER_BY(name, type, m)                                                              \
+  static int name(const void *a, const void *b) {                                                  \
+    const type *x = a, *y = b;                                                                     \
+    return SCREE_ORDER(m, 0);                                                                      \
+  }
+#define SCREE_ORDER_BY2(name, type, m, n)                                                          \
+  static int name(const void *a, const void *b) {                                                  \
+    const type *x = a, *y = b;                                                                     \
+    return SCREE_ORDER(m, SCREE_ORDER(n, 0));                                                      \
+  }
+#define SCREE_ORDER_BY3(name, type, m, n, o)                                                       \
+  static int name(const void *a, const void *b) {                                                  \
+    const type *x = a, *y = b;                                                                     \
+    return SCREE_ORDER(m, SCREE_ORDER(n, SCREE_ORDER(o, 0)));                                      \
+  }
+#define SCREE_ORDER_BY4(name, type, m, n, o, p)                                                    \
+  static int name(const void *a, const void *b) {                                                  \
+    const type *x = a, *y = b;                                                                     \
+    return SCREE_ORDER(m, SCREE_ORDER(n, SCREE_ORDER(o, SCREE_ORDER(p, 0))));                      \
+  }
+#define SCREE_ORDER(m, other) (x->m < y->m ? -1 : x->m > y->m ? 1 : (other))

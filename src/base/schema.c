@@ -1,4 +1,5 @@
 #include "base/schema.h"
+#include "base/quote.h"
 
 #include "base/number.h"
 #include "base/unit.h"
@@ -43,7 +44,7 @@ static const char *path_of(const scree_reader *r, const char *key, char path[LON
   return path;
 }
 
-/* Of the value of a key. */
+/* Fails with a sentence about the value of a key. */
 SCREE_PRINTF(3, 4)
 static scree_status fail_at(const scree_reader *r, const scree_yaml *node, const char *format,
                             ...) {
@@ -84,11 +85,27 @@ static size_t edit_distance(const char *a, const char *b) {
   return row[m % 3][n];
 }
 
+/* The one name that begins so; NULL where there are several. */
+static const char *begun(const char *word, const char *const *names, size_t count) {
+  const char *found = NULL;
+  size_t length = strlen(word);
+  for (size_t i = 0; i < count; i++) {
+    if (length < 2 || strncmp(names[i], word, length) != 0) continue;
+    if (found) return NULL;
+    found = names[i];
+  }
+  return found;
+}
+
 const char *scree_nearest_name(const char *word, const char *const *names, size_t count) {
-  const char *nearest = NULL;
+  char small[LONGEST_NAME + 1] = "";
+  const char *nearest = begun(word, names, count);
   size_t least = strlen(word) / 3 + 2;
+  if (nearest || strlen(word) > LONGEST_NAME) return nearest;
+  for (size_t i = 0; word[i]; i++) small[i] = (char)tolower((unsigned char)word[i]);
   for (size_t i = 0; i < count; i++) {
     size_t distance = edit_distance(word, names[i]);
+    if (distance > 1 && !strcmp(small, names[i])) distance = 1;
     if (distance >= least || distance >= strlen(names[i])) continue;
     least = distance;
     nearest = names[i];
@@ -215,9 +232,10 @@ static scree_status read_whole(const scree_reader *r, const scree_yaml *node, co
 
 static scree_status read_flag(const scree_reader *r, const scree_yaml *node, bool *value) {
   const char *text = node->kind == SCREE_YAML_SCALAR ? node->text : "";
-  if (strcmp(text, "true") != 0 && strcmp(text, "false") != 0)
+  *value = !strcmp(text, "true") || !strcmp(text, "True") || !strcmp(text, "TRUE");
+  if (!*value && strcmp(text, "false") != 0 && strcmp(text, "False") != 0 &&
+      strcmp(text, "FALSE") != 0)
     return fail_at(r, node, "must be true or false");
-  *value = *text == 't';
   return SCREE_OK;
 }
 
@@ -548,12 +566,13 @@ bool scree_field_is_given(const scree_field *field, const void *record) {
 
 /* ---- printing ---- */
 
+/* A text that is a number, as a count of spheres in place of their table, is written as one. */
 static void put_text(FILE *stream, const char *text) {
-  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./";
-  if (text[strspn(text, plain)] == 0)
+  double number;
+  if (scree_number_read(text, &number))
     fputs(text, stream);
   else
-    scree_yaml_put_text(text, stream);
+    scree_quote(stream, SCREE_QUOTE_YAML, text);
 }
 
 /* With the fewest of 6 to 17 digits that read back as the same number. */

@@ -118,7 +118,7 @@ bool scree_field_is_given(const scree_field *field, const void *record);
 void scree_record_print(const scree_record *kind, const void *record, int depth, bool comments,
                         FILE *stream);
 
-/* Of the names the one that is a typing error away from `word`; NULL: none is. */
+/* The name that is a typing error away from `word`; NULL: none is. */
 const char *scree_nearest_name(const char *word, const char *const *names, size_t count);
 /* That one, else the names as far as there is room, to end a sentence on a name that is not there.
  */

@@ -49,7 +49,7 @@
 
 #define SCREE_RECORD_TABLE(type, list, what, needs, check)                                         \
   SCREE_RECORD_TABLE_OF(type, list, list, what, needs, check)
-/* Of a record that has rows for some of the members; the others have defaults, too. */
+/* Tables of a record that has rows for some of the members; the others have defaults, too. */
 #define SCREE_RECORD_TABLE_OF(type, all, list, what, needs, check)                                 \
   static const type type##_defaults = {.place = {0}, all(SCREE_DEFAULT, type)};                    \
   static const scree_field type##_fields[] = {list(SCREE_ROW, type)};                              \
@@ -141,3 +141,15 @@
   SCREE_ROW_OF(T, key, NAMED, member, 0, 0, "", comment, &type##_record)
 #define SCREE_ROW_LIST(T, key, member, type, comment)                                              \
   SCREE_ROW_OF(T, key, LIST, member, 0, 0, "", comment, &type##_record)
+
+/* ---- of kinds, whose fields each are known in a file of their own: that there is the record ----
+ */
+
+#define SCREE_KIND_RECORD(T, row, ...) SCREE_KIND_RECORD_##row(__VA_ARGS__)
+#define SCREE_KIND_RECORD_GROUP(key, type, ...)                                                    \
+  typedef struct type type;                                                                        \
+  extern const scree_record type##_record;
+#define SCREE_KIND_RECORD_VECTOR(...)
+#define SCREE_KIND_RECORD_DIRECTION(...)
+#define SCREE_KIND_RECORD_TEXT(...)
+#define SCREE_KIND_RECORD_TEXTS(...)

@@ -60,10 +60,9 @@ static double half_area(const scree_box *b) {
 
 /* ---- Building ---- */
 
-static void make_boxes(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void make_boxes(void *context, scree_block block) {
   builder *b = context;
-  for (size_t i = begin; i < end; i++)
+  for (size_t i = block.begin; i < block.end; i++)
     b->boxes[i] = (boxed){b->items->box(b->items->context, i), (uint32_t)i};
 }
 
@@ -186,10 +185,9 @@ static bool build_node(builder *b, const task *t, uint32_t *slot, task *left, ta
   return true;
 }
 
-static void build_subtree(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void build_subtree(void *context, scree_block block) {
   builder *b = context;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     task stack[STACK];
     int depth = 0;
     uint32_t slot = b->slots * b->subtrees[i].first;
@@ -207,10 +205,9 @@ static bool is_small(const task *t) {
   return t->count <= SUBTREES;
 }
 
-static void split_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void split_block(void *context, scree_block block) {
   builder *b = context;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     halves *made = &b->splits[i];
     if (!is_small(&b->subtrees[i]))
       build_node(b, &b->subtrees[i], &made->slot, &made->left, &made->right);
@@ -253,10 +250,9 @@ static size_t count_nodes(const builder *b) {
   return count;
 }
 
-static void make_leaf_boxes(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void make_leaf_boxes(void *context, scree_block block) {
   const builder *b = context;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     scree_tree_node *node = &b->out->nodes[i];
     const uint32_t *item = b->out->order + node->first;
     node->box = scree_box_empty();

@@ -98,7 +98,7 @@ typedef struct scree_tree_search {
   } stack[SCREE_TREE_STACK];
 } scree_tree_search;
 
-/* Of the items below a node; the tree has some. */
+/* Begins a search among the items below a node; the tree has some. */
 static inline void scree_tree_search_below(scree_tree_search *s, const scree_tree *tree,
                                            uint32_t node, vec3 p) {
   s->nodes = tree->nodes;

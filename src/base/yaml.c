@@ -41,24 +41,6 @@ scree_status scree_yaml_copy(const scree_yaml *node, scree_yaml *copy, scree_err
   return status;
 }
 
-void scree_yaml_escape(char byte, char escaped[SCREE_YAML_ESCAPED]) {
-  unsigned char c = (unsigned char)byte;
-  if (c < ' ' || c == 127)
-    snprintf(escaped, SCREE_YAML_ESCAPED, "\\x%02x", c);
-  else
-    snprintf(escaped, SCREE_YAML_ESCAPED, "%s%c", c == '"' || c == '\\' ? "\\" : "", c);
-}
-
-void scree_yaml_put_text(const char *text, FILE *stream) {
-  char escaped[SCREE_YAML_ESCAPED];
-  putc('"', stream);
-  for (; *text; text++) {
-    scree_yaml_escape(*text, escaped);
-    fputs(escaped, stream);
-  }
-  putc('"', stream);
-}
-
 const scree_yaml *scree_yaml_find(const scree_yaml *mapping, const char *key) {
   for (size_t i = 0; i < mapping->item_count; i++)
     if (mapping->items[i].key && !strcmp(mapping->items[i].key, key)) return &mapping->items[i];
@@ -148,11 +130,9 @@ static scree_status read_pair(reader *r, yaml_event_t *event, int depth, scree_y
   item->key = key;
   item->key_line = event->start_mark.line + 1;
   item->key_column = event->start_mark.column + 1;
-  yaml_event_t value;
+  SCREE_CLEANUP(yaml_event_delete) yaml_event_t value = {0};
   SCREE_TRY(next_event(r, &value));
-  scree_status status = read_node(r, &value, depth + 1, item);
-  yaml_event_delete(&value);
-  return status;
+  return read_node(r, &value, depth + 1, item);
 }
 
 static scree_status read_items(reader *r, int depth, scree_yaml *node, yaml_event_type_t end) {
@@ -231,12 +211,10 @@ scree_status scree_yaml_parse(const char *bytes, size_t byte_count, const char *
 }
 
 scree_status scree_yaml_read(const char *path, scree_yaml *root, scree_error *error) {
-  char *bytes;
+  SCREE_CLEANUP(scree_free_at) char *bytes = NULL;
   size_t byte_count;
   SCREE_TRY(scree_file_read(path, LARGEST_FILE, &bytes, &byte_count, error));
-  scree_status status = scree_yaml_parse(bytes, byte_count, path, root, error);
-  scree_free(bytes);
-  return status;
+  return scree_yaml_parse(bytes, byte_count, path, root, error);
 }
 
 /* ---- setting ---- */

@@ -27,13 +27,6 @@ scree_status scree_yaml_parse(const char *bytes, size_t byte_count, const char *
                               scree_yaml *root, scree_error *error);
 void scree_yaml_free(scree_yaml *root);
 
-/* How a byte of a text stands between double quotes. */
-enum { SCREE_YAML_ESCAPED = 5 };
-void scree_yaml_escape(char byte, char escaped[SCREE_YAML_ESCAPED]);
-
-/* The text between double quotes. */
-void scree_yaml_put_text(const char *text, FILE *stream);
-
 /* A copy that knows the same places; free it. */
 scree_status scree_yaml_copy(const scree_yaml *node, scree_yaml *copy, scree_error *error);
 

@@ -10,6 +10,7 @@
 #define SCREE_PLAN_EXPERIMENT(ROW, T)                                                              \
   ROW(T, TEXT, scene, "file of a scene")                                                           \
   ROW(T, TEXTS, command, "program and words")                                                      \
+  ROW(T, REAL, timeout, NAN, 1e-3, 1e9, "s", "of a run of the command; not given: no limit")       \
   ROW(T, NODE, set, "fields of the scene that differ here")                                        \
   ROW(T, REAL, cost, NAN, 1e-9, 1e9, "", "of a run, beside the others; not given: as measured")
 SCREE_RECORD_TYPE(scree_plan_experiment, SCREE_PLAN_EXPERIMENT)
@@ -19,13 +20,15 @@ SCREE_RECORD_TYPE(scree_plan_experiment, SCREE_PLAN_EXPERIMENT)
   ROW(T, REAL, from, NAN, -1e300, 1e300, "", "")                                                   \
   ROW(T, REAL, to, NAN, -1e300, 1e300, "", "")                                                     \
   ROW(T, WORD, scale, 0, "linear|log", "")                                                         \
-  ROW(T, TEXTS, values, "in place of a range")
+  ROW(T, TEXTS, values, "in place of a range")                                                     \
+  ROW(T, TEXT, unit, "")
 SCREE_RECORD_TYPE(scree_plan_parameter, SCREE_PLAN_SOUGHT_PARAMETER)
 
 /* What the simulation answers; what was measured of it; what it may be. */
 #define SCREE_PLAN_ANSWER(ROW, T)                                                                  \
   ROW(T, TEXT, experiment, "")                                                                     \
   ROW(T, TEXT, answer, "column of a sensor, or outline")                                           \
+  ROW(T, TEXT, unit, "of what a command prints; not given: the sensor's")                          \
   ROW(T, REAL, at, NAN, -1e9, 1e9, "", "s; of an outline m")                                       \
   ROW(T, REAL, from, NAN, 0, 1e9, "s", "of the mean over a window")                                \
   ROW(T, REAL, until, NAN, 0, 1e9, "s", "")                                                        \
@@ -84,6 +87,7 @@ typedef enum scree_quantity_kind {
 typedef struct scree_quantity {
   scree_quantity_kind kind;
   const scree_plan_quantity *plan;
+  const char *unit; /* "" where it is not known */
   size_t experiment;
   size_t first_answer, answer_count; /* of those of its experiment's study */
   bool measured;
@@ -123,6 +127,7 @@ struct scree_calibration {
   scree_planned_run *runs;
   size_t run_count, round_count;
   bool checked; /* the last round is this file's check: runs at the answer, unknown to the model */
+  size_t check_rounds; /* so many at the end are such */
 };
 
 /* read.c: the value at a coordinate as the scene takes it, in the arena; NULL: memory is out. The
@@ -138,7 +143,9 @@ double scree_parameter_snap(const scree_plan_parameter *parameter, double x);
 /* Points of an experiment's first runs. */
 size_t scree_calibration_start(const scree_calibration *c, size_t experiment);
 
-/* rounds.c: reads all rounds of the folder. */
+/* rounds.c: a word of a command with the folder of the file in place of {here}. */
+void scree_calibration_word(const scree_calibration *c, const char *word, char *text, size_t size);
+/* Reads all rounds of the folder. */
 scree_status scree_rounds_read(scree_calibration *c, scree_error *error);
 /* Writes one more, whole or not at all. */
 scree_status scree_rounds_add(scree_calibration *c, const scree_place_pick *picks, size_t count,
@@ -165,6 +172,8 @@ typedef struct scree_answers {
   size_t *waiting;           /* of those that the model is fitted to, not ended yet */
   double **x, **answers;     /* run_counts x parameters; run_counts x answer_count, NAN: none */
   double *costs, seconds;    /* of a run, without a clock; processor time of all */
+  double started, ended;     /* s since 1970: the first, the last */
+  char machine[160];         /* of the last */
   size_t done, failed, open; /* open: not ended yet */
   char **failures;           /* reasons, each once */
   size_t failure_count;
@@ -186,6 +195,8 @@ scree_status scree_curve_basis_make(const double *curves, size_t count, size_t p
                                     scree_curve_basis *basis, scree_error *error);
 void scree_curve_basis_free(scree_curve_basis *basis);
 double scree_curve_score(const scree_curve_basis *basis, size_t component, const double *curve);
+/* Root mean square of what of a curve no component has. */
+double scree_curve_left(const scree_curve_basis *basis, const double *curve);
 
 /* The model of all quantities, from the first `round_count` rounds. */
 typedef struct scree_calibration_model {
@@ -204,14 +215,35 @@ scree_status scree_calibration_sample(const scree_calibration *c, const scree_mo
                                       int effort, double **samples, size_t *count,
                                       scree_error *error);
 
+/* verdict.c: the most probable place, from samples of the posterior. */
+void scree_calibration_nearest(const scree_calibration *c, const scree_answers *gathered,
+                               const scree_model *model, const double *samples, size_t count,
+                               double *x);
+/* The distance (scree_model_distance) beyond which a model whose nearest place is x does not give
+ * what was measured. */
+double scree_calibration_limit(const scree_calibration *c, const scree_model *model,
+                               const double *x, const double *samples, size_t count);
+/* Where the runs of the check are; false: there was none. Their mean of a quantity, or of a
+ * component of a curve: NAN where none of the *count gave it. The distance by them; NAN: there are
+ * none, INFINITY: an answer is missing. */
+bool scree_check_place(const scree_calibration *c, double *x);
+double scree_check_mean(const scree_calibration *c, const scree_answers *gathered,
+                        const scree_calibration_model *model, size_t quantity, size_t component,
+                        size_t *count);
+double scree_check_distance(const scree_calibration *c, const scree_answers *gathered,
+                            const scree_calibration_model *model);
+/* Whether the run nearest to x gave the quantity's answer; of several there, any. */
+bool scree_answered_near(const scree_calibration *c, const scree_answers *gathered,
+                         const scree_quantity *quantity, const double *x);
+
 /* result.c: whether the shortest interval of that confidence begins (-1) or ends (1) with the
  * sorted samples, so that an end of the range closes it; 0: neither. */
 int scree_samples_end(const double *values, size_t count, double confidence);
 
-/* search.c: the next places of a search, and its candidates. */
+/* search.c: the next places of a search, at most so many. */
 scree_status scree_search_next(const scree_calibration *c, const scree_calibration_model *model,
-                               const scree_answers *gathered, size_t count, scree_place_pick *picks,
-                               double *left, scree_error *error);
+                               const scree_answers *gathered, size_t *count,
+                               scree_place_pick *picks, double *left, scree_error *error);
 /* Its candidates and history into the result. */
 scree_status scree_search_describe(const scree_calibration *c, const scree_calibration_model *m,
                                    const scree_answers *gathered, scree_arena *arena,

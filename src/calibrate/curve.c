@@ -18,6 +18,17 @@ double scree_curve_score(const scree_curve_basis *b, size_t component, const dou
   return sum / (double)b->point_count;
 }
 
+double scree_curve_left(const scree_curve_basis *b, const double *curve) {
+  double squares = 0;
+  for (size_t i = 0; i < b->point_count; i++) {
+    double known = b->centre[i];
+    for (size_t k = 0; k < b->component_count; k++)
+      known += scree_curve_score(b, k, curve) * b->basis[k * b->point_count + i];
+    squares += (curve[i] - known) * (curve[i] - known);
+  }
+  return sqrt(squares / (double)b->point_count);
+}
+
 void scree_curve_basis_free(scree_curve_basis *b) {
   scree_free(b->centre);
   scree_free(b->basis);

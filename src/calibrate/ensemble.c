@@ -3,7 +3,7 @@
  * against each other, are walked as easily as round ones. One half moves while the other stands
  * (Foreman-Mackey and others 2013), so that a half may be looked at by many threads. Walkers begin
  * at points of Sobol's sequence drawn by their density, so that no mode is left out. */
-#include "calibrate/ensemble.h"
+#include "calibrate/model.h"
 
 #include "base/math.h"
 #include "base/parallel.h"
@@ -21,11 +21,10 @@ typedef struct walk {
   size_t step, half;
 } walk;
 
-static void look_at_start(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void look_at_start(void *context, scree_block block) {
   walk *w = context;
   size_t d = w->e->dimension_count;
-  for (size_t i = begin; i < end; i++)
+  for (size_t i = block.begin; i < block.end; i++)
     w->density[i] = w->e->density(w->e->context, w->place + i * d);
 }
 
@@ -67,11 +66,10 @@ static scree_status start(const scree_ensemble *e, double *place, double *densit
 }
 
 /* One stretch move of each walker of a half. */
-static void move(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void move(void *context, scree_block block) {
   walk *w = context;
   size_t d = w->e->dimension_count, half = w->e->walker_count / 2;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     size_t mine = w->half * half + i;
     scree_rng rng = {w->e->seed, WALK_STREAM + mine, 4 * w->step};
     const double *other = w->place + ((1 - w->half) * half + scree_rng_below(&rng, half)) * d;

@@ -59,6 +59,11 @@ static scree_status take_record(scree_answers *g, size_t experiment, const scree
   for (size_t a = 0; !record.failed && a < study->answer_count; a++)
     if (a < record.answer_count) answers[a] = record.answers[a];
   g->seconds += record.costs.processor_seconds;
+  if (g->started == 0 || record.started < g->started) g->started = record.started;
+  if (record.ended >= g->ended) {
+    g->ended = record.ended;
+    memcpy(g->machine, record.machine, sizeof g->machine);
+  }
   *work += work_of(&record);
   if (record.failed) return note_failure(g, record.reason, error);
   g->done++;
@@ -136,10 +141,9 @@ typedef struct fitting {
   scree_error *errors;
 } fitting;
 
-static void fit_some(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void fit_some(void *context, scree_block block) {
   fitting *f = context;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     scree_response *r = &f->m->model.items[i];
     const scree_experiment_plan *e = &f->c->experiments[r->experiment];
     scree_gp_runs runs = {f->run_counts[r->experiment],

@@ -2,19 +2,19 @@
  * heteroskedastic Gaussian process modeling for large simulation experiments"). Replicates enter by
  * their means and sums of squares (their section 3.1, the Woodbury identity), so that all costs go
  * with different places, not with runs. Where they give each place a noise variance of its own,
- * smoothed by a second process, the logarithm of the noise is linear in the coordinates here: with
- * the few replicates of a simulation no more can be told.
+ * smoothed by a second process, the logarithm of the noise is linear in the coordinates here, times
+ * a factor of the place: what replicates and left-out places scatter by beside what was expected,
+ * in the mean over the neighbourhood. Where nothing is near it is 1.
  *
  * Answers are brought to mean 0 and standard deviation 1. A plane with standard normal coefficients
  * carries the trend (integrated out exactly: it is part of the covariance); a Matern 5/2 process
  * with a length for each coordinate carries the departures. The settings are the most probable
- * ones under weak priors, found by BFGS with the exact gradient from two starts. */
-#include "calibrate/gp.h"
+ * ones under weak priors, found by BFGS with the exact gradient from three starts. */
+#include "calibrate/model.h"
 
 #include "base/math.h"
 #include "base/rng.h"
 
-#include <float.h>
 #include <string.h>
 
 /* Priors: mean and standard deviation of each kind of setting. Coordinates go from -1 to 1, answers
@@ -25,7 +25,10 @@ static const struct {
     prior_departure = {-1, 2}, /* log of the variance of departures from the plane */
     prior_noise = {-2.3, 2},   /* log of the noise: a tenth of all variance */
     prior_slope = {0, 1};      /* the noise changes e times from the middle to the end */
-static const double start_lengths[] = {1.5, 0.4};
+static const double start_lengths[] = {1.5, 0.4, 0.12}; /* the last where there are many hollows */
+/* The noise's factor: width of the neighbourhood in two coordinates, and for how many degrees of
+ * freedom the expected noise counts. */
+static const double near_width = 0.25, expected_degrees = 4;
 static const double root5 = 2.23606797749978969641;
 /* Added to every noise variance: a simulation without noise. */
 static const double least_noise = 1e-7;
@@ -55,7 +58,9 @@ struct scree_gp {
   double shift, scale;            /* y = shift + scale * ours */
   double *x;                      /* n x d */
   double *mean, *squares, *count; /* per place: of the replicates; squared deviations from mean */
-  member members[MEMBERS];        /* the first has the most probable settings */
+  /* Per place: the noise's factor; squares in units of the expected noise, degrees of freedom. */
+  double *factor, *excess, *degrees;
+  member members[MEMBERS]; /* the first has the most probable settings */
 };
 
 static kernel kernel_of(const scree_gp *gp, const double *s) {
@@ -88,10 +93,24 @@ static double covariance(const scree_gp *gp, const kernel *k, const double *a, c
   return plane(gp, a, b) + k->variance * matern(distance2(gp, k, a, b));
 }
 
-static double noise_at(const scree_gp *gp, const kernel *k, const double *x) {
+static double noise_at(const scree_gp *gp, const kernel *k, const double *x, double factor) {
   double sum = k->noise[0];
   for (size_t i = 0; i < gp->d; i++) sum += k->noise[1 + i] * x[i];
-  return least_noise + scree_exp(sum);
+  return least_noise + factor * scree_exp(sum);
+}
+
+double scree_gp_factor(const scree_gp *gp, const double *x) {
+  double over = expected_degrees, under = expected_degrees,
+         width = near_width * near_width * (double)gp->d;
+  for (size_t i = 0; i < gp->n; i++) {
+    double squared = 0;
+    for (size_t k = 0; k < gp->d; k++)
+      squared += (x[k] - gp->x[i * gp->d + k]) * (x[k] - gp->x[i * gp->d + k]);
+    double near = scree_exp(-squared / width);
+    over += near * gp->excess[i];
+    under += near * gp->degrees[i];
+  }
+  return over / under;
 }
 
 /* ---- linear algebra: symmetric positive definite, row by row ---- */
@@ -183,15 +202,15 @@ static double add_prior(const scree_gp *gp, const double *s, double *gradient) {
   return sum;
 }
 
-/* Of the replicates about their means, and what the noise's own gradient gets from them and from
- * the covariance of the means. */
+/* Adds the likelihood of the replicates about their means, and what the noise's own gradient gets
+ * from them and from the covariance of the means. */
 static double add_replicates(const scree_gp *gp, const kernel *k, const double *inverse,
                              const double *weights, double *gradient) {
   size_t d = gp->d;
   double sum = 0;
   for (size_t i = 0; i < gp->n; i++) {
     const double *x = gp->x + i * d;
-    double noise = noise_at(gp, k, x), more = gp->count[i] - 1;
+    double noise = noise_at(gp, k, x, gp->factor[i]), more = gp->count[i] - 1;
     sum -= 0.5 * (more * scree_log(noise) + gp->squares[i] / noise);
     double slope = -0.5 * (more / noise - gp->squares[i] / (noise * noise));
     slope += 0.5 * (weights[i] * weights[i] - inverse[i * gp->n + i]) / gp->count[i];
@@ -226,8 +245,9 @@ static double density(const scree_gp *gp, const double *s, double *factor, doubl
   kernel k = kernel_of(gp, s);
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j <= i; j++)
-      factor[i * n + j] = covariance(gp, &k, gp->x + i * d, gp->x + j * d) +
-                          (i == j ? noise_at(gp, &k, gp->x + i * d) / gp->count[i] : 0);
+      factor[i * n + j] =
+          covariance(gp, &k, gp->x + i * d, gp->x + j * d) +
+          (i == j ? noise_at(gp, &k, gp->x + i * d, gp->factor[i]) / gp->count[i] : 0);
   if (!factorise(factor, n)) return -INFINITY;
   double sum = -0.5 * log_determinant(factor, n);
   invert(factor, n, inverse);
@@ -362,6 +382,10 @@ static scree_status allocate(scree_gp *gp, size_t runs, scree_error *error) {
   SCREE_TRY_ALLOC(gp->mean, runs, error);
   SCREE_TRY_ALLOC(gp->squares, runs, error);
   SCREE_TRY_ALLOC(gp->count, runs, error);
+  SCREE_TRY_ALLOC_ZERO(gp->excess, runs, error);
+  SCREE_TRY_ALLOC_ZERO(gp->degrees, runs, error);
+  SCREE_TRY_ALLOC(gp->factor, runs, error);
+  for (size_t i = 0; i < runs; i++) gp->factor[i] = 1;
   return SCREE_OK;
 }
 
@@ -411,6 +435,21 @@ static void draw_members(scree_gp *gp, search *q) {
   for (size_t k = 0; k < MEMBERS; k++) gp->members[k].share /= all;
 }
 
+/* What replicates scatter by, and what each place departs from what the others say of it (the
+ * inverse has that), as far as it is noise that makes it. */
+static void localise_noise(scree_gp *gp, search *q) {
+  kernel k = kernel_of(gp, q->s);
+  (void)density(gp, q->s, q->factor, q->inverse, q->weights, q->gradient);
+  for (size_t i = 0; i < gp->n; i++) {
+    double noise = noise_at(gp, &k, gp->x + i * gp->d, 1), own = q->inverse[i * gp->n + i],
+           share = fmin(1, noise / gp->count[i] * own);
+    gp->excess[i] = gp->squares[i] / noise + share * q->weights[i] * q->weights[i] / own;
+    gp->degrees[i] = gp->count[i] - 1 + share;
+  }
+  for (size_t i = 0; i < gp->n; i++) gp->factor[i] = scree_gp_factor(gp, gp->x + i * gp->d);
+  q->value = density(gp, q->s, q->factor, q->inverse, q->weights, q->gradient);
+}
+
 static scree_status find_settings(scree_gp *gp, scree_error *error) {
   search best = {0}, q = {.gp = gp, .m = setting_count(gp)};
   SCREE_SCRATCH(double, factor, gp->n * gp->n, error);
@@ -428,6 +467,7 @@ static scree_status find_settings(scree_gp *gp, scree_error *error) {
   }
   if (!isfinite(best.value))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "the answers' covariance cannot be inverted");
+  localise_noise(gp, &best);
   draw_members(gp, &best);
   return SCREE_OK;
 }
@@ -457,6 +497,9 @@ void scree_gp_free(scree_gp *gp) {
   scree_free(gp->mean);
   scree_free(gp->squares);
   scree_free(gp->count);
+  scree_free(gp->factor);
+  scree_free(gp->excess);
+  scree_free(gp->degrees);
   for (size_t k = 0; k < MEMBERS; k++) {
     scree_free(gp->members[k].weights);
     scree_free(gp->members[k].inverse);
@@ -481,8 +524,9 @@ static void choose_active(const scree_gp *gp, const double *x, double *place) {
 double scree_gp_noise(const scree_gp *gp, const double *x) {
   double place[SCREE_MOST_PARAMETERS], noise = 0;
   choose_active(gp, x, place);
+  double factor = scree_gp_factor(gp, place);
   for (size_t m = 0; m < MEMBERS; m++)
-    noise += gp->members[m].share * noise_at(gp, &gp->members[m].kernel, place);
+    noise += gp->members[m].share * noise_at(gp, &gp->members[m].kernel, place, factor);
   return gp->scale * gp->scale * noise;
 }
 
@@ -508,6 +552,7 @@ scree_gp_value scree_gp_at(const scree_gp *gp, const double *x) {
   double place[SCREE_MOST_PARAMETERS], k[SCREE_GP_MOST_PLACES];
   double mean = 0, squares = 0, variance = 0, noise = 0;
   choose_active(gp, x, place);
+  double factor = scree_gp_factor(gp, place);
   for (size_t m = 0; m < MEMBERS; m++) {
     const member *one = &gp->members[m];
     double y = reach(gp, one, place, k), own = covariance(gp, &one->kernel, place, place);
@@ -518,7 +563,7 @@ scree_gp_value scree_gp_at(const scree_gp *gp, const double *x) {
     mean += one->share * y;
     squares += one->share * y * y;
     variance += one->share * fmax(own, 0);
-    noise += one->share * noise_at(gp, &one->kernel, place);
+    noise += one->share * noise_at(gp, &one->kernel, place, factor);
   }
   double squared = gp->scale * gp->scale;
   return (scree_gp_value){gp->shift + gp->scale * mean,

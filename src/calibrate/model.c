@@ -37,16 +37,17 @@ double scree_response_variance(const scree_response *r, const scree_gp_value *va
   return value->variance + scatter_of(r, value) / repeat_count + r->uncertainty * r->uncertainty;
 }
 
-double scree_model_log_likelihood(const scree_model *model, const double *x) {
+double scree_model_distance(const scree_model *model, const scree_gp_value *values,
+                            double *log_determinant) {
   double a[SCREE_MOST_RESPONSES][SCREE_MOST_RESPONSES], z[SCREE_MOST_RESPONSES],
-      sd[SCREE_MOST_RESPONSES], sum = 0;
+      sd[SCREE_MOST_RESPONSES], squares = 0;
   size_t index[SCREE_MOST_RESPONSES], n = 0;
+  *log_determinant = 0;
   for (size_t i = 0; i < model->count && n < SCREE_MOST_RESPONSES; i++) {
     const scree_response *r = &model->items[i];
     if (!r->measured) continue;
-    scree_gp_value value = scree_gp_at(r->gp, x);
-    z[n] = r->value - value.mean;
-    sd[n] = sqrt(value.variance + scatter_of(r, &value) / r->repeat_count);
+    z[n] = r->value - values[i].mean;
+    sd[n] = sqrt(values[i].variance + scatter_of(r, &values[i]) / r->repeat_count);
     for (size_t j = 0; j < n; j++)
       a[n][j] = model->correlation[i * model->count + index[j]] * sd[n] * sd[j];
     a[n][n] = sd[n] * sd[n] + r->uncertainty * r->uncertainty;
@@ -55,20 +56,33 @@ double scree_model_log_likelihood(const scree_model *model, const double *x) {
   for (size_t i = 0; i < n; i++) { /* Cholesky and forward substitution in one */
     for (size_t j = 0; j <= i; j++) {
       for (size_t k = 0; k < j; k++) a[i][j] -= a[i][k] * a[j][k];
-      if (i == j && !(a[i][i] > 0)) return -INFINITY;
+      if (i == j && !(a[i][i] > 0)) return INFINITY;
       a[i][j] = i == j ? sqrt(a[i][i]) : a[i][j] / a[j][j];
     }
     for (size_t k = 0; k < i; k++) z[i] -= a[i][k] * z[k];
     z[i] /= a[i][i];
-    sum -= 0.5 * z[i] * z[i] + scree_log(a[i][i]);
+    squares += z[i] * z[i];
+    *log_determinant += 2 * scree_log(a[i][i]);
   }
-  return sum;
+  return squares;
+}
+
+double scree_model_distance_at(const scree_model *model, const double *x, double *log_determinant) {
+  scree_gp_value values[SCREE_MOST_RESPONSES];
+  for (size_t i = 0; i < model->count; i++)
+    if (model->items[i].measured) values[i] = scree_gp_at(model->items[i].gp, x);
+  return scree_model_distance(model, values, log_determinant);
+}
+
+double scree_model_log_likelihood(const scree_model *model, const double *x) {
+  double log_determinant, squares = scree_model_distance_at(model, x, &log_determinant);
+  return -0.5 * (squares + log_determinant);
 }
 
 /* ---- correlations ---- */
 
-/* Of two answers of one experiment, over the runs that gave both; drawn to 0 as if there had been
- * `doubt` more runs without any. */
+/* The correlation of two answers of one experiment over the runs that gave both, drawn to 0 as if
+ * there had been `doubt` more runs without any. */
 static double correlate(const double *a, const double *b, size_t count) {
   const double doubt = 8;
   double ab = 0, aa = 0, bb = 0, used = 0;
@@ -255,11 +269,10 @@ static void weigh(const expectation *w, size_t truth, double *weight) {
   for (size_t s = 0; s < n; s++) weight[s] = scree_exp(weight[s] - most);
 }
 
-static void expect_truths(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void expect_truths(void *context, scree_block block) {
   expectation *w = context;
   size_t d = w->model->dimension_count, n = w->sample_count;
-  for (size_t truth = begin; truth < end; truth++) {
+  for (size_t truth = block.begin; truth < block.end; truth++) {
     double *weight = w->log_weight + truth * n, all = 0;
     weigh(w, truth, weight);
     for (size_t s = 0; s < n; s++) all += weight[s];

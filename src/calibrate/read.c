@@ -5,8 +5,9 @@
 #include "base/math.h"
 #include "base/number.h"
 #include "base/platform.h"
+#include "base/quote.h"
 #include "calibrate/calibration.h"
-#include "scene/scene.h"
+#include "scene/file.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -123,6 +124,8 @@ static scree_status check_experiment(const reader *r, const scree_plan_experimen
                             e->place.name);
   if (is_command(e) == (e->scene != NULL))
     return scree_fail_place(&r->in, &e->place, "needs either scene or command");
+  if (!isnan(e->timeout) && !is_command(e))
+    return scree_fail_place(&r->in, &e->place, "timeout: is of a command");
   if (e->set && (is_command(e) || e->set->kind != SCREE_YAML_MAPPING))
     return scree_fail_place(&r->in, &e->place, "set: must be `FIELD: VALUE` lines of a scene");
   return SCREE_OK;
@@ -316,11 +319,12 @@ static scree_status find_experiment(const reader *r, scree_quantity *q) {
   return scree_fail_name(&r->in, &q->plan->place, "experiment", q->plan->experiment, names, count);
 }
 
-/* That its scene has such a column. */
-static scree_status check_answer(const reader *r, const scree_quantity *q) {
+/* That its scene has such a column; its unit. */
+static scree_status check_answer(const reader *r, scree_quantity *q) {
   const scree_plan_quantity *p = q->plan;
   const scree_experiment_plan *e = &r->c->experiments[q->experiment];
   bool outline = !strcmp(p->answer, "outline");
+  q->unit = p->unit ? p->unit : outline && !is_command(e->plan) ? "m" : "";
   if (is_command(e->plan))
     return isnan(p->at) && isnan(p->from) && isnan(p->until) && !p->take && !p->curve
                ? SCREE_OK
@@ -337,11 +341,15 @@ static scree_status check_answer(const reader *r, const scree_quantity *q) {
   char name[96];
   enum { MOST_NAMES = 400 };
   const char *names[MOST_NAMES];
+  const char *unit;
   size_t count = 0;
   SCREE_TRY(read_scene(r, e, &file));
-  while (count < MOST_NAMES && scree_scene_file_column(file, count, name, NULL, NULL) == SCREE_OK &&
-         *name) {
-    if (!strcmp(name, p->answer)) return SCREE_OK;
+  while (count < MOST_NAMES &&
+         scree_scene_file_column(file, count, name, &unit, NULL) == SCREE_OK && *name) {
+    if (!strcmp(name, p->answer)) {
+      if (!p->unit) q->unit = scree_arena_text(&r->c->arena, unit);
+      return q->unit ? SCREE_OK : fail_memory(r);
+    }
     if (!(names[count++] = scree_arena_text(&r->c->arena, name))) return fail_memory(r);
   }
   return scree_fail_name(&r->in, &p->place, "column", p->answer, names, count);
@@ -361,16 +369,18 @@ static scree_status add_answers(const reader *r, scree_quantity *q) {
   for (size_t i = 0; i < q->answer_count; i++) {
     char number[2][SCREE_NUMBER_SIZE];
     double at = q->x ? q->x[i] : p->at;
+    fputs("  - ", stream);
+    scree_quote(stream, SCREE_QUOTE_YAML, p->answer);
     if (!isnan(at)) {
       scree_number_format(at, number[0]);
-      fprintf(stream, "  - \"%s\": {at: %s}\n", p->answer, number[0]);
+      fprintf(stream, ": {at: %s}\n", number[0]);
     } else if (!isnan(p->from) || !isnan(p->until)) {
       scree_number_format(isnan(p->from) ? 0 : p->from, number[0]);
       scree_number_format(isnan(p->until) ? 1e9 : p->until, number[1]);
-      fprintf(stream, "  - \"%s\": {from: %s, until: %s}\n", p->answer, number[0], number[1]);
+      fprintf(stream, ": {from: %s, until: %s}\n", number[0], number[1]);
     } else {
       static const char *const takes[] = {"", ": mean", ": sd"};
-      fprintf(stream, "  - \"%s\"%s\n", p->answer, takes[p->take]);
+      fprintf(stream, "%s\n", takes[p->take]);
     }
   }
   e->answer_count += q->answer_count;

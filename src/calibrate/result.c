@@ -1,6 +1,8 @@
 /* What a calibration says: intervals of parameters, pairs that trade against each other, answers
  * beside what was measured, and which measurement would help most. */
+#include "base/file.h"
 #include "base/math.h"
+#include "base/platform.h"
 #include "base/radix.h"
 #include "base/rng.h"
 #include "calibrate/calibration.h"
@@ -9,13 +11,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A parameter is called identified where its interval is at most this share of that of its range,
- * no end of the range is part of it, and runs at what agrees gave the answers that were measured.
- */
+/* A parameter is called identified where the model gives what was measured, its interval is at most
+ * this share of that of its range, no end of the range is part of it, and runs at what agrees gave
+ * the answers that were measured. */
 static const double identified_share = 0.5;
 static const double end_share = 0.01; /* of samples: so few beyond are none */
 /* Two trade against each other where one tells this share of the other's variance. */
 static const double trade_share = 0.5;
+enum { LARGEST_INPUT = 64 << 20 };
 enum { BINS = 8, MOST_HISTORY = 10, ANSWER_STREAM = 6 << 20, MOST_ADVISED = 500 };
 
 typedef struct analysis {
@@ -24,9 +27,10 @@ typedef struct analysis {
   scree_calibration_model model;
   scree_arena arena; /* all of the result */
   scree_calibration_result *r;
-  double unanswered; /* share of the samples: below */
-  double *samples;   /* coordinates, sample_count x d */
-  double *column;    /* scratch: sample_count */
+  double unanswered;                     /* share of the samples: below */
+  double nearest[SCREE_MOST_PARAMETERS]; /* coordinates */
+  double *samples;                       /* coordinates, sample_count x d */
+  double *column;                        /* scratch: sample_count */
   scree_error *error;
 } analysis;
 
@@ -70,26 +74,6 @@ int scree_samples_end(const double *values, size_t count, double confidence) {
   return shortest <= near ? -1 : shortest + held + near >= count - 1 ? 1 : 0;
 }
 
-/* Whether the run nearest to x gave the quantity's answer; of several there, any. */
-static bool answered_near(const analysis *a, const scree_quantity *q, const double *x) {
-  const scree_experiment_plan *e = &a->c->experiments[q->experiment];
-  const double *place = a->gathered.x[q->experiment];
-  const double *answer = a->gathered.answers[q->experiment] + q->first_answer;
-  double nearest = INFINITY;
-  bool answered = false;
-  for (size_t i = 0; i < a->gathered.run_counts[q->experiment]; i++) {
-    double distance = 0;
-    bool has = !isnan(answer[i * e->answer_count]);
-    for (size_t k = 0; k < e->active_count; k++) {
-      double way = x[e->active[k]] - place[i * a->c->parameter_count + e->active[k]];
-      distance += way * way;
-    }
-    if (distance < nearest || (distance == nearest && has)) answered = has;
-    nearest = fmin(nearest, distance);
-  }
-  return answered;
-}
-
 /* The largest share of the posterior, over what was measured, that lies nearest to runs without
  * such an answer, as of a heap too low to have an angle. The process continues to there from
  * elsewhere, so that an interval which rests on it tells nothing. */
@@ -101,7 +85,8 @@ static double find_unanswered(const analysis *a) {
     size_t without = 0;
     if (quantity->kind != SCREE_QUANTITY_TARGET || !quantity->measured) continue;
     for (size_t i = 0; i < n; i++)
-      without += !answered_near(a, quantity, a->samples + i * a->c->parameter_count);
+      without += !scree_answered_near(a->c, &a->gathered, quantity,
+                                      a->samples + i * a->c->parameter_count);
     most = fmax(most, (double)without / (double)n);
   }
   return most;
@@ -132,13 +117,23 @@ static scree_status describe_parameters(analysis *a) {
     const scree_plan_parameter *p = &c->parameters[k];
     scree_parameter_result *out = &a->r->parameters[k];
     *out = (scree_parameter_result){.name = scree_arena_text(&a->arena, p->place.name),
+                                    .unit = scree_arena_text(&a->arena, p->unit ? p->unit : ""),
+                                    .nearest = NAN,
+                                    .mean = NAN,
+                                    .sd = NAN,
+                                    .median = NAN,
+                                    .low = NAN,
+                                    .high = NAN,
+                                    .narrowed = NAN,
                                     .logarithmic = p->scale == 1,
                                     .from = scree_parameter_number(p, -1),
                                     .to = scree_parameter_number(p, 1),
                                     .at_least = NAN,
                                     .at_most = NAN};
-    if (!out->name) return fail_memory(a);
-    if (n == 0) continue;
+    if (!out->name || !out->unit) return fail_memory(a);
+    if (a->r->is_search) continue;
+    out->nearest = scree_parameter_number(p, a->nearest[k]);
+    if (a->r->agreement == SCREE_AGREEMENT_NO) continue;
     for (size_t i = 0; i < n; i++)
       a->column[i] = a->r->samples[i * d + k] = scree_parameter_number(p, a->samples[i * d + k]);
     interval s = summarise(a->column, n, a->r->confidence);
@@ -282,7 +277,7 @@ static scree_status describe_curve(analysis *a, size_t quantity, draws *d,
   const scree_quantity *q = &a->c->quantities[quantity];
   const scree_curve_basis *b = &a->model.bases[quantity];
   size_t n = a->r->sample_count, points = q->answer_count, outside = 0;
-  double *room, left = 0;
+  double *room;
   SCREE_SCRATCH(double, scores, n * b->component_count, a->error);
   SCREE_TRY_TAKE(room, &a->arena, 5 * points, a->error);
   out->point_count = points;
@@ -299,7 +294,6 @@ static scree_status describe_curve(analysis *a, size_t quantity, draws *d,
                     &scores[i * b->component_count + k]);
     }
   for (size_t p = 0; p < points; p++) {
-    double known = b->centre[p];
     for (size_t i = 0; i < n; i++) {
       d->mean[i] = b->centre[p];
       for (size_t k = 0; k < b->component_count; k++)
@@ -310,11 +304,8 @@ static scree_status describe_curve(analysis *a, size_t quantity, draws *d,
     out->curve_low[p] = s.low;
     out->curve_high[p] = s.high;
     outside += q->y[p] < s.low || q->y[p] > s.high;
-    for (size_t k = 0; k < b->component_count; k++)
-      known += scree_curve_score(b, k, q->y) * b->basis[k * points + p];
-    left += (q->y[p] - known) * (q->y[p] - known);
   }
-  out->unexplained = sqrt(left / (double)points);
+  out->unexplained = scree_curve_left(b, q->y);
   out->inside = (double)outside <= 2 * (1 - a->r->confidence) * (double)points;
   return SCREE_OK;
 }
@@ -327,29 +318,44 @@ static double one_of_all(const analysis *a) {
   return scree_exp(scree_log(a->r->confidence) / (double)count);
 }
 
-/* What the runs at the answer gave, and where the process expects their mean. */
+/* What the runs at the nearest setting gave, where the process expects their mean, and what both
+ * say of what was measured. */
 static void describe_check(const analysis *a, size_t quantity, scree_answer_result *out) {
-  const scree_calibration *c = a->c;
-  const scree_quantity *q = &c->quantities[quantity];
-  const double *x = NULL;
-  size_t all = c->experiments[q->experiment].answer_count, n = 0;
-  double sum = 0;
-  for (size_t i = 0, run = 0; c->checked && i < c->run_count; i++) {
-    if (c->runs[i].experiment != q->experiment) continue;
-    double y = a->gathered.answers[q->experiment][run++ * all + q->first_answer];
-    if (c->runs[i].round < scree_rounds_fitted(c) || isnan(y)) continue;
-    x = c->runs[i].x;
-    sum += y;
-    n++;
+  const scree_quantity *q = &a->c->quantities[quantity];
+  const scree_response *r = &a->model.model.items[a->model.first[quantity]];
+  scree_gp_value value = scree_gp_at(r->gp, a->nearest);
+  double x[SCREE_MOST_PARAMETERS],
+      all = scree_student_quantile(0.5 * (1 + one_of_all(a)), 1e6),
+      half = -scree_student_quantile(0.5 * (1 - a->r->confidence), 1e6), missed;
+  if (scree_check_place(a->c, x)) {
+    out->check_mean =
+        scree_check_mean(a->c, &a->gathered, &a->model, quantity, 0, &out->check_count);
+    if (out->check_count == 0) return;
+    double spread = all * sqrt(value.variance + value.noise / (double)out->check_count);
+    out->check_low = value.mean - spread;
+    out->check_high = value.mean + spread;
+    value = (scree_gp_value){out->check_mean, value.noise / (double)out->check_count, value.noise};
   }
-  out->check_count = n;
-  if (n == 0) return;
-  scree_gp_value value = scree_gp_at(a->model.model.items[a->model.first[quantity]].gp, x);
-  double half = scree_student_quantile(0.5 * (1 + one_of_all(a)), 1e6) *
-                sqrt(value.variance + value.noise / (double)n);
-  out->check_mean = sum / (double)n;
-  out->check_low = value.mean - half;
-  out->check_high = value.mean + half;
+  missed = fmax(out->check_mean - out->check_high, out->check_low - out->check_mean);
+  if (q->kind == SCREE_QUANTITY_PREDICTION && missed > 0) {
+    out->counted_low = fmin(out->low, out->check_mean);
+    out->counted_high = fmax(out->high, out->check_mean);
+  }
+  if (!q->measured) return;
+  out->gap = value.mean - q->value;
+  out->gap_sd = sqrt(scree_response_variance(r, &value, r->repeat_count));
+  out->met = fabs(out->gap) <= half * out->gap_sd;
+}
+
+/* Least and greatest of what runs gave. */
+static void describe_runs(const analysis *a, const scree_quantity *q, scree_answer_result *out) {
+  size_t all = a->c->experiments[q->experiment].answer_count;
+  for (size_t i = 0; i < a->gathered.run_counts[q->experiment]; i++) {
+    double y = a->gathered.answers[q->experiment][i * all + q->first_answer];
+    if (isnan(y)) continue;
+    out->lowest = isnan(out->lowest) ? y : fmin(out->lowest, y);
+    out->highest = isnan(out->highest) ? y : fmax(out->highest, y);
+  }
 }
 
 static scree_status describe_answer(analysis *a, size_t quantity, draws *d) {
@@ -361,6 +367,7 @@ static scree_status describe_answer(analysis *a, size_t quantity, draws *d) {
       .name = scree_arena_text(&a->arena, name),
       .experiment = scree_arena_text(&a->arena, a->c->experiments[q->experiment].plan->place.name),
       .answer = scree_arena_text(&a->arena, q->plan->answer),
+      .unit = scree_arena_text(&a->arena, q->unit),
       .measured = q->measured,
       .predicted = q->kind == SCREE_QUANTITY_PREDICTION,
       .value = q->value,
@@ -374,14 +381,21 @@ static scree_status describe_answer(analysis *a, size_t quantity, draws *d) {
       .single_high = NAN,
       .noise = NAN,
       .run_count = scree_gp_run_count(r->gp),
+      .lowest = NAN,
+      .highest = NAN,
+      .gap = NAN,
+      .gap_sd = NAN,
+      .counted_low = NAN,
+      .counted_high = NAN,
       .check_mean = NAN,
       .check_low = NAN,
       .check_high = NAN,
       .unexplained = NAN};
-  if (!out->name || !out->experiment || !out->answer) return fail_memory(a);
+  if (!out->name || !out->experiment || !out->answer || !out->unit) return fail_memory(a);
   out->missing = scree_rounds_until(a->c, q->experiment, scree_rounds_fitted(a->c)) -
                  a->gathered.waiting[q->experiment] - out->run_count;
-  if (a->r->sample_count == 0) return SCREE_OK;
+  if (!q->x) describe_runs(a, q, out);
+  if (a->r->is_search) return SCREE_OK;
   if (q->x) return describe_curve(a, quantity, d, out);
   describe_scalar(a, r, a->model.first[quantity], d, out);
   describe_check(a, quantity, out);
@@ -501,7 +515,167 @@ static scree_status describe_history(analysis *a) {
   return SCREE_OK;
 }
 
+/* ---- where the model does not give what was measured ---- */
+
+static void judge_fit(analysis *a) {
+  const scree_model *m = &a->model.model;
+  double log_determinant;
+  if (!scree_check_place(a->c, a->nearest))
+    scree_calibration_nearest(a->c, &a->gathered, m, a->samples, a->r->sample_count, a->nearest);
+  a->r->misfit_limit = scree_calibration_limit(a->c, m, a->nearest, a->samples, a->r->sample_count);
+  a->r->misfit =
+      a->gathered.open ? (double)NAN : scree_check_distance(a->c, &a->gathered, &a->model);
+  if (isnan(a->r->misfit)) /* not checked yet */
+    a->r->misfit = scree_model_distance_at(m, a->nearest, &log_determinant);
+  else
+    a->r->agreement = a->r->misfit <= a->r->misfit_limit ? SCREE_AGREEMENT_YES : SCREE_AGREEMENT_NO;
+}
+
+/* The fit without the measurement of a quantity: where it is, and what that one would be there. */
+static scree_status refit(analysis *a, size_t quantity, scree_refit *out) {
+  size_t d = a->c->parameter_count, count;
+  scree_model *m = &a->model.model;
+  double x[SCREE_MOST_PARAMETERS], log_determinant;
+  SCREE_CLEANUP(scree_free_at) double *samples = NULL;
+  SCREE_TRY(scree_calibration_sample(a->c, m, 0, &samples, &count, a->error));
+  SCREE_SCRATCH(double, column, count, a->error);
+  scree_calibration_nearest(a->c, &a->gathered, m, samples, count, x);
+  out->fits = scree_model_distance_at(m, x, &log_determinant) <=
+              scree_calibration_limit(a->c, m, x, samples, count);
+  for (size_t q = 0; q < a->c->quantity_count; q++)
+    out->answers[q] =
+        a->c->quantities[q].x ? (double)NAN : scree_gp_mean(m->items[a->model.first[q]].gp, x);
+  for (size_t k = 0; k < d; k++) {
+    for (size_t i = 0; i < count; i++)
+      column[i] = scree_parameter_number(&a->c->parameters[k], samples[i * d + k]);
+    interval s = summarise(column, count, a->r->confidence);
+    out->nearest[k] = scree_parameter_number(&a->c->parameters[k], x[k]);
+    out->low[k] = out->fits ? s.low : (double)NAN;
+    out->high[k] = out->fits ? s.high : (double)NAN;
+  }
+  if (!out->fits || a->c->quantities[quantity].x) return SCREE_OK;
+  for (size_t i = 0; i < count; i++)
+    column[i] = scree_gp_mean(m->items[a->model.first[quantity]].gp, samples + i * d);
+  interval s = summarise(column, count, a->r->confidence);
+  out->value_low = s.low;
+  out->value_high = s.high;
+  return SCREE_OK;
+}
+
+/* Each measurement left out in turn: which of them is at odds with the rest. */
+static scree_status refit_all(analysis *a) {
+  size_t d = a->c->parameter_count, n = a->c->quantity_count, measured = 0;
+  for (size_t q = 0; q < n; q++) measured += a->r->answers[q].measured;
+  SCREE_TRY_TAKE(a->r->refits, &a->arena, n, a->error);
+  for (size_t q = 0; measured > 1 && q < n; q++) {
+    scree_refit *out = &a->r->refits[a->r->refit_count];
+    scree_response *first = &a->model.model.items[a->model.first[q]];
+    if (!first->measured) continue;
+    *out = (scree_refit){.without = a->r->answers[q].name, .value_low = NAN, .value_high = NAN};
+    SCREE_TRY_TAKE(out->nearest, &a->arena, 3 * d, a->error);
+    SCREE_TRY_TAKE(out->answers, &a->arena, n, a->error);
+    out->low = out->nearest + d;
+    out->high = out->low + d;
+    for (size_t k = 0; k < a->model.count[q]; k++) first[k].measured = false;
+    scree_status status = refit(a, q, out);
+    for (size_t k = 0; k < a->model.count[q]; k++) first[k].measured = true;
+    SCREE_TRY(status);
+    a->r->refit_count++;
+  }
+  return SCREE_OK;
+}
+
+/* Nothing is fitted, so nothing is said to follow: no interval, no prediction, no sample. */
+static scree_status describe_misfit(analysis *a) {
+  for (size_t q = 0; q < a->r->answer_count; q++) {
+    scree_answer_result *out = &a->r->answers[q];
+    out->mean = out->low = out->high = out->single_low = out->single_high = NAN;
+    out->counted_low = out->counted_high = NAN;
+    out->inside = false;
+  }
+  a->r->sample_count = 0;
+  return refit_all(a);
+}
+
+/* ---- runs and inputs ---- */
+
+static scree_status list_runs(analysis *a) {
+  const scree_calibration *c = a->c;
+  size_t d = c->parameter_count, *next;
+  SCREE_TRY_TAKE(a->r->runs, &a->arena, c->run_count, a->error);
+  SCREE_TRY_TAKE(next, &a->arena, c->experiment_count, a->error);
+  memset(next, 0, c->experiment_count * sizeof *next);
+  for (size_t i = 0; i < c->run_count; i++) {
+    const scree_planned_run *p = &c->runs[i];
+    const scree_experiment_plan *e = &c->experiments[p->experiment];
+    const double *answers =
+        a->gathered.answers[p->experiment] + next[p->experiment]++ * e->answer_count;
+    scree_calibration_run *out = &a->r->runs[a->r->run_count];
+    bool any = false;
+    *out = (scree_calibration_run){.experiment = scree_arena_text(&a->arena, e->plan->place.name),
+                                   .seed = p->seed,
+                                   .check = c->checked && p->round == scree_rounds_fitted(c)};
+    SCREE_TRY_TAKE(out->values, &a->arena, d + c->quantity_count, a->error);
+    out->answers = out->values + d;
+    if (!out->experiment) return fail_memory(a);
+    for (size_t k = 0; k < d; k++)
+      out->values[k] = scree_parameter_number(&c->parameters[k], p->x[k]);
+    for (size_t q = 0; q < c->quantity_count; q++) {
+      const scree_quantity *quantity = &c->quantities[q];
+      bool has = quantity->experiment == p->experiment && !isnan(answers[quantity->first_answer]);
+      out->answers[q] = has && !quantity->x ? answers[quantity->first_answer] : (double)NAN;
+      any = any || has;
+    }
+    a->r->run_count += any;
+  }
+  return SCREE_OK;
+}
+
+static scree_status add_input(analysis *a, const char *path) {
+  scree_input *out = &a->r->origin.inputs[a->r->origin.input_count++];
+  SCREE_CLEANUP(scree_free_at) char *bytes = NULL;
+  size_t size = 0;
+  *out = (scree_input){.path = scree_arena_text(&a->arena, path)};
+  if (!out->path) return fail_memory(a);
+  if (scree_file_read(path, LARGEST_INPUT, &bytes, &size, NULL) == SCREE_OK)
+    out->checksum = scree_checksum_of(bytes, size);
+  return SCREE_OK;
+}
+
+/* The calibration's file, its scenes, and the files that its commands name beside it. */
+static scree_status list_inputs(analysis *a) {
+  const scree_calibration *c = a->c;
+  size_t most = 1 + c->experiment_count;
+  for (size_t e = 0; e < c->experiment_count; e++) most += c->experiments[e].plan->command.count;
+  SCREE_TRY_TAKE(a->r->origin.inputs, &a->arena, most, a->error);
+  SCREE_TRY(add_input(a, c->path));
+  for (size_t e = 0; e < c->experiment_count; e++) {
+    const scree_texts *words = &c->experiments[e].plan->command;
+    if (c->experiments[e].scene_path) SCREE_TRY(add_input(a, c->experiments[e].scene_path));
+    for (size_t i = 0; i < words->count; i++) {
+      char path[SCREE_PATH_BYTES];
+      if (!strstr(words->items[i], "{here}")) continue;
+      scree_calibration_word(c, words->items[i], path, sizeof path);
+      if (scree_path_exists(path)) SCREE_TRY(add_input(a, path));
+    }
+  }
+  return SCREE_OK;
+}
+
 /* ---- the whole ---- */
+
+/* As given; else what it seeks: "friction, rolling by heap, tray". */
+static const char *title_of(analysis *a) {
+  const scree_calibration *c = a->c;
+  char text[300] = "";
+  if (c->plan.title) return scree_arena_text(&a->arena, c->plan.title);
+  for (size_t k = 0; k < c->parameter_count; k++)
+    scree_add_text(text, sizeof text, "%s%.60s", k ? ", " : "", c->parameters[k].place.name);
+  for (size_t e = 0; e < c->experiment_count; e++)
+    scree_add_text(text, sizeof text, "%s%.60s", e ? ", " : " by ",
+                   c->experiments[e].plan->place.name);
+  return scree_arena_text(&a->arena, text);
+}
 
 static scree_status start(analysis *a, scree_calibration *c) {
   SCREE_TRY(scree_rounds_read(c, a->error));
@@ -513,13 +687,19 @@ static scree_status start(analysis *a, scree_calibration *c) {
   scree_calibration_result *r = a->r;
   SCREE_TRY(scree_rounds_end(c, &end, a->error));
   r->progress = scree_calibration_stands(c, &a->gathered);
-  r->title = scree_arena_text(&a->arena, c->plan.title ? c->plan.title : c->path);
+  r->title = title_of(a);
   r->version = scree_version();
   r->stopped = *end && a->gathered.open == 0 ? scree_arena_text(&a->arena, end) : NULL;
   r->is_search = scree_calibration_is_search(c);
   r->maximise = c->plan.maximise != NULL;
   r->confidence = c->plan.confidence;
   r->seed = c->plan.seed;
+  r->origin.started = a->gathered.started;
+  r->origin.ended = a->gathered.ended;
+  r->origin.machine = scree_arena_text(&a->arena, a->gathered.machine);
+  if (!r->origin.machine) return fail_memory(a);
+  SCREE_TRY(list_inputs(a));
+  SCREE_TRY(list_runs(a));
   r->failure_count = a->gathered.failure_count;
   SCREE_TRY_TAKE(r->failures, &a->arena, r->failure_count + 1, a->error);
   if (!r->title) return fail_memory(a);
@@ -530,13 +710,16 @@ static scree_status start(analysis *a, scree_calibration *c) {
 }
 
 static scree_status calibrate(analysis *a) {
-  SCREE_TRY(scree_calibration_sample(a->c, &a->model.model, 1, &a->samples, &a->r->sample_count,
-                                     a->error));
-  SCREE_TRY_ALLOC(a->column, a->r->sample_count, a->error);
+  scree_calibration_result *r = a->r;
+  SCREE_TRY(
+      scree_calibration_sample(a->c, &a->model.model, 1, &a->samples, &r->sample_count, a->error));
+  SCREE_TRY_ALLOC(a->column, r->sample_count, a->error);
+  judge_fit(a);
   a->unanswered = find_unanswered(a);
   SCREE_TRY(describe_parameters(a));
-  SCREE_TRY(find_trades(a));
   SCREE_TRY(describe_answers(a));
+  if (r->agreement == SCREE_AGREEMENT_NO) return describe_misfit(a);
+  SCREE_TRY(find_trades(a));
   SCREE_TRY(advise_all(a));
   return describe_history(a);
 }

@@ -11,6 +11,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/platform.h"
+#include "base/quote.h"
 #include "calibrate/calibration.h"
 
 #include <inttypes.h>
@@ -154,12 +155,13 @@ static scree_status read_round(scree_calibration *c, const char *path, scree_err
   const char *check = text_of(&root, "check");
   mark_of(c, mark);
   c->checked = check && !strcmp(check, mark);
+  c->check_rounds = c->checked ? c->check_rounds + 1 : 0;
   return SCREE_OK;
 }
 
 scree_status scree_rounds_read(scree_calibration *c, scree_error *error) {
   scree_arena_free(&c->run_arena);
-  c->run_count = c->round_count = 0;
+  c->run_count = c->round_count = c->check_rounds = 0;
   c->checked = false;
   for (;; c->round_count++) {
     const char *path = ROUND_PATH(c, c->round_count + 1);
@@ -193,17 +195,17 @@ scree_status scree_rounds_add(scree_calibration *c, const scree_place_pick *pick
   fputs("parameters: [", s);
   for (size_t p = 0; p < c->parameter_count; p++) {
     fputs(p ? ", " : "", s);
-    scree_yaml_put_text(c->parameters[p].place.name, s);
+    scree_quote(s, SCREE_QUOTE_YAML, c->parameters[p].place.name);
   }
   fputs("]\nruns:\n", s);
   for (size_t i = 0; i < count; i++) {
     fputs("  - {experiment: ", s);
-    scree_yaml_put_text(c->experiments[picks[i].experiment].plan->place.name, s);
+    scree_quote(s, SCREE_QUOTE_YAML, c->experiments[picks[i].experiment].plan->place.name);
     fprintf(s, ", seed: %" PRIu64 ", values: [", c->plan.seed + c->run_count + i);
     for (size_t p = 0; p < c->parameter_count; p++) {
       const char *value = scree_parameter_text(&c->parameters[p], picks[i].x[p], &c->run_arena);
       fputs(p ? ", " : "", s);
-      scree_yaml_put_text(value ? value : "", s);
+      scree_quote(s, SCREE_QUOTE_YAML, value ? value : "");
     }
     fputs("]}\n", s);
   }
@@ -253,29 +255,35 @@ double scree_rounds_seconds(const scree_calibration *c) {
 /* ---- an experiment's study ---- */
 
 /* {here} is the folder of the calibration's file. */
-static void put_word(const scree_calibration *c, FILE *stream, const char *word) {
+void scree_calibration_word(const scree_calibration *c, const char *word, char *text, size_t size) {
   char full[4096];
   if (!scree_path_full(c->path, full, sizeof full)) snprintf(full, sizeof full, "%s", c->path);
   char *slash = strrchr(full, '/');
   const char *here = strstr(word, "{here}");
   if (slash) *slash = 0;
-  char text[8192];
   if (here)
-    snprintf(text, sizeof text, "%.*s%s%s", (int)(here - word), word, slash ? full : ".", here + 6);
-  scree_yaml_put_text(here ? text : word, stream);
+    snprintf(text, size, "%.*s%s%s", (int)(here - word), word, slash ? full : ".", here + 6);
+  else
+    snprintf(text, size, "%s", word);
+}
+
+static void put_word(const scree_calibration *c, FILE *stream, const char *word) {
+  char text[8192];
+  scree_calibration_word(c, word, text, sizeof text);
+  scree_quote(stream, SCREE_QUOTE_YAML, text);
 }
 
 static void put_factor(const scree_calibration *c, FILE *s, size_t experiment, const char *key,
                        size_t parameter) {
   bool first = true;
   fputs("  ", s);
-  scree_yaml_put_text(key, s);
+  scree_quote(s, SCREE_QUOTE_YAML, key);
   fputs(": [", s);
   for (size_t i = 0; i < c->run_count; i++) {
     if (c->runs[i].experiment != experiment) continue;
     fputs(first ? "" : ", ", s);
     if (parameter < c->parameter_count)
-      scree_yaml_put_text(c->runs[i].values[parameter], s);
+      scree_quote(s, SCREE_QUOTE_YAML, c->runs[i].values[parameter]);
     else
       fprintf(s, "%" PRIu64, c->runs[i].seed);
     first = false;
@@ -298,7 +306,7 @@ static void put_parameter(const scree_calibration *c, FILE *s, size_t experiment
 static void put_study(const scree_calibration *c, size_t experiment, FILE *s) {
   const scree_experiment_plan *e = &c->experiments[experiment];
   fputs("name: ", s);
-  scree_yaml_put_text(e->plan->place.name, s);
+  scree_quote(s, SCREE_QUOTE_YAML, e->plan->place.name);
   if (e->plan->command.count) {
     fputs("\nbase:\n  command: [", s);
     for (size_t i = 0; i < e->plan->command.count; i++) {
@@ -306,15 +314,16 @@ static void put_study(const scree_calibration *c, size_t experiment, FILE *s) {
       put_word(c, s, e->plan->command.items[i]);
     }
     fputs("]\n", s);
+    if (!isnan(e->plan->timeout)) fprintf(s, "  timeout: %.17g\n", e->plan->timeout);
   } else {
     fputs("\nbase:\n  scene: ", s);
-    scree_yaml_put_text(e->scene_path, s);
+    scree_quote(s, SCREE_QUOTE_YAML, e->scene_path);
     putc('\n', s);
     for (size_t i = 0; e->plan->set && i < e->plan->set->item_count; i++) {
       fputs("  ", s);
-      scree_yaml_put_text(e->plan->set->items[i].key, s);
+      scree_quote(s, SCREE_QUOTE_YAML, e->plan->set->items[i].key);
       fputs(": ", s);
-      scree_yaml_put_text(e->plan->set->items[i].text, s);
+      scree_quote(s, SCREE_QUOTE_YAML, e->plan->set->items[i].text);
       putc('\n', s);
     }
   }

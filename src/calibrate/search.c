@@ -1,8 +1,13 @@
 /* The best settings of a design by expected improvement (Jones, Schonlau and Welch 1998) on
  * Gaussian processes with noise. What is improved upon is the best of the processes' means where
- * there are runs, not of what single runs gave (Picheny and others 2013 compare; this is their
- * plug-in). Each limit multiplies by the probability that it holds (Gardner and others 2014). Of a
- * batch each is chosen as if those before had answered what was expected of them. */
+ * there are runs and the limits hold with the confidence asked, not of what single runs gave
+ * (Picheny and others 2013 compare; this is their plug-in). Each limit multiplies by the
+ * probability that it holds (Gardner and others 2014). Of a batch each is chosen as if those before
+ * had answered what was expected of them; every fourth goes where least is known, for a process
+ * that takes hollows for noise expects no improvement in them.
+ *
+ * The last runs are made at the best settings so far, then at the best alone: which it is, that
+ * the limits hold there, and what it gives are told by runs there. */
 #include "calibrate/calibration.h"
 
 #include "base/math.h"
@@ -13,9 +18,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDE = 512, CLOSE = 128, CANDIDATES = WIDE + CLOSE, CLOSE_STREAM = 7 << 20 };
-static const double close_step = 0.1;    /* of the half range */
-static const double least_allowed = 0.5; /* probability of the limits at the best */
+enum { WIDE = 512, CLOSE = 192, CANDIDATES = WIDE + CLOSE, CLOSE_STREAM = 7 << 20 };
+static const double close_steps[] = {0.15, 0.05, 0.015}; /* of the half range */
+enum { BEST = 4, STEPS = sizeof close_steps / sizeof *close_steps, EXPLORE = 4 };
+/* Share of the budget for runs at the best settings, of which there are at least so many; how many
+ * tell an interval.
+ */
+static const double confirm_share = 0.25;
+enum { LEAST_CONFIRM = 8, TELLING = 4 };
 /* It ends when no place is expected to better the best by this share of the answer's range. */
 static const double settled_gain = 1e-3;
 static const double root2 = 1.41421356237309504880, root2pi = 2.50662827463100050242;
@@ -62,38 +72,65 @@ static size_t sought(const scree_calibration *c) {
   return q;
 }
 
-/* The best mean among places with runs where the limits likely hold; where they do nowhere, the
- * place where they most likely do. Its coordinates. */
-static double find_best(const scree_calibration *c, const scree_calibration_model *m,
-                        const scree_answers *g, const double **x) {
-  const scree_gp *gp = response_of(m, sought(c))->gp;
-  size_t d = c->parameter_count;
-  double best = -INFINITY, most = -1;
-  bool any = false;
-  for (size_t e = 0; e < c->experiment_count; e++)
-    for (size_t i = 0; i < g->run_counts[e]; i++) {
-      const double *place = g->x[e] + i * d;
-      double allowed = allowed_at(c, m, place), value = sign_of(c) * scree_gp_mean(gp, place);
-      bool good = allowed >= least_allowed;
-      if (any && !good) continue;
-      if (good ? any && value <= best : allowed <= most) continue;
-      any = any || good;
-      best = value;
-      most = allowed;
-      *x = place;
-    }
-  return best;
+/* Places with runs, the best first; those whose limits hold with the confidence before the others.
+ */
+typedef struct ranking {
+  const double *x[BEST];
+  double value[BEST], allowed[BEST];
+  size_t count;
+} ranking;
+
+static bool is_before(const scree_calibration *c, double allowed, double value,
+                      double other_allowed, double other_value) {
+  bool good = allowed >= c->plan.confidence, other = other_allowed >= c->plan.confidence;
+  if (good != other) return good;
+  return good ? value > other_value : allowed > other_allowed;
 }
 
-/* Sobol's sequence all over, and random steps about the best. */
-static void list_candidates(const scree_calibration *c, const double *best, double *x) {
+static bool is_ranked(const ranking *r, const double *x, size_t d) {
+  for (size_t i = 0; i < r->count; i++)
+    if (!memcmp(r->x[i], x, d * sizeof *x)) return true;
+  return false;
+}
+
+static ranking rank_places(const scree_calibration *c, const scree_calibration_model *m,
+                           const scree_answers *g) {
+  const scree_gp *gp = response_of(m, sought(c))->gp;
+  ranking r = {0};
+  for (size_t e = 0; e < c->experiment_count; e++)
+    for (size_t i = 0; i < g->run_counts[e]; i++) {
+      const double *x = g->x[e] + i * c->parameter_count;
+      double allowed = allowed_at(c, m, x), value = sign_of(c) * scree_gp_mean(gp, x);
+      if (is_ranked(&r, x, c->parameter_count)) continue;
+      size_t at = r.count < BEST ? r.count : BEST;
+      while (at > 0 && is_before(c, allowed, value, r.allowed[at - 1], r.value[at - 1])) at--;
+      if (at == BEST) continue;
+      if (r.count < BEST) r.count++;
+      for (size_t k = r.count - 1; k > at; k--) {
+        r.x[k] = r.x[k - 1];
+        r.value[k] = r.value[k - 1];
+        r.allowed[k] = r.allowed[k - 1];
+      }
+      r.x[at] = x;
+      r.value[at] = value;
+      r.allowed[at] = allowed;
+    }
+  return r;
+}
+
+/* Sobol's sequence all over, another part of it each time, and random steps about the best. */
+static void list_candidates(const scree_calibration *c, const ranking *r, double *x) {
   size_t d = c->parameter_count;
   scree_rng rng = {c->plan.seed, CLOSE_STREAM + c->round_count, 0};
-  scree_design_sobol(c->plan.seed + c->round_count, WIDE, d, x);
+  scree_design_sobol(c->plan.seed + 7919 * c->round_count, WIDE, d, x);
   for (size_t i = 0; i < WIDE * d; i++) x[i] = 2 * x[i] - 1;
-  for (size_t i = WIDE * d; i < CANDIDATES * d; i++) {
-    double step = close_step * scree_rng_normal(&rng);
-    x[i] = fmax(-1, fmin(1, best[i % d] + step));
+  for (size_t i = 0; i < CLOSE; i++) {
+    const double *centre = r->x[r->count ? i % r->count : 0];
+    if (!centre) break;
+    for (size_t k = 0; k < d; k++) {
+      double step = close_steps[i / BEST % STEPS] * scree_rng_normal(&rng);
+      x[(WIDE + i) * d + k] = fmax(-1, fmin(1, centre[k] + step));
+    }
   }
   for (size_t i = 0; i < CANDIDATES * d; i++)
     x[i] = scree_parameter_snap(&c->parameters[i % d], x[i]);
@@ -110,7 +147,7 @@ static void free_field(field *f) {
 }
 
 static scree_status make_field(const scree_calibration *c, const scree_calibration_model *m,
-                               const double *best, field *f, scree_error *error) {
+                               const ranking *r, field *f, scree_error *error) {
   size_t d = c->parameter_count;
   const scree_gp *gp = response_of(m, sought(c))->gp;
   SCREE_TRY_ALLOC(f->x, CANDIDATES * d, error);
@@ -118,7 +155,7 @@ static scree_status make_field(const scree_calibration *c, const scree_calibrati
   SCREE_TRY_ALLOC(f->covariance, CANDIDATES * CANDIDATES, error);
   f->allowed = f->mean + CANDIDATES;
   f->noise = f->allowed + CANDIDATES;
-  list_candidates(c, best, f->x);
+  list_candidates(c, r, f->x);
   for (size_t i = 0; i < CANDIDATES; i++) {
     f->mean[i] = sign_of(c) * scree_gp_mean(gp, f->x + i * d);
     f->noise[i] = scree_gp_noise(gp, f->x + i * d);
@@ -127,13 +164,14 @@ static scree_status make_field(const scree_calibration *c, const scree_calibrati
   return scree_gp_covariance(gp, f->x, CANDIDATES, f->covariance, error);
 }
 
-/* The candidate of the greatest expected improvement; then what is known after runs there. */
-static size_t take_best(field *f, double best, double *gain) {
+/* The candidate of the greatest expected improvement, or where least is known; then what is known
+ * after runs there. */
+static size_t take_best(field *f, double best, bool explore, double *gain) {
   size_t chosen = 0;
   *gain = -1;
   for (size_t i = 0; i < CANDIDATES; i++) {
     double sd = sqrt(fmax(f->covariance[i * CANDIDATES + i], 0));
-    double expected = improvement(f->mean[i], sd, best) * f->allowed[i];
+    double expected = (explore ? sd : improvement(f->mean[i], sd, best)) * f->allowed[i];
     if (expected <= *gain) continue;
     *gain = expected;
     chosen = i;
@@ -152,29 +190,61 @@ static size_t take_best(field *f, double best, double *gain) {
   return chosen;
 }
 
-/* Runs of every experiment at each place: the answer sought and all limits. */
+/* Runs of every experiment at a place: the answer sought and all limits. */
+static void pick_place(const scree_calibration *c, const double *x, size_t count,
+                       scree_place_pick *picks, size_t *made) {
+  for (size_t e = 0; x && e < c->experiment_count && *made < count; e++) {
+    picks[*made].experiment = e;
+    memcpy(picks[(*made)++].x, x, c->parameter_count * sizeof *x);
+  }
+}
+
+static size_t runs_at(const scree_calibration *c, const scree_answers *g, const double *x) {
+  size_t count = 0, d = c->parameter_count;
+  for (size_t i = 0; i < g->run_counts[0]; i++) count += !memcmp(g->x[0] + i * d, x, d * sizeof *x);
+  return count;
+}
+
+/* At the best places in turn while half of what is kept for this is left, then at the best. */
+static void confirm(const scree_calibration *c, const ranking *r, bool early, size_t count,
+                    scree_place_pick *picks) {
+  for (size_t made = 0, i = 0; made < count; i++)
+    pick_place(c, r->x[early && r->count ? i % r->count : 0], count, picks, &made);
+}
+
 scree_status scree_search_next(const scree_calibration *c, const scree_calibration_model *m,
-                               const scree_answers *g, size_t count, scree_place_pick *picks,
+                               const scree_answers *g, size_t *most, scree_place_pick *picks,
                                double *left, scree_error *error) {
-  size_t d = c->parameter_count, made = 0;
-  const double *place = g->x[0];
+  size_t d = c->parameter_count, count = *most, made = 0, budget = c->plan.budget->runs,
+         still = budget - c->run_count,
+         kept = (size_t)fmax(LEAST_CONFIRM * (double)c->experiment_count,
+                             confirm_share * (double)budget);
   SCREE_CLEANUP(free_field) field f = {0};
-  double best = find_best(c, m, g, &place), low = INFINITY, high = -INFINITY, first = 0;
-  SCREE_TRY(make_field(c, m, place, &f, error));
+  ranking r = rank_places(c, m, g);
+  double low = INFINITY, high = -INFINITY, first = 0;
+  *left = 1;
+  if (still <= kept) {
+    confirm(c, &r, 2 * still > kept, count, picks);
+    return SCREE_OK;
+  }
+  if (count > still - kept) *most = count = still - kept;
+  SCREE_TRY(make_field(c, m, &r, &f, error));
   for (size_t i = 0; i < CANDIDATES; i++) {
     low = fmin(low, f.mean[i]);
     high = fmax(high, f.mean[i]);
   }
-  while (made < count) {
+  double best = r.allowed[0] >= c->plan.confidence ? r.value[0] : low;
+  for (size_t i = 0; made < count; i++) {
     double gain;
-    size_t chosen = take_best(&f, best, &gain);
-    if (made == 0) first = gain;
-    for (size_t e = 0; e < c->experiment_count && made < count; e++) {
-      picks[made].experiment = e;
-      memcpy(picks[made++].x, f.x + chosen * d, d * sizeof(double));
-    }
+    size_t chosen = take_best(&f, best, i % EXPLORE == EXPLORE - 1, &gain);
+    if (i == 0) first = gain;
+    pick_place(c, f.x + chosen * d, count, picks, &made);
   }
-  *left = first > settled_gain * (high - low) ? 1 : 0;
+  if (first > settled_gain * (high - low)) return SCREE_OK;
+  if (runs_at(c, g, r.x[0]) > TELLING)
+    *left = 0;
+  else
+    confirm(c, &r, false, made, picks);
   return SCREE_OK;
 }
 
@@ -186,6 +256,28 @@ static bool seen_before(const scree_answers *g, size_t run, size_t d) {
   for (size_t i = 0; i < run; i++)
     if (!memcmp(g->x[0] + i * d, g->x[0] + run * d, d * sizeof(double))) return true;
   return false;
+}
+
+/* Tells of a setting with enough runs what these give, but for the first, by which it was found. */
+static void tell_by_runs(const scree_calibration *c, const scree_answers *g, const double *x,
+                         scree_setting *out) {
+  const scree_quantity *q = &c->quantities[sought(c)];
+  size_t d = c->parameter_count, e = q->experiment, all = c->experiments[e].answer_count, n = 0;
+  double mean = 0, squares = 0;
+  bool first = true;
+  for (size_t i = 0; i < g->run_counts[e]; i++) {
+    double y = g->answers[e][i * all + q->first_answer];
+    if (isnan(y) || memcmp(g->x[e] + i * d, x, d * sizeof *x) != 0) continue;
+    double step = y - mean;
+    if (!first) squares += step * (y - (mean += step / (double)++n));
+    first = false;
+  }
+  if (n < TELLING) return;
+  double half = scree_student_quantile(0.5 * (1 + c->plan.confidence), (double)(n - 1)) *
+                sqrt(squares / (double)(n - 1) / (double)n);
+  out->mean = mean;
+  out->low = mean - half;
+  out->high = mean + half;
 }
 
 static scree_status describe_place(const scree_calibration *c, const scree_calibration_model *m,
@@ -202,8 +294,7 @@ static scree_status describe_place(const scree_calibration *c, const scree_calib
                          .values = scree_arena_take(arena, d, sizeof(double))};
   if (!out->values) return SCREE_OUT_OF_MEMORY;
   for (size_t k = 0; k < d; k++) out->values[k] = scree_parameter_number(&c->parameters[k], x[k]);
-  for (size_t i = 0; i < g->run_counts[0]; i++)
-    out->run_count += !memcmp(g->x[0] + i * d, x, d * sizeof(double));
+  out->run_count = runs_at(c, g, x);
   return SCREE_OK;
 }
 
@@ -215,7 +306,7 @@ static scree_status describe_rounds(const scree_calibration *c, const scree_cali
   r->history = scree_arena_take(arena, 2 * c->round_count, sizeof *r->history);
   if (!r->history) return SCREE_OUT_OF_MEMORY;
   for (size_t i = 0; i < c->run_count; i++) {
-    if (allowed_at(c, m, c->runs[i].x) >= least_allowed)
+    if (allowed_at(c, m, c->runs[i].x) >= c->plan.confidence)
       best = fmax(best, sign_of(c) * scree_gp_mean(gp, c->runs[i].x));
     double *row = r->history + 2 * c->runs[i].round;
     row[0] = (double)(i + 1);
@@ -225,18 +316,12 @@ static scree_status describe_rounds(const scree_calibration *c, const scree_cali
   return SCREE_OK;
 }
 
-/* Better first; those whose limits likely hold before the others. */
-static bool is_better(const scree_calibration *c, const scree_setting *a, const scree_setting *b) {
-  bool good_a = a->allowed >= least_allowed, good_b = b->allowed >= least_allowed;
-  if (good_a != good_b) return good_a;
-  return good_a ? sign_of(c) * a->mean > sign_of(c) * b->mean : a->allowed > b->allowed;
-}
-
 scree_status scree_search_describe(const scree_calibration *c, const scree_calibration_model *m,
                                    const scree_answers *g, scree_arena *arena,
                                    scree_calibration_result *r, scree_error *error) {
   size_t d = c->parameter_count;
   scree_status status = SCREE_OK;
+  SCREE_SCRATCH(const double *, x, g->run_counts[0] + 1, error);
   r->settings = scree_arena_take(arena, g->run_counts[0], sizeof *r->settings);
   r->sought = scree_arena_text(arena, c->quantities[sought(c)].plan->answer);
   if (!r->settings || !r->sought) return scree_fail_memory(error, 0, "candidates");
@@ -245,11 +330,18 @@ scree_status scree_search_describe(const scree_calibration *c, const scree_calib
     scree_setting made;
     status = describe_place(c, m, g, g->x[0] + i * d, arena, &made);
     size_t at = r->setting_count++;
-    for (; at > 0 && is_better(c, &made, &r->settings[at - 1]); at--)
+    double value = sign_of(c) * made.mean;
+    while (at > 0 && is_before(c, made.allowed, value, r->settings[at - 1].allowed,
+                               sign_of(c) * r->settings[at - 1].mean)) {
       r->settings[at] = r->settings[at - 1];
+      x[at] = x[at - 1];
+      at--;
+    }
     r->settings[at] = made;
+    x[at] = g->x[0] + i * d;
   }
   if (r->setting_count > MOST_NEAR) r->setting_count = MOST_NEAR;
+  for (size_t i = 0; i < r->setting_count; i++) tell_by_runs(c, g, x[i], &r->settings[i]);
   if (status == SCREE_OK) status = describe_rounds(c, m, arena, r);
   return status == SCREE_OK ? status : scree_fail_memory(error, 0, "candidates");
 }

@@ -1,9 +1,7 @@
 /* The loop of a worker: take runs, wait for those of others, plan the next ones. */
-#include "base/file.h"
-#include "base/number.h"
 #include "base/platform.h"
 #include "calibrate/calibration.h"
-#include "calibrate/ensemble.h"
+#include "calibrate/model.h"
 #include "study/design.h"
 #include "study/lease.h"
 
@@ -12,7 +10,8 @@
 /* More runs do not narrow a posterior whose width is that of the measurements: it ends when this
  * share of the variance, at most, is the emulators'. */
 static const double settled_share = 0.03;
-enum { REFERENCE = 128, CHECKS = 3 };
+/* Runs of a check, and checks: each at another setting that the model then holds for possible. */
+enum { REFERENCE = 128, CHECKS = 3, MOST_CHECKS = 4 };
 
 /* ---- the posterior ---- */
 
@@ -91,45 +90,59 @@ static scree_status ask(const scree_calibration *c, const scree_calibration_mode
   return scree_model_next(&m->model, &q, count, picks, left, error);
 }
 
-/* The coordinate of the mean over the posterior, of a list of the value nearest to it. */
-static double answer_at(const scree_calibration *c, size_t k, const double *samples, size_t count) {
-  const scree_plan_parameter *p = &c->parameters[k];
-  char number[SCREE_NUMBER_SIZE];
-  double mean = 0;
-  for (size_t i = 0; i < count; i++) {
-    double x = samples[i * c->parameter_count + k];
-    mean += (p->values.count ? x : scree_parameter_value(p, x)) / (double)count;
-  }
-  if (p->values.count) return scree_parameter_snap(p, mean);
-  scree_number_format_digits(mean, 9, number);
-  return scree_parameter_coordinate(p, number);
-}
-
-/* Some runs of every experiment at the answer: what they give beside what is expected of them shows
- * whether it can be relied on. They come on top of the budget. */
-static scree_status plan_check(scree_calibration *c, const scree_calibration_model *m, double begun,
+/* Some runs of every experiment at x: what they give shows whether the model gives what was
+ * measured, and whether what is expected can be relied on. They come on top of the budget. */
+static scree_status plan_check(scree_calibration *c, const double *x, double begun,
                                scree_error *error) {
-  size_t d = c->parameter_count, sample_count, count = CHECKS * c->experiment_count;
-  SCREE_CLEANUP(scree_free_at) double *samples = NULL;
-  SCREE_TRY(scree_calibration_sample(c, &m->model, 1, &samples, &sample_count, error));
+  size_t count = CHECKS * c->experiment_count;
   SCREE_SCRATCH(scree_place_pick, picks, count, error);
   for (size_t i = 0; i < count; i++) {
     picks[i].experiment = i / CHECKS;
-    for (size_t k = 0; k < d; k++) picks[i].x[k] = answer_at(c, k, samples, sample_count);
+    memcpy(picks[i].x, x, c->parameter_count * sizeof *x);
   }
   return scree_rounds_add(c, picks, count, true, scree_processor_time() - begun, error);
 }
 
+/* The most probable place, and how far is too far. */
+static scree_status find_nearest(const scree_calibration *c, const scree_answers *g,
+                                 const scree_calibration_model *m, double *x, double *limit,
+                                 scree_error *error) {
+  size_t count;
+  SCREE_CLEANUP(scree_free_at) double *samples = NULL;
+  SCREE_TRY(scree_calibration_sample(c, &m->model, 0, &samples, &count, error));
+  scree_calibration_nearest(c, g, &m->model, samples, count, x);
+  *limit = scree_calibration_limit(c, &m->model, x, samples, count);
+  return SCREE_OK;
+}
+
+/* After a check: where it misses what was measured and the model, which learns of it, holds another
+ * setting for possible, that one is checked. */
+static scree_status plan_after_check(scree_calibration *c, const scree_answers *g,
+                                     const scree_calibration_model *m, const char *reason,
+                                     scree_error *error) {
+  double begun = scree_processor_time(), x[SCREE_MOST_PARAMETERS], limit, log_determinant;
+  SCREE_CLEANUP(scree_calibration_model_free) scree_calibration_model all = {0};
+  SCREE_TRY(find_nearest(c, g, m, x, &limit, error));
+  bool over = c->check_rounds >= MOST_CHECKS || scree_check_distance(c, g, m) <= limit;
+  if (!over) {
+    SCREE_TRY(scree_calibration_fit(c, g, c->round_count, &all, error));
+    SCREE_TRY(find_nearest(c, g, &all, x, &limit, error));
+    over = scree_model_distance_at(&all.model, x, &log_determinant) > limit;
+  }
+  if (!over) return plan_check(c, x, begun, error);
+  return scree_rounds_stop(c, reason, scree_processor_time() - begun, error);
+}
+
 static scree_status plan_next(scree_calibration *c, const scree_answers *g, size_t batch,
                               scree_error *error) {
-  double begun = scree_processor_time(), left = 1;
+  double begun = scree_processor_time(), left = 1, x[SCREE_MOST_PARAMETERS], limit;
   const scree_plan_budget *budget = c->plan.budget;
-  size_t count = c->run_count < budget->runs ? budget->runs - c->run_count : 0;
+  size_t made = c->run_count - c->check_rounds * CHECKS * c->experiment_count,
+         count = made < budget->runs ? budget->runs - made : 0;
   if (count > batch) count = batch;
-  bool spent = count == 0 || g->seconds > budget->time,
-       last = c->checked || scree_calibration_is_search(c);
-  const char *reason = spent ? "the budget is spent" : NULL;
-  if (spent && last) return scree_rounds_stop(c, reason, 0, error);
+  bool spent = count == 0 || g->seconds > budget->time, search = scree_calibration_is_search(c);
+  const char *reason = spent ? "the budget is spent" : "more runs would tell no more";
+  if (spent && search) return scree_rounds_stop(c, reason, 0, error);
   SCREE_CLEANUP(scree_calibration_model_free) scree_calibration_model m = {0};
   scree_error why;
   scree_status status = scree_calibration_fit(c, g, scree_rounds_fitted(c), &m, &why);
@@ -137,15 +150,18 @@ static scree_status plan_next(scree_calibration *c, const scree_answers *g, size
     return scree_fail(error, status, "%.400s%s%.500s", why.message,
                       g->failure_count ? "; of those that failed: " : "",
                       g->failure_count ? g->failures[0] : "");
+  if (c->checked) return plan_after_check(c, g, &m, reason, error);
   SCREE_SCRATCH(scree_place_pick, picks, count + 1, error);
-  if (scree_calibration_is_search(c))
-    SCREE_TRY(scree_search_next(c, &m, g, count, picks, &left, error));
+  if (search)
+    SCREE_TRY(scree_search_next(c, &m, g, &count, picks, &left, error));
   else if (!spent)
     SCREE_TRY(ask(c, &m, g, count, picks, &left, error));
-  if (left < settled_share && !spent) reason = "more runs would tell no more";
   double seconds = scree_processor_time() - begun;
-  if (!reason) return scree_rounds_add(c, picks, count, false, seconds, error);
-  return last ? scree_rounds_stop(c, reason, seconds, error) : plan_check(c, &m, begun, error);
+  if (left >= settled_share && !spent)
+    return scree_rounds_add(c, picks, count, false, seconds, error);
+  if (search) return scree_rounds_stop(c, reason, seconds, error);
+  SCREE_TRY(find_nearest(c, g, &m, x, &limit, error));
+  return plan_check(c, x, begun, error);
 }
 
 /* Under the lease, if nobody else has it; what others have planned by now is left as it is. */

@@ -1,10 +1,13 @@
-/* From a curve to a choice. Area and volume come with the curve and cost nothing; the other errors
- * need the levels' meshes. They are measured in one sweep over the levels that the recommended
- * choice is made from and those of the grid. */
+/* From a curve to a choice. The recommended level is looked for in each of the curve's orders, and
+ * the coarsest kept: what one order comes to scatters, by a third on a phone's hinge, and the least
+ * of three half as much. Area and volume come with the curve and cost nothing; the other errors
+ * need the levels' meshes. For telling, they are measured in one sweep over the usual levels and
+ * those of the grid. */
 #include "base/alloc.h"
 #include "choice/criterion.h"
 #include "choice/fidelity.h"
 #include "choice/recommend.h"
+#include "simplify/curve.h"
 
 #include <stdlib.h>
 
@@ -47,75 +50,99 @@ static void fill_errors(scree_choice *choice, double weight) {
       choice->best[e] = scree_choice_best_level(choice, (scree_shape_error)e, weight);
 }
 
-/* A pick off the grid, with what it is judged by. */
+/* A pick off the grid. */
 static scree_pick pick_at(const scree_curve *curve, const scree_choice *choice, size_t level_index,
-                          double ip) {
+                          double weight) {
   scree_level level;
   scree_curve_level(curve, level_index, &level);
   double eps = fabs(level.area - choice->reference_area) / choice->reference_area;
-  return (scree_pick){.rp = (double)level.triangle_count / (double)choice->triangle_count,
+  double rp = (double)level.triangle_count / (double)choice->triangle_count;
+  return (scree_pick){.rp = rp,
                       .level_index = level_index,
                       .triangle_count = level.triangle_count,
                       .area = level.area,
                       .volume = level.volume,
                       .eps_s = eps,
-                      .ip = ip,
-                      .level_eps_s = eps,
+                      .ip = eps + weight * rp,
+                      .worst_eps_s = NAN,
+                      .robust_ip = NAN,
                       .fewest = level.triangle_count,
                       .most = level.triangle_count};
 }
 
-static scree_status choose_by_cost(const scree_curve *curve, scree_choice *choice,
-                                   scree_error *error) {
-  const scree_fidelity *f = choice->fidelity;
-  size_t count = 0, rows = scree_fidelity_count(f);
-  SCREE_SCRATCH(scree_kept, levels, rows, error);
-  for (size_t i = 0; i < rows; i++)
-    if (scree_fidelity_is_usual(f, i))
-      levels[count++] = (scree_kept){scree_fidelity_triangle_count(f, i),
-                                     scree_fidelity_error(f, i, SCREE_ERROR_MEAN)};
-  scree_least least = scree_trend_least(levels, count, SCREE_COST_COUNT);
-  choice->cost =
-      pick_at(curve, choice, scree_curve_find(curve, (size_t)least.triangle_count), least.sum);
-  choice->cost.fewest = (size_t)least.fewest;
-  choice->cost.most = (size_t)least.most;
-  return SCREE_OK;
+/* What a choice is measured with. */
+typedef struct gauges {
+  scree_gauge quick, dense;
+  double tolerances[SCREE_SHAPE_ERROR_COUNT];
+} gauges;
+
+static void gauges_free(gauges *g) {
+  scree_gauge_free(&g->dense);
+  scree_gauge_free(&g->quick);
 }
 
-static scree_status measure(const scree_curve *curve, const scree_mesh *scan,
-                            const scree_choice_options *options, const scree_progress *progress,
-                            scree_choice *choice, scree_error *error) {
-  SCREE_CLEANUP(scree_gauge_free) scree_gauge gauge = {0};
-  scree_recommended found;
+static scree_status gauges_make(const scree_mesh *scan, const scree_choice_options *options,
+                                gauges *g, scree_error *error) {
+  SCREE_TRY(scree_gauge_make(scan, SCREE_GAUGE_POINTS, &g->quick, error));
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    g->tolerances[e] = scree_tolerance_share(options, (scree_shape_error)e, g->quick.length);
+  return scree_recommend_gauge(&g->quick, &g->dense, error);
+}
+
+/* The coarsest of the recommended levels of all orders; the curve is left in that one. */
+static scree_status recommend(scree_curve *curve, const gauges *g, scree_recommended *found,
+                              scree_error *error) {
+  int best = 0;
+  for (int order = 0; order < scree_curve_order_count(curve); order++) {
+    bool is_found;
+    SCREE_TRY(scree_curve_reorder(curve, order, error));
+    size_t below = order ? found->triangle_count : SIZE_MAX;
+    SCREE_TRY(scree_recommend(curve, &g->quick, &g->dense, g->tolerances, below, &is_found, found,
+                              error));
+    if (is_found) best = order;
+    if (!scree_curve_is_below_fork(curve, found->level_index)) break;
+  }
+  return scree_curve_reorder(curve, best, error);
+}
+
+static scree_status measure(const scree_curve *curve, const gauges *g,
+                            const scree_recommended *found, const scree_choice_options *options,
+                            const scree_progress *progress, scree_choice *choice,
+                            scree_error *error) {
   SCREE_SCRATCH(size_t, indices, SCREE_FIDELITY_MOST + choice->level_count, error);
   size_t count =
       list_levels(curve, choice, options->fine_errors ? SIZE_MAX : SCREE_FIDELITY_FINEST, indices);
-  SCREE_TRY(scree_gauge_make(scan, SCREE_GAUGE_POINTS, &gauge, error));
   SCREE_TRY(
-      scree_fidelity_sweep(&gauge, curve, indices, count, progress, &choice->fidelity, error));
+      scree_fidelity_sweep(&g->quick, curve, indices, count, progress, &choice->fidelity, error));
   fill_errors(choice, options->weight);
-  SCREE_TRY(choose_by_cost(curve, choice, error));
-  double tolerances[SCREE_SHAPE_ERROR_COUNT];
-  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
-    tolerances[e] = scree_choice_tolerance(choice, options, (scree_shape_error)e);
-  SCREE_TRY(scree_recommend(curve, &gauge, choice->fidelity, tolerances, &found, error));
-  double load = scree_normalised_error(found.reading.errors, tolerances, &choice->limited_by);
-  choice->recommended = pick_at(curve, choice, found.level_index, load);
-  return scree_fidelity_insert(choice->fidelity, found.level_index,
-                               choice->recommended.triangle_count, &found.reading,
+  choice->recommended = pick_at(curve, choice, found->level_index, options->weight);
+  choice->largest_over_tolerance =
+      scree_normalised_error(found->reading.errors, g->tolerances, NULL);
+  choice->limited_by = found->limited_by;
+  choice->limit_beyond = found->is_last ? NAN : found->beyond;
+  return scree_fidelity_insert(choice->fidelity, found->level_index,
+                               choice->recommended.triangle_count, &found->reading,
                                &choice->recommended_row, error);
 }
 
-scree_status scree_choose(const scree_curve *curve, const scree_mesh *scan,
+scree_status scree_choose(scree_curve *curve, const scree_mesh *scan,
                           const scree_choice_options *options, const scree_progress *progress,
                           scree_choice *choice, scree_error *error) {
   scree_choice_options defaults = scree_default_choice_options();
   if (!options) options = &defaults;
-  scree_level_table table = {scree_curve_level_count(curve), curve_row, curve};
+  const bool by_errors = scan && !options->area_only;
+  SCREE_CLEANUP(gauges_free) gauges g = {0};
   SCREE_CLEANUP(scree_choice_free) scree_choice chosen = {0};
+  scree_recommended found = {.is_last = false};
+  SCREE_TRY(scree_choice_check_options(options, error));
+  if (by_errors) {
+    SCREE_TRY(gauges_make(scan, options, &g, error));
+    SCREE_TRY(recommend(curve, &g, &found, error));
+  }
+  scree_level_table table = {scree_curve_level_count(curve), curve_row, curve};
   SCREE_TRY(scree_choice_from_table(&table, options, &chosen, error));
-  if (scan && !options->area_only)
-    SCREE_TRY(measure(curve, scan, options, progress, &chosen, error));
+  chosen.order = scree_curve_order(curve);
+  if (by_errors) SCREE_TRY(measure(curve, &g, &found, options, progress, &chosen, error));
   *choice = chosen;
   chosen = (scree_choice){0};
   return SCREE_OK;

@@ -18,7 +18,6 @@
 #include "base/alloc.h"
 #include "base/number.h"
 #include "base/radix.h"
-#include "choice/noise.h"
 
 #include <math.h>
 #include <string.h>
@@ -45,7 +44,7 @@ static const struct {
 static const double TARGET_SLACK = 1e-12;
 /* Slack at the ends of the grid: 1e-5 10^(36/9) may come out just above 1e-1. */
 static const double GRID_SLACK = 1e-9;
-/* A plain minimum counts as an accident where its error is below this part of the worst so far,
+/* A minimum counts as an accident where its error is below this part of the worst so far,
  * unless that is no more than rounding. */
 static const double ACCIDENT_RATIO = 0.1, LEAST_ERROR = 1e-9;
 
@@ -73,14 +72,17 @@ double scree_choice_tolerance(const scree_choice *choice, const scree_choice_opt
                               scree_shape_error which) {
   double length =
       choice->fidelity ? scree_fidelity_scan(choice->fidelity, SCREE_SCAN_LENGTH) : INFINITY;
+  return scree_tolerance_share(options, which, length);
+}
+
+double scree_tolerance_share(const scree_choice_options *options, scree_shape_error which,
+                             double length) {
   double limit = options->tolerance_lengths[which];
   return fmin(options->tolerances[which], limit < INFINITY ? limit / length : INFINITY);
 }
 
 const scree_pick *scree_choice_pick(const scree_choice *choice, scree_choice_rule rule) {
-  return rule == SCREE_RULE_PAPER    ? &choice->paper
-         : rule == SCREE_RULE_ROBUST ? &choice->robust
-                                     : &choice->recommended;
+  return rule == SCREE_RULE_PAPER ? &choice->paper : &choice->recommended;
 }
 
 static double log_grid(double rp_min, int per_decade, size_t index) {
@@ -126,10 +128,10 @@ size_t scree_level_find(const scree_level_table *table, size_t target) {
   return i;
 }
 
-/* The best level so far by one error. */
+/* The best level so far by the worst error. */
 typedef struct leader {
   size_t index;
-  double error, eps, ip;
+  double worst, eps, ip;
 } leader;
 
 /* The state of the pass over the levels. */
@@ -139,9 +141,8 @@ typedef struct pass {
   double triangle_count, reference, scan_volume;
   scree_level_row row; /* at the level under the pass */
   size_t index;
-  double penalty, eps, worst, smooth_eps, smooth_worst;
-  double best_finer_ip;
-  leader plain, robust, smooth;
+  double penalty, eps, worst;
+  leader robust;
 } pass;
 
 /* Moves the pass to the next level: the errors there and the envelopes so far. */
@@ -150,11 +151,8 @@ static void pass_enter(pass *p, size_t index, scree_level_row row) {
   p->row = row;
   p->penalty = p->options->weight * (double)row.triangle_count / p->triangle_count;
   p->eps = fabs(row.area - p->reference) / p->reference;
-  p->smooth_eps = fabs(row.area - p->noise->area) / p->noise->area;
   /* finer than the plateau the error is the noise itself: it must not hide the shape's behind it */
-  bool noisy = index <= p->noise->level_index;
-  if (noisy || p->smooth_eps > p->smooth_worst) p->smooth_worst = p->smooth_eps;
-  bool forget = noisy && p->options->reference == SCREE_REFERENCE_SMOOTH;
+  bool forget = p->options->reference == SCREE_REFERENCE_SMOOTH && index <= p->noise->level_index;
   if (forget || p->eps > p->worst) p->worst = p->eps;
 }
 
@@ -169,7 +167,6 @@ static void record_level(const pass *p, scree_choice_level *level, size_t target
   level->ip = p->eps + p->penalty;
   level->worst_eps_s = p->worst;
   level->robust_ip = p->worst + p->penalty;
-  level->smooth_ip = p->smooth_worst + p->penalty;
   for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++) level->errors[e] = NAN;
   level->errors[SCREE_ERROR_AREA] = p->eps;
   level->errors[SCREE_ERROR_VOLUME] = fabs(p->row.volume - p->scan_volume) / fabs(p->scan_volume);
@@ -177,31 +174,34 @@ static void record_level(const pass *p, scree_choice_level *level, size_t target
 
 /* Keeps the level under the pass where its criterion is not above the best: with counts falling,
  * ties go to the fewest triangles. */
-static void keep_best(const pass *p, double error, leader *best) {
-  double ip = error + p->penalty;
-  if (p->index > 0 && ip > best->ip) return;
-  *best = (leader){p->index, error, p->eps, ip};
+static void keep_best(pass *p) {
+  double ip = p->worst + p->penalty;
+  if (p->index > 0 && ip > p->robust.ip) return;
+  p->robust = (leader){p->index, p->worst, p->eps, ip};
 }
 
 static scree_pick pick_of(const pass *p, const scree_level_table *table, const leader *best) {
   scree_level_row row = table->row(table->context, best->index);
-  return (scree_pick){.rp = (double)row.triangle_count / p->triangle_count,
+  double rp = (double)row.triangle_count / p->triangle_count;
+  return (scree_pick){.rp = rp,
                       .level_index = best->index,
                       .triangle_count = row.triangle_count,
                       .area = row.area,
                       .volume = row.volume,
-                      .eps_s = best->error,
-                      .ip = best->ip,
-                      .level_eps_s = best->eps};
+                      .eps_s = best->eps,
+                      .ip = best->eps + p->options->weight * rp,
+                      .worst_eps_s = best->worst,
+                      .robust_ip = best->ip};
 }
 
 /* How sharp a choice is, from the levels it is to be seen among. */
-static void find_similar(const scree_choice_level *levels, size_t count, scree_criterion criterion,
+static void find_similar(const scree_choice_level *levels, size_t count, bool robust,
                          scree_pick *pick) {
   pick->fewest = pick->most = pick->triangle_count;
   for (size_t i = 0; i < count; i++) {
     size_t here = levels[i].triangle_count;
-    if (scree_level_ip(&levels[i], criterion) > SCREE_SIMILAR_IP * pick->ip) continue;
+    double ip = robust ? levels[i].robust_ip : levels[i].ip;
+    if (ip > SCREE_SIMILAR_IP * (robust ? pick->robust_ip : pick->ip)) continue;
     if (here < pick->fewest) pick->fewest = here;
     if (here > pick->most) pick->most = here;
   }
@@ -241,8 +241,7 @@ static scree_status run_pass(const scree_level_table *table, const scree_choice_
             .noise = &choice->noise,
             .triangle_count = (double)choice->triangle_count,
             .reference = choice->reference_area,
-            .scan_volume = choice->volume,
-            .best_finer_ip = INFINITY};
+            .scan_volume = choice->volume};
   filling grid = {choice->levels, choice->level_count, 0};
   filling trace = {choice->trace, choice->trace_count, 0};
   aim(&grid, p.triangle_count);
@@ -251,22 +250,12 @@ static scree_status run_pass(const scree_level_table *table, const scree_choice_
     scree_level_row row = table->row(table->context, i);
     SCREE_TRY(check_row(row, i, error));
     pass_enter(&p, i, row);
-    keep_best(&p, p.eps, &p.plain);
-    keep_best(&p, p.worst, &p.robust);
-    keep_best(&p, p.smooth_worst, &p.smooth);
-    if (p.plain.index == i) choice->plain_is_accident = is_accident(p.eps, p.worst);
-    double finer_ip = p.worst + SCREE_FINER_PENALTY * p.penalty;
-    if (finer_ip <= p.best_finer_ip) {
-      p.best_finer_ip = finer_ip;
-      choice->finer_count = p.row.triangle_count;
-    }
+    keep_best(&p);
     fill_levels(&p, &grid, i + 1 == table->count);
     fill_levels(&p, &trace, i + 1 == table->count);
   }
   choice->floor_count = p.row.triangle_count;
-  choice->plain = pick_of(&p, table, &p.plain);
   choice->robust = pick_of(&p, table, &p.robust);
-  choice->smooth = pick_of(&p, table, &p.smooth);
   return SCREE_OK;
 }
 
@@ -295,7 +284,7 @@ size_t scree_choice_best_level(const scree_choice *choice, scree_shape_error whi
   return unknown < best_ip ? choice->level_count : best;
 }
 
-static scree_status check_options(const scree_choice_options *o, scree_error *error) {
+scree_status scree_choice_check_options(const scree_choice_options *o, scree_error *error) {
   if (!(o->weight > 0 && o->weight < INFINITY))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "weight %g: must be above 0 and finite",
                       o->weight);
@@ -327,7 +316,7 @@ scree_status scree_choice_from_table(const scree_level_table *table,
                                      const scree_choice_options *options, scree_choice *choice,
                                      scree_error *error) {
   scree_level_row scan = table->row(table->context, 0);
-  SCREE_TRY(check_options(options, error));
+  SCREE_TRY(scree_choice_check_options(options, error));
   SCREE_TRY(check_scan(scan, error));
   SCREE_CLEANUP(scree_choice_free)
   scree_choice filled = {.triangle_count = scan.triangle_count,
@@ -358,13 +347,12 @@ scree_status scree_choice_from_table(const scree_level_table *table,
                               .volume = paper->volume,
                               .eps_s = paper->eps_s,
                               .ip = paper->ip,
-                              .level_eps_s = paper->eps_s};
+                              .worst_eps_s = paper->worst_eps_s,
+                              .robust_ip = paper->robust_ip};
   filled.paper_is_accident = is_accident(paper->eps_s, paper->worst_eps_s);
-  find_similar(filled.levels, filled.level_count, SCREE_PLAIN_IP, &filled.paper);
-  find_similar(filled.trace, filled.trace_count, SCREE_PLAIN_IP, &filled.plain);
-  find_similar(filled.trace, filled.trace_count, SCREE_ROBUST_IP, &filled.robust);
-  find_similar(filled.trace, filled.trace_count, SCREE_SMOOTH_IP, &filled.smooth);
-  filled.recommended = filled.cost = filled.robust;
+  find_similar(filled.levels, filled.level_count, false, &filled.paper);
+  find_similar(filled.trace, filled.trace_count, true, &filled.robust);
+  filled.recommended = filled.robust;
   *choice = filled;
   filled = (scree_choice){0};
   return SCREE_OK;

@@ -26,17 +26,13 @@ scree_status scree_choice_from_table(const scree_level_table *table,
                                      const scree_choice_options *options, scree_choice *choice,
                                      scree_error *error);
 
+scree_status scree_choice_check_options(const scree_choice_options *options, scree_error *error);
+/* What is asked of an error on a body of that size, as a share. */
+double scree_tolerance_share(const scree_choice_options *options, scree_shape_error which,
+                             double length);
+
 /* What is left of Nr/Nm at half the scan's spacing: Nm is four times as large. */
 #define SCREE_FINER_PENALTY 0.25
-
-/* The three criteria a level is weighed by. */
-typedef enum scree_criterion { SCREE_PLAIN_IP, SCREE_ROBUST_IP, SCREE_SMOOTH_IP } scree_criterion;
-
-static inline double scree_level_ip(const scree_choice_level *level, scree_criterion criterion) {
-  return criterion == SCREE_PLAIN_IP    ? level->ip
-         : criterion == SCREE_ROBUST_IP ? level->robust_ip
-                                        : level->smooth_ip;
-}
 
 /* The grid index with the least errors[which] + w Nr/Nm (ties as for `paper`), or level_count where
  * a level that was not measured could have less. */
@@ -48,3 +44,7 @@ bool scree_choice_is_recommended(const char *rp, double *factor);
 
 /* How many of them lie in [rp_min, rp_max], the ends included (to 1e-9 relative). */
 size_t scree_choice_grid_count(const scree_choice_options *options);
+
+/* The scanner's noise in the area: where it ends on a curve, and the area without it. Never fails;
+ * the answer is "none found" where the curve is too short to tell. O(log levels). */
+scree_noise scree_noise_find(const scree_level_table *table);

@@ -101,6 +101,8 @@ static scree_status finish_object(object *o) {
   scree_status status = SCREE_OK;
   if (!o->curve) status = load_and_decimate(o);
   if (status == SCREE_OK)
+    status = scree_curve_reorder(o->curve, b->choices[o->index].order, &o->error);
+  if (status == SCREE_OK)
     status =
         b->job->done(b->job->context, o->index, o->curve, &b->choices[o->index], b->set, &o->error);
   let_go(o);
@@ -113,11 +115,9 @@ static bool ends_all(const object *o) {
   return o->status != SCREE_OK && !(o->batch->job->failed && own && !o->batch->set);
 }
 
-static void work(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block;
-  (void)worker;
+static void work(void *context, scree_block block) {
   batch *b = context;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     object *o = &b->objects[i];
     if (o->left_out) continue;
     if (!report(o, "", 0)) {

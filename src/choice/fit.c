@@ -11,12 +11,12 @@
  *
  * Noise of slope g adds g^2 / 2 to each unit of area. The slope is seen as the angle between the
  * facet and the fitted surface. */
-#include "choice/fit.h"
+#include "choice/gauge.h"
 
 #include "base/alloc.h"
 #include "base/parallel.h"
 #include "base/radix.h"
-#include "mesh/measure/measure.h"
+#include "mesh/measure/bounds.h"
 #include "mesh/mesh.h"
 
 enum {
@@ -38,7 +38,7 @@ static const double LEAST_PIVOT = 0.01;
 static const double TOLD_SHARE = 2.0 / 3, BEST_SHARE = 0.1, BEST_QUANTILE = -1.2816;
 /* The largest noise that the fits allow over the least, squared, for it to be told. */
 static const double MOST_SPAN = 4;
-/* Of the spacing: what is no more is told in any case, that of shape as none. */
+/* Share of the spacing: noise of no more is told in any case, that of shape as none. */
 static const double LEAST_NOISE = 0.01;
 
 /* Vertices in cubic cells, by a hash of the cell. */
@@ -178,10 +178,10 @@ typedef struct fitting {
   point_fit *fits;
 } fitting;
 
-static void fit_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void fit_block(void *context, scree_block block) {
   const fitting *f = context;
-  for (size_t i = begin; i < end; i++) f->fits[i] = fit_at(f->cells, f->points[i], f->normals[i]);
+  for (size_t i = block.begin; i < block.end; i++)
+    f->fits[i] = fit_at(f->cells, f->points[i], f->normals[i]);
 }
 
 /* Cells are as large as the fits reach. */

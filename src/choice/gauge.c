@@ -24,8 +24,8 @@ enum {
 };
 /* Facets of the scan no larger than this hide nothing between their corners; of D. */
 static const double SMALL_FACET = 0.002;
-/* Of how many points of a level the mean distance is known to one per cent: so many times the root
- * of its facets, for the error falls with the points a facet and averages over facets. */
+/* From how many points of a level its mean distance is known to one per cent: so many times the
+ * root of its facets, for the error falls with the points a facet and averages over facets. */
 static const double POINTS_PER_ROOT = 600;
 /* Maxima of the distance over a facet rise from it by no more than this: 30 degrees. */
 static const double SLOPE = 0.5;
@@ -170,11 +170,11 @@ typedef struct forward {
   vec3 at;
 } forward;
 
-static void ask_points(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void ask_points(void *context, scree_block block) {
   const forward *f = context;
-  scree_surface_nearest_points(f->level, f->gauge->spread.points + begin, end - begin,
-                               f->distances + begin, f->nearest + begin);
+  scree_surface_nearest_points(f->level, f->gauge->spread.points + block.begin,
+                               block.end - block.begin, f->distances + block.begin,
+                               f->nearest + block.begin);
 }
 
 static void keep_farthest(forward *f, double distance, vec3 at) {

@@ -1,10 +1,40 @@
 /* A scan made ready to have levels held against it. */
 #pragma once
 
-#include "choice/fit.h"
-#include "choice/spread.h"
+#include "base/error.h"
+#include "base/vec.h"
 #include "mesh/measure/extent.h"
 #include "mesh/measure/surface.h"
+
+/* Points spread evenly over a surface, each standing for the same share of its area. */
+typedef struct scree_spread {
+  size_t count;
+  vec3 *points;
+  vec3 *normals; /* unit, of the facet that the point lies on */
+  /* The surface's vertices, those near point i from starts[i] to starts[i + 1], and how far the
+   * farthest of them lies from it. */
+  uint32_t *vertices, *starts;
+  double *reach;
+} scree_spread;
+
+/* Spreads about `count` points over a verified mesh with area. The same points for any number of
+ * threads. O(N). */
+scree_status scree_spread_make(const scree_mesh *mesh, size_t count, scree_spread *spread,
+                               scree_error *error);
+void scree_spread_free(scree_spread *spread);
+
+/* What quadrics fitted to the vertices round points say of the scan as a whole, without its
+ * scanner's noise. */
+typedef struct scree_fit {
+  double sigma;      /* of the noise, m: 0 where what is rough is shape, NaN where the mesh is too
+                        coarse or too rough to tell */
+  double area_share; /* clean area / area, at most 1; 1 where the noise cannot be told */
+} scree_fit;
+
+/* Fits round each of the points (on the mesh, of the outward unit normals given) and replaces its
+ * normal by the fitted surface's, where that fits. O(vertices + points). */
+scree_status scree_fit_points(const scree_mesh *mesh, const vec3 *points, vec3 *normals,
+                              size_t count, scree_fit *fit, scree_error *error);
 
 /* A place where the body has two sides. */
 typedef struct scree_body_wall {

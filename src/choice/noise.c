@@ -8,8 +8,8 @@
  * last count that can still carry a shape. It counts where the area lost on the way to it is
  * DROP_RATIO times what the window itself varies: a shape whose error falls like 1/N has 0.8 there.
  * (The windows above are left out because correlated noise leaves S flat at the scan's end too.) */
-#include "choice/noise.h"
 #include "base/math.h"
+#include "choice/criterion.h"
 
 #include <math.h>
 

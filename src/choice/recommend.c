@@ -1,7 +1,6 @@
-/* The load of a level is its largest error over its tolerance. From the finest level measured down,
- * the first whose load is too much and the one before enclose the level sought. They are narrowed
- * by halves until a level that keeps all tolerances is next to one that does not. That is the
- * coarsest level which keeps them as all finer ones measured do.
+/* The load of a level is its largest error over its tolerance. Of the usual levels the coarsest
+ * that keeps all tolerances and the next enclose the level sought. They are narrowed by halves
+ * until a level that keeps all is next to one that does not.
  *
  * What is found is measured once more with many more points than the sweep's, so that the answer
  * holds for a measurement by others. Where it does not keep all by that, levels finer by 1, 2, 4
@@ -11,60 +10,25 @@
 #include "choice/fidelity.h"
 
 #include "base/alloc.h"
-
-#include <math.h>
+#include "base/owned.h"
+#include "simplify/curve.h"
 
 enum { DENSE_POINTS = 40000 };
+/* Levels are made from one of so many triangles, in place of the scan. */
+enum { TAIL_COUNT = 4 * SCREE_FIDELITY_FINEST };
+/* Where a level is known, coarser ones are looked for down to this share of its triangles. */
+enum { FEWER = 2 };
 static const double DENSE_GAP = 0.004;
 /* The most load of a level that will do: leaves room for what the measurement misses. */
 static const double MOST_LOAD = 0.98;
-/* Half the width of the window of a line, in ln N: a factor of 1.8 either way. */
-static const double WINDOW = 0.6;
-/* Errors below are none: their logarithm would rule the line. */
-static const double LEAST_ERROR = 1e-9;
-
-/* ---- The trend ---- */
-
-/* ln of the trend at level i: what the straight line through ln load against ln N round it has in
- * its middle. Errors of single levels hop. */
-static double trend_at(const scree_kept *levels, size_t count, size_t i) {
-  double middle = log((double)levels[i].triangle_count), n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (size_t k = 0; k < count; k++) {
-    double x = log((double)levels[k].triangle_count) - middle;
-    if (fabs(x) > WINDOW) continue;
-    double y = log(fmax(levels[k].load, LEAST_ERROR));
-    n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
-  }
-  double spread = sxx - sx * sx / n;
-  double slope = spread > 1e-9 ? (sxy - sx * sy / n) / spread : 0;
-  return (sy - slope * sx) / n;
-}
-
-scree_least scree_trend_least(const scree_kept *levels, size_t count, double scale) {
-  enum { PARTS = 8 }; /* the trend is followed in so many steps between two levels */
-  scree_least least = {.triangle_count = (double)levels[0].triangle_count, .sum = INFINITY};
-  for (int widening = 0; widening <= 1; widening++)
-    for (size_t i = 0; i + 1 < count; i++) {
-      double a = log((double)levels[i].triangle_count),
-             b = log((double)levels[i + 1].triangle_count), ya = trend_at(levels, count, i),
-             yb = trend_at(levels, count, i + 1);
-      for (int k = 0; k <= PARTS; k++) {
-        double t = (double)k / PARTS, n = exp(a + t * (b - a));
-        double sum = exp(ya + t * (yb - ya)) + n / scale;
-        if (!widening && sum < least.sum) least = (scree_least){n, sum, n, n};
-        if (!widening || sum > SCREE_SIMILAR_IP * least.sum) continue;
-        least.fewest = fmin(least.fewest, n);
-        least.most = fmax(least.most, n);
-      }
-    }
-  return least;
-}
-
-/* ---- The level ---- */
 
 typedef struct search {
   const scree_curve *curve;
+  scree_curve *tail; /* of the curve, from level `from` on */
+  size_t from;
   const double *tolerances;
+  size_t below;                /* only levels of fewer triangles are asked for */
+  size_t finest;               /* level: of these */
   scree_gauge_reading reading; /* of the last level that was found to keep all */
   scree_error *error;
 } search;
@@ -74,13 +38,25 @@ typedef struct bracket {
   size_t fine, coarse;
 } bracket;
 
+static size_t triangles_at(const scree_curve *curve, size_t level_index) {
+  scree_level level;
+  scree_curve_level(curve, level_index, &level);
+  return level.triangle_count;
+}
+
+/* With tolerances NULL all errors are found, whatever they are. */
+static scree_status read_level(const search *s, const scree_gauge *gauge, double gap,
+                               size_t level_index, const double *tolerances,
+                               scree_gauge_reading *reading) {
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
+  SCREE_TRY(scree_curve_mesh(s->tail, level_index - s->from, &mesh, s->error));
+  return scree_gauge_read(gauge, &mesh, gap, tolerances, reading, s->error);
+}
+
 static scree_status keeps_all(search *s, const scree_gauge *gauge, double gap, size_t level_index,
                               bool *keeps) {
-  SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
   scree_gauge_reading reading;
-  SCREE_TRY(scree_curve_mesh(s->curve, level_index, &mesh, s->error));
-  SCREE_TRY(
-      scree_gauge_read(gauge, &mesh, gap, level_index ? s->tolerances : NULL, &reading, s->error));
+  SCREE_TRY(read_level(s, gauge, gap, level_index, level_index ? s->tolerances : NULL, &reading));
   *keeps = scree_normalised_error(reading.errors, s->tolerances, NULL) <= MOST_LOAD;
   if (*keeps || level_index == 0) s->reading = reading;
   return SCREE_OK;
@@ -99,47 +75,88 @@ static scree_status narrow(search *s, const scree_gauge *gauge, double gap, brac
   return SCREE_OK;
 }
 
-/* Between the coarsest usual level that keeps all, or the scan, and the next coarser usual one. */
-static bracket first_bracket(const search *s, const scree_fidelity *f) {
-  size_t coarse = scree_curve_level_count(s->curve);
-  for (size_t row = scree_fidelity_count(f); row-- > 0;) {
-    double errors[SCREE_SHAPE_ERROR_COUNT];
-    if (!scree_fidelity_is_usual(f, row)) continue;
-    for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
-      errors[e] = scree_fidelity_error(f, row, (scree_shape_error)e);
-    size_t level_index = scree_fidelity_level_index(f, row);
-    if (scree_normalised_error(errors, s->tolerances, NULL) <= MOST_LOAD)
-      return (bracket){level_index, coarse};
-    coarse = level_index;
+/* Between the coarsest usual level that keeps all, or the finest, and the next coarser usual one.
+ */
+static scree_status first_bracket(search *s, const scree_gauge *quick, bracket *b) {
+  size_t usual[SCREE_FIDELITY_MOST], count = scree_fidelity_levels(s->curve, usual);
+  *b = (bracket){s->finest, scree_curve_level_count(s->curve)};
+  while (count-- > 0 && usual[count] > s->finest) {
+    bool keeps = false, far = triangles_at(s->curve, usual[count]) < s->below / FEWER;
+    if (!far || s->below == SIZE_MAX)
+      SCREE_TRY(keeps_all(s, quick, SCREE_GAUGE_GAP, usual[count], &keeps));
+    if (keeps) {
+      b->fine = usual[count];
+      return SCREE_OK;
+    }
+    b->coarse = usual[count];
   }
-  return (bracket){0, coarse};
+  return SCREE_OK;
 }
 
+/* *keeps: level b->fine does; else none does from the finest on. */
 static scree_status find_level(search *s, const scree_gauge *quick, const scree_gauge *dense,
-                               const scree_fidelity *f, size_t *level_index) {
-  bracket b = first_bracket(s, f);
-  SCREE_TRY(narrow(s, quick, SCREE_GAUGE_GAP, &b));
+                               bracket *b, bool *keeps) {
+  SCREE_TRY(first_bracket(s, quick, b));
+  SCREE_TRY(narrow(s, quick, SCREE_GAUGE_GAP, b));
   for (size_t step = 1;; step *= 2) {
-    bool keeps;
-    SCREE_TRY(keeps_all(s, dense, DENSE_GAP, b.fine, &keeps));
-    if (keeps || b.fine == 0) break;
-    b.coarse = b.fine;
-    b.fine -= step < b.fine ? step : b.fine;
+    SCREE_TRY(keeps_all(s, dense, DENSE_GAP, b->fine, keeps));
+    if (*keeps || b->fine == s->finest) break;
+    b->coarse = b->fine;
+    b->fine -= step < b->fine - s->finest ? step : b->fine - s->finest;
   }
-  SCREE_TRY(narrow(s, dense, DENSE_GAP, &b));
-  *level_index = b.fine;
+  return *keeps ? narrow(s, dense, DENSE_GAP, b) : SCREE_OK;
+}
+
+/* What the next coarser level is refused for; of the last level, what is nearest to it. What the
+ * quick measurement refused may do by the dense one: then it is taken. */
+static scree_status find_limit(search *s, const scree_gauge *dense, size_t *level_index,
+                               scree_recommended *found) {
+  scree_gauge_reading beyond = s->reading;
+  for (;; ++*level_index) {
+    found->is_last = *level_index + 1 == scree_curve_level_count(s->curve);
+    if (found->is_last) break;
+    SCREE_TRY(read_level(s, dense, DENSE_GAP, *level_index + 1, NULL, &beyond));
+    if (!(scree_normalised_error(beyond.errors, s->tolerances, NULL) <= MOST_LOAD)) break;
+    s->reading = beyond;
+  }
+  scree_normalised_error(beyond.errors, s->tolerances, &found->limited_by);
+  found->beyond = beyond.errors[found->limited_by];
+  found->level_index = *level_index;
+  found->triangle_count = triangles_at(s->curve, *level_index);
+  found->reading = s->reading;
   return SCREE_OK;
 }
 
-scree_status scree_recommend(const scree_curve *curve, const scree_gauge *gauge,
-                             const scree_fidelity *fidelity,
-                             const double tolerances[SCREE_SHAPE_ERROR_COUNT],
-                             scree_recommended *found, scree_error *error) {
-  search s = {.curve = curve, .tolerances = tolerances, .error = error};
-  SCREE_CLEANUP(scree_gauge_free) scree_gauge dense = {0};
-  SCREE_TRY(scree_gauge_refine(gauge, DENSE_POINTS, &dense, error));
-  size_t level_index;
-  SCREE_TRY(find_level(&s, gauge, &dense, fidelity, &level_index));
-  *found = (scree_recommended){.level_index = level_index, .reading = s.reading};
-  return SCREE_OK;
+static scree_status search_from(search *s, size_t from, const scree_gauge *quick,
+                                const scree_gauge *dense, bool *is_found,
+                                scree_recommended *found) {
+  SCREE_OWNED(scree_curve, tail);
+  bracket b;
+  SCREE_TRY(scree_curve_tail(s->curve, from, &tail, s->error));
+  s->tail = tail;
+  s->from = from;
+  SCREE_TRY(find_level(s, quick, dense, &b, is_found));
+  *is_found |= b.fine == 0;
+  if (!*is_found) return SCREE_OK;
+  return find_limit(s, dense, &b.fine, found);
+}
+
+scree_status scree_recommend(const scree_curve *curve, const scree_gauge *quick,
+                             const scree_gauge *dense,
+                             const double tolerances[SCREE_SHAPE_ERROR_COUNT], size_t below,
+                             bool *is_found, scree_recommended *found, scree_error *error) {
+  search s = {.curve = curve, .tolerances = tolerances, .below = below, .error = error};
+  size_t from = scree_curve_find(curve, TAIL_COUNT);
+  s.finest = below == SIZE_MAX ? from : scree_curve_find(curve, below - 1);
+  *is_found = false;
+  if (below != SIZE_MAX && triangles_at(curve, s.finest) >= below) return SCREE_OK;
+  SCREE_TRY(search_from(&s, from < s.finest ? from : s.finest, quick, dense, is_found, found));
+  if (*is_found || below != SIZE_MAX) return SCREE_OK;
+  s.finest = 0;
+  return search_from(&s, 0, quick, dense, is_found, found);
+}
+
+scree_status scree_recommend_gauge(const scree_gauge *quick, scree_gauge *dense,
+                                   scree_error *error) {
+  return scree_gauge_refine(quick, DENSE_POINTS, dense, error);
 }

@@ -3,30 +3,23 @@
 
 #include "choice/gauge.h"
 
-/* One level of the sweep as far as the rule sees it: its count, and the largest error over its
- * tolerance. */
-typedef struct scree_kept {
-  size_t triangle_count;
-  double load;
-} scree_kept;
-
-/* The least of the trend of load + count / scale, and from which to which count it is at most
- * SCREE_SIMILAR_IP times that. */
-typedef struct scree_least {
-  double triangle_count, sum; /* counts are not whole */
-  double fewest, most;
-} scree_least;
-
-scree_least scree_trend_least(const scree_kept *levels, size_t count, double scale);
-
 typedef struct scree_recommended {
-  size_t level_index;
+  size_t level_index, triangle_count;
   scree_gauge_reading reading; /* by the dense measurement */
+  /* What the next coarser level is refused for, and how much of it that has; of the last level the
+   * error nearest to its tolerance. */
+  scree_shape_error limited_by;
+  double beyond;
+  bool is_last;
 } scree_recommended;
 
-/* Finds the recommended level of a curve, of which the sweep is given and the gauge it was made
- * with. */
-scree_status scree_recommend(const scree_curve *curve, const scree_gauge *gauge,
-                             const scree_fidelity *fidelity,
-                             const double tolerances[SCREE_SHAPE_ERROR_COUNT],
-                             scree_recommended *found, scree_error *error);
+/* The gauge that answers are measured with, from the quick one, which it borrows from. */
+scree_status scree_recommend_gauge(const scree_gauge *quick, scree_gauge *dense,
+                                   scree_error *error);
+
+/* Finds the recommended level of a curve, of fewer than `below` triangles; SIZE_MAX: any, and one
+ * is always found, if only the scan. */
+scree_status scree_recommend(const scree_curve *curve, const scree_gauge *quick,
+                             const scree_gauge *dense,
+                             const double tolerances[SCREE_SHAPE_ERROR_COUNT], size_t below,
+                             bool *is_found, scree_recommended *found, scree_error *error);

@@ -12,39 +12,28 @@ typedef struct best_rp {
   size_t triangle_count; /* of all objects together */
 } best_rp;
 
-/* The points of a criterion, Rp rising: the paper's grid, or the trace. */
-typedef struct points {
+/* The objects; relief: the part of the penalty that does not count. */
+typedef struct objects {
   const scree_choice *choices;
-  size_t object_count, count;
-  scree_criterion criterion;
-  double relief; /* the part of the penalty that does not count */
-} points;
+  size_t count;
+  double relief;
+} objects;
 
-static points points_of(const scree_choice *choices, size_t count, scree_criterion criterion) {
-  bool grid = criterion == SCREE_PLAIN_IP;
-  return (points){choices, count, grid ? choices->level_count : choices->trace_count, criterion, 0};
-}
-
-static const scree_choice_level *level_at(const points *p, size_t object, size_t index) {
-  const scree_choice *choice = &p->choices[object];
-  return p->criterion == SCREE_PLAIN_IP ? &choice->levels[index] : &choice->trace[index];
-}
-
-static double mean_ip(const points *p, size_t index) {
+static double mean_ip(const objects *o, size_t index) {
   scree_sum sum = {0, 0};
-  for (size_t k = 0; k < p->object_count; k++) {
-    const scree_choice_level *level = level_at(p, k, index);
+  for (size_t k = 0; k < o->count; k++) {
+    const scree_choice_level *level = &o->choices[k].levels[index];
     double penalty = level->ip - level->eps_s;
-    scree_sum_add(&sum, scree_level_ip(level, p->criterion) - p->relief * penalty);
+    scree_sum_add(&sum, level->ip - o->relief * penalty);
   }
-  return scree_sum_value(sum) / (double)p->object_count;
+  return scree_sum_value(sum) / (double)o->count;
 }
 
-static void consider(const points *p, size_t index, best_rp *best) {
+static void consider(const objects *o, size_t index, best_rp *best) {
   scree_sum misfit = {0, 0};
-  best_rp here = {.rp = level_at(p, 0, index)->rp, .ip = mean_ip(p, index)};
-  for (size_t k = 0; k < p->object_count; k++) {
-    const scree_choice_level *level = level_at(p, k, index);
+  best_rp here = {.rp = o->choices->levels[index].rp, .ip = mean_ip(o, index)};
+  for (size_t k = 0; k < o->count; k++) {
+    const scree_choice_level *level = &o->choices[k].levels[index];
     scree_sum_add(&misfit, fabs(log(level->rp / level->rp_reached)));
     here.triangle_count += level->triangle_count;
   }
@@ -53,57 +42,43 @@ static void consider(const points *p, size_t index, best_rp *best) {
   if (here.ip < best->ip || (same && here.misfit < best->misfit)) *best = here;
 }
 
-static best_rp find_best(const points *p) {
+static best_rp find_best(const objects *o) {
   best_rp best = {.ip = INFINITY};
-  for (size_t i = 0; i < p->count; i++) consider(p, i, &best);
+  for (size_t i = 0; i < o->choices->level_count; i++) consider(o, i, &best);
   return best;
 }
 
-static scree_set_pick pick_for_set(const scree_choice *choices, size_t count,
-                                   scree_criterion criterion) {
-  const points p = points_of(choices, count, criterion);
-  best_rp best = find_best(&p);
+static scree_set_pick pick_for_set(const objects *o) {
+  best_rp best = find_best(o);
+  const scree_choice *first = o->choices;
   scree_set_pick pick = {best.rp, best.ip, best.rp, best.rp};
-  for (size_t i = 0; i < p.count; i++) {
-    if (mean_ip(&p, i) > SCREE_SIMILAR_IP * best.ip) continue;
-    pick.rp_low = fmin(pick.rp_low, level_at(&p, 0, i)->rp);
-    pick.rp_high = fmax(pick.rp_high, level_at(&p, 0, i)->rp);
+  for (size_t i = 0; i < first->level_count; i++) {
+    if (mean_ip(o, i) > SCREE_SIMILAR_IP * best.ip) continue;
+    pick.rp_low = fmin(pick.rp_low, first->levels[i].rp);
+    pick.rp_high = fmax(pick.rp_high, first->levels[i].rp);
   }
   return pick;
 }
 
-/* How many times the triangles of the pick a set of scans of half the spacing would take. */
-static double growth_of(const scree_choice *choices, size_t count, scree_criterion criterion,
-                        const scree_set_pick *pick) {
-  points p = points_of(choices, count, criterion);
-  p.relief = 1 - SCREE_FINER_PENALTY;
-  return find_best(&p).rp / pick->rp;
-}
-
-static void fill_grid(const scree_choice *choices, size_t count, scree_set_choice *set) {
-  const points p = points_of(choices, count, SCREE_PLAIN_IP);
+static void fill_grid(const objects *o, scree_set_choice *set) {
   for (size_t i = 0; i < set->level_count; i++) {
-    set->ip[i] = mean_ip(&p, i);
+    set->ip[i] = mean_ip(o, i);
     set->low[i] = INFINITY;
     set->high[i] = -INFINITY;
-    for (size_t k = 0; k < count; k++) {
-      set->low[i] = fmin(set->low[i], choices[k].levels[i].ip);
-      set->high[i] = fmax(set->high[i], choices[k].levels[i].ip);
+    for (size_t k = 0; k < o->count; k++) {
+      set->low[i] = fmin(set->low[i], o->choices[k].levels[i].ip);
+      set->high[i] = fmax(set->high[i], o->choices[k].levels[i].ip);
     }
   }
 }
 
-static void fill_spread(const scree_choice *choices, size_t count, scree_set_choice *set) {
-  double low[2] = {INFINITY, INFINITY}, high[2] = {0, 0};
-  for (size_t k = 0; k < count; k++) {
-    double rp[2] = {choices[k].paper.rp, choices[k].robust.rp};
-    for (int i = 0; i < 2; i++) {
-      low[i] = fmin(low[i], rp[i]);
-      high[i] = fmax(high[i], rp[i]);
-    }
+static double spread_of(const objects *o) {
+  double low = INFINITY, high = 0;
+  for (size_t k = 0; k < o->count; k++) {
+    low = fmin(low, o->choices[k].paper.rp);
+    high = fmax(high, o->choices[k].paper.rp);
   }
-  set->paper_spread = high[0] / low[0];
-  set->robust_spread = high[1] / low[1];
+  return high / low;
 }
 
 static scree_status check_choices(const scree_choice *choices, size_t count, scree_error *error) {
@@ -125,13 +100,12 @@ scree_status scree_choose_set(const scree_choice *choices, size_t count, scree_s
   SCREE_TRY_ALLOC(filled.ip, filled.level_count, error);
   SCREE_TRY_ALLOC(filled.low, filled.level_count, error);
   SCREE_TRY_ALLOC(filled.high, filled.level_count, error);
-  fill_grid(choices, count, &filled);
-  fill_spread(choices, count, &filled);
-  filled.paper = pick_for_set(choices, count, SCREE_PLAIN_IP);
-  filled.robust = pick_for_set(choices, count, SCREE_ROBUST_IP);
-  filled.smooth = pick_for_set(choices, count, SCREE_SMOOTH_IP);
-  filled.paper_growth = growth_of(choices, count, SCREE_PLAIN_IP, &filled.paper);
-  filled.robust_growth = growth_of(choices, count, SCREE_ROBUST_IP, &filled.robust);
+  const objects all = {choices, count, 0},
+                twice_as_fine = {choices, count, 1 - SCREE_FINER_PENALTY};
+  fill_grid(&all, &filled);
+  filled.paper_spread = spread_of(&all);
+  filled.paper = pick_for_set(&all);
+  filled.paper_growth = find_best(&twice_as_fine).rp / filled.paper.rp;
   *set = filled;
   filled = (scree_set_choice){0};
   return SCREE_OK;

@@ -3,11 +3,11 @@
  * is taken in the facet where the middle of each share falls, by a sequence that fills a square
  * evenly (Roberts 2018, R2). Vertices go to the nearer of the points before and after their facet
  * on the curve. */
-#include "choice/spread.h"
+#include "choice/gauge.h"
 
 #include "base/alloc.h"
 #include "base/radix.h"
-#include "mesh/measure/measure.h"
+#include "mesh/measure/bounds.h"
 #include "mesh/mesh.h"
 #include "simplify/morton.h"
 

@@ -1,4 +1,5 @@
 #include "cli/args.h"
+#include "base/alloc.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/platform.h"
@@ -28,8 +29,9 @@ const cli_option cli_common_options[] = {
         "progress", progress,
         "Draw progress also where stderr is no terminal; a log gets a line now and then anyway."),
     CLI_FLAG_ROW("quiet", quiet, "Only results and errors."),
-    CLI_FLAG_ROW("verbose", verbose,
-                 "Say at the end what it cost, on stderr: time, processor time, memory."),
+    CLI_FLAG_ROW(
+        "verbose", verbose,
+        "Show details, and at the end what it cost, on stderr: time, processor time, memory."),
     CLI_FLAG_ROW("help", help, "Show this help."),
 };
 const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_common_options;
@@ -77,8 +79,8 @@ bool cli_fraction_from_text(const char *text, double *value) {
 }
 
 scree_status cli_fail(const scree_error *error) {
-  bool spared = strstr(error->message, "not overwritten");
-  bool limited = error->status == SCREE_OUT_OF_MEMORY && strstr(error->message, "the limit of");
+  bool spared = error->status == SCREE_EXISTS;
+  bool limited = error->status == SCREE_OUT_OF_MEMORY && scree_memory_failed_at_limit();
   cli_terminal_end();
   fprintf(stderr, "scree: %s%s%s\n", error->message, spared ? "; -f overwrites" : "",
           limited ? "; --max-memory sets it" : "");
@@ -282,7 +284,9 @@ static scree_status parse_choice(const cli_verb *verb, const cli_option *option,
     }
     word = bar ? bar + 1 : NULL;
   }
-  return cli_misuse(verb, "--%s %s: must be one of %s", option->name, text, option->words);
+  char hint[64];
+  cli_word_hint(option->words, text, hint, sizeof hint);
+  return cli_misuse(verb, "--%s %s: must be one of %s%s", option->name, text, option->words, hint);
 }
 
 static scree_status too_often(const cli_verb *verb, const cli_option *option) {

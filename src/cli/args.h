@@ -33,20 +33,28 @@ typedef struct cli_option {
   const char *value_name;  /* in the help, as RP; NULL for flags */
   const char *help;        /* one or more sentences; says unit and default */
   double minimum, maximum; /* of a number; both 0: any value not below 0 */
-  const char *words;       /* CLI_CHOICE, CLI_COUNT; else NULL */
-  const char *field;       /* of a scene: the value is one of cli_fields; else NULL */
+  const char *words; /* "one|two": of CLI_CHOICE all that is taken, of CLI_COUNT one that stands
+                        beside numbers, of texts what completion offers; else NULL */
+  const char *field; /* of a scene: the value is one of cli_fields; else NULL */
+  /* What completion offers for a text, up to NULL, where `words` cannot say it. */
+  const char *(*each)(size_t index);
 } cli_option;
 /* Rows of a table whose verb has named its struct ARGUMENTS. */
 #define CLI_ROW(kind, name, member, value, help)                                                   \
   CLI_RANGE_ROW(kind, name, member, value, 0, 0, help)
 #define CLI_RANGE_ROW(kind, name, member, value, least, most, help)                                \
-  { name, kind, offsetof(ARGUMENTS, member), value, help, least, most, NULL, NULL }
+  { name, kind, offsetof(ARGUMENTS, member), value, help, least, most, NULL, NULL, NULL }
 #define CLI_CHOICE_ROW(name, member, value, words, help)                                           \
-  { name, CLI_CHOICE, offsetof(ARGUMENTS, member), value, help, 0, 0, words, NULL }
+  { name, CLI_CHOICE, offsetof(ARGUMENTS, member), value, help, 0, 0, words, NULL, NULL }
+/* What takes more than the words that completion offers. */
+#define CLI_WORDS_ROW(kind, name, member, value, words, help)                                      \
+  { name, kind, offsetof(ARGUMENTS, member), value, help, 0, 0, words, NULL, NULL }
+#define CLI_EACH_ROW(name, member, value, each, help)                                              \
+  { name, CLI_TEXT, offsetof(ARGUMENTS, member), value, help, 0, 0, NULL, NULL, each }
 #define CLI_FLAG_ROW(name, member, help) CLI_ROW(CLI_FLAG, name, member, NULL, help)
 /* What sets a field or parameter of a scene, kept in the member `fields`. */
 #define CLI_FIELD_ROW(kind, name, field, value, help)                                              \
-  { name, kind, offsetof(ARGUMENTS, fields), value, help, 0, 0, NULL, field }
+  { name, kind, offsetof(ARGUMENTS, fields), value, help, 0, 0, NULL, field, NULL }
 
 /* Fields of a scene that options set, as they were given. */
 typedef struct cli_fields {
@@ -61,8 +69,20 @@ typedef struct cli_fields {
 
 struct cli_call;
 
+/* What a verb is for, in the order of the work. */
+typedef enum cli_group {
+  CLI_PREPARE,
+  CLI_SIMULATE,
+  CLI_DECIDE,
+  CLI_SHOW,
+  CLI_GROUP_COUNT
+} cli_group;
+/* "Prepare a particle from a scan" */
+const char *cli_group_title(cli_group group);
+
 typedef struct cli_verb {
   const char *name;
+  cli_group group;
   const char *summary;     /* one line, lower case, no full stop */
   const char *inputs;      /* as in the usage line: "FILE..." */
   const char *description; /* paragraphs, wrapped at 80 columns */
@@ -91,7 +111,7 @@ typedef struct cli_call {
   const void *options; /* the verb's struct, filled */
   const char *const *inputs;
   size_t input_count;
-  bool quiet;
+  bool quiet, verbose;
   size_t max_memory;              /* bytes; 0: no limit */
   const char *backend;            /* for the workers of a study; NULL: the processor */
   const scree_progress *progress; /* draws on stderr where that is a terminal; Ctrl-C cancels */
@@ -148,6 +168,7 @@ scree_status cli_misuse(const cli_verb *verb, const char *format, ...) SCREE_PRI
 /* What to add where a text is no number: a word on a comma between digits, else "". */
 const char *cli_comma_hint(const char *text);
 
+#define CLI_UNITS "m|cm|mm|um|inch|ft|km"
 /* "mm" to 1e-3; false where the word is no unit of length. */
 bool cli_unit_from_text(const char *text, double *metres);
 /* 1e-3 to "mm"; "?" where it is none of ours. */

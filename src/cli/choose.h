@@ -3,7 +3,7 @@
 
 #include "cli/args.h"
 #include "cli/input.h"
-#include "cli/stage.h"
+#include "cli/output.h"
 #include "report/program.h"
 #include "report/provenance.h"
 
@@ -14,7 +14,7 @@ typedef struct choose_arguments {
   cli_source source;
   double weight, density;
   int method, reference, rule;
-  bool samples, paper, errors, json, csv, no_repair, overwrite;
+  bool samples, paper, errors, json, csv, no_repair, keep_handles, overwrite;
 } choose_arguments;
 
 /* One object from its word on the command line to its files. */
@@ -50,8 +50,8 @@ static inline const choose_run *choose_run_of(const void *report) {
   return (const choose_run *)((const char *)report - offsetof(choose_run, report));
 }
 
-/* The table and what to do, for people. */
-void choose_print(FILE *out, const choose_run *run);
+/* What to do, for people: a dozen lines, or the whole of it. */
+void choose_print(FILE *out, const choose_run *run, bool whole);
 /* All that is worth a warning, a line each. */
 void choose_print_warnings(FILE *out, const choose_run *run);
 

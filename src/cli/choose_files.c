@@ -15,9 +15,9 @@
  * They are written into another folder and moved when all are there: who cancels finds none. What
  * an earlier choice left in the folder and this one has not goes with it, before the answer is
  * moved. */
-#include "base/ending.h"
 #include "base/file.h"
 #include "base/owned.h"
+#include "base/path.h"
 #include "base/platform.h"
 #include "cli/choose.h"
 #include "cli/output.h"
@@ -34,7 +34,7 @@ static scree_status write_text(const void *report, const char *path, bool overwr
                                scree_error *error) {
   scree_output output;
   SCREE_TRY(scree_output_open(path, overwrite, &output, error));
-  choose_print(output.stream, choose_run_of(report));
+  choose_print(output.stream, choose_run_of(report), true);
   return scree_output_commit(&output, error);
 }
 
@@ -219,6 +219,7 @@ static scree_status make_subfolders(const choose_run *run, const char *folder, s
 scree_status choose_prepare_folder(choose_run *run, scree_error *error) {
   SCREE_TRY(cli_stage_open(run->arguments->output, &run->stage, error));
   if (run->stage.existed) {
+    SCREE_TRY(cli_lock_folder(run->arguments->output, error));
     SCREE_TRY(make_subfolders(run, run->arguments->output, error));
     SCREE_TRY(check_files(run, error));
   }
@@ -276,8 +277,7 @@ scree_status choose_write_meshes(const choose_run *run, size_t index, const scre
   SCREE_TRY(scree_levels_write(curve, choice, SCREE_LEVELS_BYTES / run->left, path,
                                run->arguments->overwrite, error));
   if (run->left < 2) return SCREE_OK;
-  const scree_set_pick *pick = run->report.rule == SCREE_RULE_ROBUST ? &set->robust : &set->paper;
-  level = scree_curve_find(curve, scree_choice_target(pick->rp, choice->triangle_count));
+  level = scree_curve_find(curve, scree_choice_target(set->paper.rp, choice->triangle_count));
   return write_level(run, index, curve, level, "set/", error);
 }
 

@@ -1,23 +1,37 @@
-/* The answer for people: one row per object, one for the set, and what to do. Nine objects fit a
- * screen of 80 x 24. */
+/* The answer for people: what to do, and of several objects a row each; at most a dozen lines. With
+ * -v, and in choice.txt, all warnings and the paper's choice follow. */
 #include "base/number.h"
 #include "cli/choose.h"
 #include "report/program.h"
 
-static void print_row(FILE *out, const choose_run *run, size_t index) {
+enum { MOST_ROWS = 9 }; /* of the short answer */
+
+/* By the rule that is told. */
+static void print_row(FILE *out, const choose_run *run, scree_choice_rule rule, size_t index) {
   const scree_choice *c = &run->choices[index];
-  const scree_fidelity *f = c->fidelity;
-  char scan[32], n[4][32], share[3][SCREE_NUMBER_SIZE];
-  cli_print_cell(out, run->objects[index].name, 12, 12);
-  fprintf(
-      out, "%10s |%7s%7s%8s |%7s%7s%c |%7s |%6s\n", scree_count_text(c->triangle_count, scan),
-      scree_count_text(c->recommended.triangle_count, n[0]),
-      scree_percent_text(scree_fidelity_error(f, c->recommended_row, SCREE_ERROR_MEAN), share[0]),
-      scree_percent_text(scree_fidelity_error(f, c->recommended_row, SCREE_ERROR_HAUSDORFF),
-                         share[1]),
-      scree_count_text(c->paper.triangle_count, n[1]), scree_percent_text(c->paper.eps_s, share[2]),
-      c->paper_is_accident ? '*' : ' ', scree_count_text(c->robust.triangle_count, n[2]),
-      scree_count_text(c->cost.triangle_count, n[3]));
+  const scree_pick *pick = scree_choice_pick(c, rule);
+  char scan[32], count[32], share[2][SCREE_NUMBER_SIZE];
+  cli_print_cell(out, run->objects[index].name, 24, 24);
+  fprintf(out, "%10s%10s", scree_count_text(c->triangle_count, scan),
+          scree_count_text(pick->triangle_count, count));
+  if (rule == SCREE_RULE_PAPER)
+    fprintf(out, "%10s%s\n", scree_percent_text(pick->eps_s, share[0]),
+            c->paper_is_accident ? "*" : "");
+  else
+    fprintf(out, "%10s%10s\n",
+            scree_percent_text(
+                scree_fidelity_error(c->fidelity, c->recommended_row, SCREE_ERROR_MEAN), share[0]),
+            scree_percent_text(
+                scree_fidelity_error(c->fidelity, c->recommended_row, SCREE_ERROR_HAUSDORFF),
+                share[1]));
+}
+
+static void print_table(FILE *out, const choose_run *run, scree_choice_rule rule, size_t rows) {
+  bool paper = rule == SCREE_RULE_PAPER;
+  fprintf(out, "%-24s%10s%10s%10s%s\n", "object", "triangles", "use", paper ? "eps_s" : "mean",
+          paper ? "" : "   largest");
+  for (size_t i = 0; i < rows; i++) print_row(out, run, rule, i);
+  if (rows < run->count) fprintf(out, "and %zu more, which -v tells\n", run->count - rows);
 }
 
 /* What eps_s is measured against, where that is not the scan's area by itself. */
@@ -30,32 +44,21 @@ static const char *reference_text(const choose_run *run) {
                              : ", the scan's area: no noise was found";
 }
 
-/* What the columns are. */
-static void print_legend(FILE *out, const choose_run *run) {
+/* The paper's choice, and what the other costs more than it. */
+static void print_paper(FILE *out, const choose_run *run) {
   bool accident = false;
+  char rp[SCREE_NUMBER_SIZE], text[SCREE_CHOICE_SENTENCE_BYTES];
   for (size_t i = 0; i < run->count; i++) accident |= run->choices[i].paper_is_accident;
-  fprintf(out,
-          "recommended: fewest within tolerances of the distance to the scan, mean and largest\n"
-          "paper: least Ip = eps_s + %g Nr/Nm, eps_s the error of area%s%s\n"
-          "robust: the same, by the largest eps_s of this and all finer levels\n"
-          "cost: least mean distance, over the body's size, + Nr/%g\n",
+  fprintf(out, "\npaper: least Ip = eps_s + %g Nr/Nm, eps_s the error of area%s%s\n",
           run->options.weight, reference_text(run),
-          accident ? " (* small by accident: finer levels are worse)" : "", SCREE_COST_COUNT);
-  fprintf(out, "What follows and the files written are by: %s\n",
-          scree_choice_rule_name(run->report.rule));
-}
-
-static void print_table(FILE *out, const choose_run *run) {
-  char rp[SCREE_NUMBER_SIZE];
-  fprintf(out, "Nr: triangles to use, of the Nm of the scan. Decimation by %s; coordinates in %s\n",
-          scree_method_name(run->simplify.method), cli_unit_name(run->arguments->source.unit));
-  fprintf(out, "%-22s |%-22s |%-15s |%7s |%6s\n", "", " recommended", " paper", "robust", "cost");
-  fprintf(out, "%-12s%10s |%7s%7s%8s |%7s%7s  |%7s |%6s\n", "object", "triangles", "Nr", "mean",
-          "largest", "Nr", "eps_s", "Nr", "Nr");
-  for (size_t i = 0; i < run->count; i++) print_row(out, run, i);
+          accident ? " (* small by accident: finer levels are worse)" : "");
+  print_table(out, run, SCREE_RULE_PAPER, run->count);
   if (run->count > 1)
     fprintf(out, "the set, by the paper's criterion: one Rp = %s\n",
             scree_rp_text(run->set.paper.rp, rp));
+  for (size_t i = 0; i < run->count; i++)
+    if (scree_choice_cost(&run->choices[i], text))
+      fprintf(out, "%s: %s\n", run->objects[i].name, text);
 }
 
 /* Where other errors were asked for: the grid's choice by each. */
@@ -89,28 +92,22 @@ void choose_print_warnings(FILE *out, const choose_run *run) {
   }
 }
 
-static void print_answer(FILE *out, const choose_run *run) {
-  char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES];
+void choose_print(FILE *out, const choose_run *run, bool whole) {
+  char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES], shown[CLI_PRINTABLE_BYTES];
+  const char *folder = run->arguments->output;
+  bool all = whole || run->count <= MOST_ROWS;
   size_t count = scree_choice_answer(&run->report, run->count > 1 ? run->count : 0, texts);
   for (size_t i = 0; i < count; i++) fprintf(out, "%s\n", texts[i]);
-}
-
-void choose_print(FILE *out, const choose_run *run) {
-  print_table(out, run);
-  print_legend(out, run);
-  putc('\n', out);
-  print_answer(out, run);
-  choose_print_warnings(out, run);
-  const char *folder = run->arguments->output;
-  char shown[CLI_PRINTABLE_BYTES];
+  if (run->count > 1)
+    print_table(out, run, run->report.rule, all ? run->count : (size_t)MOST_ROWS - 1);
+  if (whole) choose_print_warnings(out, run);
   if (folder)
-    fprintf(
-        out,
-        "In %s: report.html, %s, %s, choice.json\n"
-        "*.mass.json: mass, centre, inertia at %g kg/m3; scree export places a mesh otherwise\n",
-        cli_printable(folder, shown), run->count > 1 ? "*.stl (own choice), set/*.stl" : "*.stl",
-        choose_first_figure(), run->arguments->density);
+    fprintf(out, "In %s: report.html, %s, %s, choice.json; *.mass.json at %g kg/m3\n",
+            cli_printable(folder, shown),
+            run->count > 1 ? "*.stl (own choice), set/*.stl" : "*.stl", choose_first_figure(),
+            run->arguments->density);
   else
     fprintf(out, "Nothing was written: -o DIR writes the meshes and a report.\n");
+  if (whole && run->report.rule != SCREE_RULE_PAPER) print_paper(out, run);
   print_other_errors(out, run);
 }

@@ -3,9 +3,25 @@
 
 #include <string.h>
 
-/* "one|two" with blanks between. */
-static void print_choices(FILE *stream, const char *words) {
-  for (; *words; words++) fputc(*words == '|' ? ' ' : *words, stream);
+static bool has_choices(const cli_option *option) {
+  return option->words || option->each;
+}
+
+/* The words that an option offers, with blanks between. */
+static void print_choices(FILE *stream, const cli_option *option) {
+  for (const char *c = option->words; c && *c; c++) fputc(*c == '|' ? ' ' : *c, stream);
+  for (size_t i = 0; option->each && option->each(i); i++)
+    fprintf(stream, "%s%s", i ? " " : "", option->each(i));
+}
+
+/* Whether built-in samples are among its inputs: their spacing is its option. */
+static bool takes_samples(const cli_verb *verb) {
+  return cli_has_option(verb, "resolution");
+}
+
+static void print_samples(FILE *stream, const char *before) {
+  for (size_t i = 0; i < scree_sample_count(); i++)
+    fprintf(stream, "%s%s%s", i ? " " : "", before, scree_sample_name(i));
 }
 
 static bool takes_file(const cli_option *option) {
@@ -33,18 +49,23 @@ static void print_bash_name(FILE *stream, const cli_verb *verb, const cli_option
 
 static void print_bash_choices(FILE *stream, const cli_verb *verb, const cli_option *option) {
   char letter = cli_letter(option->name);
-  if (!option->words) return;
+  if (!has_choices(option)) return;
   fprintf(stream, "    %s:--%s", verb->name, option->name);
   if (letter) fprintf(stream, "|%s:-%c", verb->name, letter);
   fputs(") words=\"", stream);
-  print_choices(stream, option->words);
+  print_choices(stream, option);
   fputs("\" ;;\n", stream);
 }
 
 static void print_bash(FILE *stream) {
+  /* A colon is a word of its own there: sample:NAME is three. */
   fputs("_scree() {\n  local word=${COMP_WORDS[COMP_CWORD]} words=\n"
-        "  case ${COMP_WORDS[1]}:${COMP_WORDS[COMP_CWORD-1]} in\n",
+        "  local last=${COMP_WORDS[COMP_CWORD-1]} before=${COMP_WORDS[COMP_CWORD-2]}\n"
+        "  [ \"$last$word\" = sample: ] && before=$last last=: word=\n"
+        "  [ \"$before$last\" = sample: ] && words=\"",
         stream);
+  print_samples(stream, "");
+  fputs("\"\n  case ${COMP_WORDS[1]}:$last in\n", stream);
   for (const cli_verb *const *verb = cli_verbs; *verb; verb++)
     each_option(stream, *verb, print_bash_choices);
   fputs("  esac\n  if [ -n \"$words\" ]; then\n"
@@ -57,6 +78,7 @@ static void print_bash(FILE *stream) {
   for (const cli_verb *const *verb = cli_verbs; *verb; verb++) {
     fprintf(stream, "      %s) words=\"", (*verb)->name);
     each_option(stream, *verb, print_bash_name);
+    if (takes_samples(*verb)) fputs(" sample:", stream);
     fputs("\" ;;\n", stream);
   }
   fputs("    esac\n  fi\n"
@@ -92,9 +114,9 @@ static void print_zsh_option(FILE *stream, const cli_verb *verb, const cli_optio
     fputc(':', stream);
     print_zsh_text(stream, option->value_name);
     fputc(':', stream);
-    if (option->words) {
+    if (has_choices(option)) {
       fputc('(', stream);
-      print_choices(stream, option->words);
+      print_choices(stream, option);
       fputc(')', stream);
     } else if (takes_file(option)) {
       fputs("_files", stream);
@@ -104,8 +126,9 @@ static void print_zsh_option(FILE *stream, const cli_verb *verb, const cli_optio
 }
 
 static void print_zsh(FILE *stream) {
-  fputs("#compdef scree\n\n_scree() {\n  if (( CURRENT == 2 )); then\n    local -a verbs=(\n",
-        stream);
+  fputs("#compdef scree\n\n_scree_scans() {\n  _files\n  compadd -- ", stream);
+  print_samples(stream, "sample:");
+  fputs("\n}\n\n_scree() {\n  if (( CURRENT == 2 )); then\n    local -a verbs=(\n", stream);
   for (const cli_verb *const *verb = cli_verbs; *verb; verb++) {
     fprintf(stream, "      '%s:", (*verb)->name);
     print_zsh_text(stream, (*verb)->summary);
@@ -118,7 +141,8 @@ static void print_zsh(FILE *stream) {
   for (const cli_verb *const *verb = cli_verbs; *verb; verb++) {
     fprintf(stream, "    %s)\n      _arguments -s \\\n", (*verb)->name);
     each_option(stream, *verb, print_zsh_option);
-    fputs("        '*:input:_files'\n      ;;\n", stream);
+    fprintf(stream, "        '*:input:%s'\n      ;;\n",
+            takes_samples(*verb) ? "_scree_scans" : "_files");
   }
   fputs("  esac\n}\n\n_scree \"$@\"\n", stream);
 }
@@ -134,9 +158,9 @@ static void print_fish_option(FILE *stream, const cli_verb *verb, const cli_opti
   fprintf(stream, "complete -c scree -n '__fish_seen_subcommand_from %s' -l %s", verb->name,
           option->name);
   if (letter) fprintf(stream, " -s %c", letter);
-  if (option->words) {
+  if (has_choices(option)) {
     fputs(" -x -a '", stream);
-    print_choices(stream, option->words);
+    print_choices(stream, option);
     fputc('\'', stream);
   } else if (option->value_name) {
     fputs(takes_file(option) ? " -r" : " -x", stream);
@@ -152,6 +176,10 @@ static void print_fish(FILE *stream) {
     print_fish_text(stream, (*verb)->summary);
     fputs("'\n", stream);
     each_option(stream, *verb, print_fish_option);
+    if (!takes_samples(*verb)) continue;
+    fprintf(stream, "complete -c scree -n '__fish_seen_subcommand_from %s' -a '", (*verb)->name);
+    print_samples(stream, "sample:");
+    fputs("'\n", stream);
   }
   fputs("complete -c scree -n __fish_use_subcommand -a 'help version'\n", stream);
 }

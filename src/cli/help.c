@@ -65,14 +65,27 @@ void cli_print_help(FILE *stream, const cli_verb *verb) {
   if (verb->examples) print_examples(stream, verb->examples);
 }
 
+const char *cli_group_title(cli_group group) {
+  static const char *const titles[CLI_GROUP_COUNT] = {
+      [CLI_PREPARE] = "Prepare a particle from a scan",
+      [CLI_SIMULATE] = "Simulate particles in a machine",
+      [CLI_DECIDE] = "Decide, from heaps and many runs",
+      [CLI_SHOW] = "Show and hand over",
+  };
+  return titles[group];
+}
+
 void cli_print_overview(FILE *stream) {
   fputs("scree: from a 3D scan to the particle that a DEM simulation needs\n\n"
         "usage: scree VERB [options] INPUT...\n\n",
         stream);
-  for (const cli_verb *const *verb = cli_verbs; *verb; verb++)
-    fprintf(stream, "  %-10s %s\n", (*verb)->name, (*verb)->summary);
-  fputs("  help       show this, or the help of a verb: scree help VERB\n"
-        "  version    show the version\n"
-        "\nExit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted.\n",
-        stream);
+  for (cli_group group = 0; group < CLI_GROUP_COUNT; group++) {
+    fprintf(stream, "%s:\n", cli_group_title(group));
+    for (const cli_verb *const *verb = cli_verbs; *verb; verb++)
+      if ((*verb)->group == group) fprintf(stream, "  %-10s %s\n", (*verb)->name, (*verb)->summary);
+  }
+  fputs(
+      "\n`scree help VERB` shows what a verb does and its options; `scree version`, the version.\n"
+      "Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted.\n",
+      stream);
 }

@@ -136,7 +136,8 @@ scree_status cli_load(const char *word, const cli_input_options *options,
 }
 
 cli_input_options cli_source_options(const cli_source *source) {
-  cli_input_options input = {scree_default_read_options(), scree_default_sample_options(), false};
+  cli_input_options input = {.read = scree_default_read_options(),
+                             .sample = scree_default_sample_options()};
   input.read.unit_m = source->unit;
   input.read.ignore_comment_unit = unit_is_given;
   input.sample.resolution = source->resolution;

@@ -8,6 +8,7 @@ typedef struct cli_input_options {
   scree_read_options read;
   scree_sample_options sample;
   bool remarked; /* what is to be remarked of the file has been, or will be */
+  bool keep_handles;
 } cli_input_options;
 
 /* The options that every verb with surfaces as input has, as a member of its struct. */
@@ -22,8 +23,8 @@ typedef struct cli_source {
 
 /* Their rows in the option table of a verb whose struct has the member `source`. */
 #define CLI_SOURCE_OPTIONS                                                                         \
-  CLI_ROW(CLI_UNIT, "unit", source.unit, "UNIT",                                                   \
-          "The files' unit of length: m, cm, mm, um, inch, ft or km. Default: mm."),               \
+  CLI_WORDS_ROW(CLI_UNIT, "unit", source.unit, "UNIT", CLI_UNITS,                                  \
+                "The files' unit of length: m, cm, mm, um, inch, ft or km. Default: mm."),         \
       CLI_RANGE_ROW(CLI_LENGTH, "resolution", source.resolution, "LENGTH", 0.02e-3, 5e-3,          \
                     "Spacing of built-in samples. Default: 0.27mm."),                              \
       CLI_RANGE_ROW(CLI_LENGTH, "noise", source.noise, "LENGTH", 0, 2e-3,                          \

@@ -1,12 +1,14 @@
 #include "base/alloc.h"
 #include "base/parts.h"
 #include "base/platform.h"
+#include "base/quote.h"
 #include "cli/input.h"
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
 #include "report/provenance.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 const cli_verb *cli_find_verb(const char *name) {
@@ -17,24 +19,18 @@ const cli_verb *cli_find_verb(const char *name) {
 
 /* The words as one line that a shell reads back as the same words. */
 static char *join_words(int count, char **words) {
-  size_t size = 8;
-  for (int i = 0; i < count; i++) size += 4 * strlen(words[i]) + 3;
-  char *line = scree_alloc(size, 1), *end = line;
-  if (!line) return NULL;
-  end += sprintf(end, "scree");
+  char *made = NULL, *kept = NULL;
+  size_t size;
+  FILE *stream = scree_memory_open(&made, &size);
+  if (!stream) return NULL;
+  fputs("scree", stream);
   for (int i = 1; i < count; i++) {
-    const char *plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./,:+@%";
-    *end++ = ' ';
-    if (words[i][0] && words[i][strspn(words[i], plain)] == 0) {
-      end += sprintf(end, "%s", words[i]);
-      continue;
-    }
-    *end++ = '\'';
-    for (const char *c = words[i]; *c; c++) end += sprintf(end, *c == '\'' ? "'\\''" : "%c", *c);
-    *end++ = '\'';
+    putc(' ', stream);
+    scree_quote(stream, SCREE_QUOTE_SHELL, words[i]);
   }
-  *end = 0;
-  return line;
+  if (scree_memory_close(stream)) kept = scree_strdup(made);
+  free(made);
+  return kept;
 }
 
 static scree_status unknown_verb(const char *word) {
@@ -120,11 +116,19 @@ static scree_status run(const cli_verb *verb, int argc, char **argv, scree_error
                             : common.quiet              ? CLI_PROGRESS_NONE
                             : scree_is_terminal(stderr) ? CLI_PROGRESS_LINE
                                                         : CLI_PROGRESS_LOG;
-  cli_call call = {verb,         options,           inputs,         input_count,
-                   common.quiet, common.max_memory, common.backend, cli_terminal_start(shown),
-                   command_line};
+  const cli_call call = {.verb = verb,
+                         .options = options,
+                         .inputs = inputs,
+                         .input_count = input_count,
+                         .quiet = common.quiet,
+                         .verbose = common.verbose,
+                         .max_memory = common.max_memory,
+                         .backend = common.backend,
+                         .progress = cli_terminal_start(shown),
+                         .command_line = command_line};
   scree_status status = verb->run(&call, error);
   if (status != SCREE_OK && status < CLI_TOLD) status = cli_fail(error);
+  cli_unlock_folder();
   if (status != SCREE_OK) cli_remove_empty_folders();
   cli_terminal_end();
   if (common.verbose) tell_costs(&start);

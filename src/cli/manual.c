@@ -33,10 +33,14 @@ static void print_man_overview(FILE *stream) {
   fputs("scree(1)\n\n# NAME\n\nscree - triangle counts for DEM particles from 3D scans\n\n"
         "# SYNOPSIS\n\n*scree* _VERB_ [options] _INPUT_...\n\n# VERBS\n\n",
         stream);
-  for (const cli_verb *const *verb = cli_verbs; *verb; verb++) {
-    fprintf(stream, "*scree-%s*(1)\n\t", (*verb)->name);
-    print_man_text(stream, (*verb)->summary);
-    fputs("\n\n", stream);
+  for (cli_group group = 0; group < CLI_GROUP_COUNT; group++) {
+    fprintf(stream, "## %s\n\n", cli_group_title(group));
+    for (const cli_verb *const *verb = cli_verbs; *verb; verb++) {
+      if ((*verb)->group != group) continue;
+      fprintf(stream, "*scree-%s*(1)\n\t", (*verb)->name);
+      print_man_text(stream, (*verb)->summary);
+      fputs("\n\n", stream);
+    }
   }
   fputs("*scree help* [_VERB_]\n\tlist the verbs, or show what a verb does and its options\n\n"
         "*scree version*\n\tshow the version and which parts this build has\n\n"
@@ -112,9 +116,14 @@ void cli_print_markdown(FILE *stream, const cli_verb *verb) {
     print_markdown_verb(stream, verb);
     return;
   }
-  fputs("# Verbs\n\n| verb | |\n|---|---|\n", stream);
-  for (const cli_verb *const *one = cli_verbs; *one; one++)
-    fprintf(stream, "| [`scree %s`](%s.md) | %s |\n", (*one)->name, (*one)->name, (*one)->summary);
+  fputs("# Verbs\n", stream);
+  for (cli_group group = 0; group < CLI_GROUP_COUNT; group++) {
+    fprintf(stream, "\n## %s\n\n| verb | |\n|---|---|\n", cli_group_title(group));
+    for (const cli_verb *const *one = cli_verbs; *one; one++)
+      if ((*one)->group == group)
+        fprintf(stream, "| [`scree %s`](%s.md) | %s |\n", (*one)->name, (*one)->name,
+                (*one)->summary);
+  }
   fputs("\n## Options of every verb\n\n", stream);
   print_markdown_options(stream, cli_common_options, cli_common_option_count);
   fputs("## All options\n\nAn option means the same in every verb that has it.\n\n"

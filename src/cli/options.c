@@ -8,10 +8,12 @@ const cli_meaning cli_meanings[] = {
     {.name = "angle", .meaning = "Greatest angle at which spheres of a bubble pack meet."},
     {.name = "angles", .meaning = "Simulated time between angles in a series."},
     {.name = "area", .meaning = "The area that an error of area is measured against."},
+    {.name = "as", .meaning = "What a surface becomes for another code."},
     {.name = "azimuth", .meaning = "The camera's angle about the vertical."},
     {.name = "backend", .meaning = "Where worlds are stepped."},
     {.name = "band-high", .meaning = "Where a heap's flank ends, as a share of its height."},
     {.name = "band-low", .meaning = "Where a heap's flank begins, as a share of its height."},
+    {.name = "body", .meaning = "Keep one of several separate bodies."},
     {.name = "cavities", .meaning = "How much volume of cavities is filled."},
     {.name = "cell", .meaning = "Side of the cells of a height field."},
     {.name = "centre", .meaning = "Put the centre of mass at the origin."},
@@ -22,7 +24,7 @@ const cli_meaning cli_meanings[] = {
     {.name = "columns", .meaning = "Columns of views in a picture."},
     {"config", 'c', "An experiment in YAML.", 0, 0, NULL},
     {.name = "container", .meaning = "What particles are poured into."},
-    {"count", 'n', "How many triangles, or spheres of a clump, to keep.", 0, 0, NULL},
+    {"count", 'n', "How many triangles, spheres of a clump or cells.", 0, 0, NULL},
     {.name = "csv", .meaning = "Print CSV instead of text."},
     {.name = "cut-plane", .meaning = "Cut off what lies below a plane."},
     {.name = "cylinder", .meaning = "Inner diameter of the lifted cylinder."},
@@ -43,6 +45,7 @@ const cli_meaning cli_meanings[] = {
     {.name = "fit", .meaning = "Move vertices nearer to the scan."},
     {.name = "flat", .meaning = "Fill holes without new vertices."},
     {"force", 'f', "Overwrite existing files.", 0, 0, NULL},
+    {.name = "format", .meaning = "What many meshes are written as."},
     {.name = "frames", .meaning = "Simulated time between frames."},
     {"friction", 0, "Coefficient of friction between particles.", 0, 3,
      "the coefficient mu is meant, as 0.5"},
@@ -50,20 +53,22 @@ const cli_meaning cli_meanings[] = {
      "the coefficient mu is meant, as 0.5"},
     {.name = "from", .meaning = "The side that a picture is seen from."},
     {.name = "gap", .meaning = "How exactly the Hausdorff distance is known."},
+    {.name = "grain", .meaning = "Cells that are longer one way."},
     {"gravity", 0, "Acceleration downwards.", 0.01, 1000, "m/s2 is meant, as 9.81"},
     {"grid", 'g', "Levels of a table: least Rp, greatest Rp, levels per decade.", 0, 0, NULL},
     {"help", 'h', "Show the help.", 0, 0, NULL},
     {.name = "hold-time", .meaning = "After the lift, at most, until still."},
-    {.name = "holes", .meaning = "Most edges of a hole that is filled."},
+    {.name = "holes", .meaning = "Most of the area that a hole's filling may be."},
     {.name = "inlet", .meaning = "Where particles enter."},
     {"inside", 'i', "No sphere stands out of the surface.", 0, 0, NULL},
     {.name = "jobs", .meaning = "Runs at the same time."},
     {.name = "json", .meaning = "Print JSON instead of text."},
     {.name = "keep-failed", .meaning = "Do not try failed runs again."},
-    {.name = "large-holes", .meaning = "Fill large holes, smoothly."},
+    {.name = "keep-handles", .meaning = "Cut no short handles."},
     {.name = "largest", .meaning = "Keep only the largest shell."},
     {.name = "law", .meaning = "The contact law."},
     {.name = "lease", .meaning = "When a silent worker's run is taken over."},
+    {.name = "least", .meaning = "Smaller pieces join a neighbour."},
     {.name = "lift-speed", .meaning = "Speed of the lifted cylinder."},
     {.name = "lift-time", .meaning = "How long the cylinder rises."},
     {.name = "list", .meaning = "List the samples, write nothing."},
@@ -72,6 +77,7 @@ const cli_meaning cli_meanings[] = {
     {.name = "max-memory", .meaning = "Fail rather than hold more memory."},
     {.name = "merge-folds", .meaning = "Merge where a shell meets itself."},
     {"method", 'm', "The algorithm, by name.", 0, 0, NULL},
+    {.name = "near", .meaning = "Where cells are denser."},
     {.name = "no-captions", .meaning = "No text in a picture."},
     {.name = "no-cut", .meaning = "Refuse a surface that meets itself."},
     {.name = "no-ground", .meaning = "No floor in a picture."},
@@ -88,6 +94,7 @@ const cli_meaning cli_meanings[] = {
     {.name = "particle-size", .meaning = "Size of the particles of a measured heap."},
     {"particles", 'N', "How many particles.", 0, 0, NULL},
     {.name = "picture-width", .meaning = "What a picture shows across."},
+    {.name = "pieces", .meaning = "The most convex pieces of a mesh for another code."},
     {.name = "points", .meaning = "Points that a distance is measured at."},
     {"preset", 'p', "What an experiment starts from.", 0, 0, NULL},
     {.name = "principal", .meaning = "Turn the principal axes along x, y and z."},
@@ -100,18 +107,22 @@ const cli_meaning cli_meanings[] = {
     {.name = "resolution", .meaning = "Vertex spacing of built-in samples."},
     {.name = "restitution", .meaning = "Coefficient of restitution."},
     {.name = "resume", .meaning = "Go on from the last checkpoint."},
+    {.name = "rounds", .meaning = "Rounds of relaxation of the cells' places."},
     {"rp", 'r', "Percentage reduction: triangles kept over those of the scan, as 1e-3 or 0.1%.", 0,
      0, NULL},
     {.name = "rule", .meaning = "Whose choice comes first."},
+    {.name = "ruler", .meaning = "How long the ruler in a picture is."},
     {.name = "sample-seed", .meaning = "Seed of the noise of built-in samples."},
     {.name = "samples", .meaning = "Take the nine built-in devices."},
     {.name = "seam", .meaning = "How far apart the sides of a seam are united."},
     {.name = "sectors", .meaning = "Azimuth sectors of a heap."},
-    {.name = "seed", .meaning = "Seed of the positions, orientations and order of particles."},
+    {.name = "seed",
+     .meaning = "Seed of the places of cells; of particles, of turns and order too."},
     {.name = "series", .meaning = "Simulated time between points of a series."},
     {.name = "set", .meaning = "Change a field of the file."},
     {.name = "settle-time", .meaning = "While particles come to rest."},
     {"size", 's', "Size of a picture in pixels.", 0, 0, NULL},
+    {.name = "slivers", .meaning = "Keep pieces that are no particles."},
     {.name = "slurm", .meaning = "Run as a Slurm job array."},
     {.name = "speed", .meaning = "Speed at which particles enter."},
     {.name = "spheres", .meaning = "Also a run with spheres of the same volumes."},
@@ -128,7 +139,7 @@ const cli_meaning cli_meanings[] = {
     {.name = "triangles", .meaning = "Triangles of the surface that spheres are fitted to."},
     {.name = "unchecked", .meaning = "Take a scan as it is."},
     {"unit", 'u', "Unit of length of the files.", 0, 0, NULL},
-    {"verbose", 'v', "Say at the end what it cost.", 0, 0, NULL},
+    {"verbose", 'v', "Show details, and at the end what it cost.", 0, 0, NULL},
     {.name = "view", .meaning = "What of a simulation goes into a .vtp file."},
     {.name = "volume-change", .meaning = "Most change of volume by a repair."},
     {.name = "vtp", .meaning = "Write a .vtp file."},
@@ -224,7 +235,7 @@ static const char *new_name(const cli_verb *verb, const char *old) {
   return NULL;
 }
 
-/* Of the names the one that was meant, as "; did you mean '--NAME'?", or nothing. */
+/* Writes which of the names was meant, as "; did you mean '--NAME'?", or nothing. */
 static void hint_nearest(const char *word, const char *const *names, size_t count,
                          const char *dashes, char *buffer, size_t size) {
   const char *nearest = strlen(word) < 2 ? NULL : scree_nearest_name(word, names, count);
@@ -244,9 +255,51 @@ void cli_option_hint(const cli_verb *verb, const char *name, char *buffer, size_
   hint_nearest(name, names, count, "--", buffer, size);
 }
 
+void cli_word_hint(const char *words, const char *word, char *buffer, size_t size) {
+  enum { BYTES = 512 };
+  char copy[BYTES], *rest = copy;
+  const char *names[CLI_MOST_OPTIONS];
+  size_t count = 0;
+  snprintf(copy, sizeof copy, "%s", words);
+  while (rest && count < CLI_MOST_OPTIONS) {
+    names[count++] = rest;
+    rest = strchr(rest, '|');
+    if (rest) *rest++ = 0;
+  }
+  hint_nearest(word, names, count, "", buffer, size);
+}
+
 void cli_verb_hint(const char *word, char *buffer, size_t size) {
   const char *names[CLI_MOST_OPTIONS];
   size_t count = 0;
   for (const cli_verb *const *verb = cli_verbs; *verb; verb++) names[count++] = (*verb)->name;
   hint_nearest(word, names, count, "", buffer, size);
+}
+
+/* "1e-5:1e-1:9" as three numbers. */
+static bool split(const char *text, double numbers[3]) {
+  for (int i = 0; i < 3; i++) {
+    char part[32];
+    size_t length = strcspn(text, ":");
+    if (length == 0 || length >= sizeof part) return false;
+    memcpy(part, text, length);
+    part[length] = 0;
+    text += length;
+    if (*text != (i < 2 ? ':' : 0)) return false;
+    text += i < 2;
+    if (!(i < 2 ? cli_fraction_from_text : cli_real_from_text)(part, &numbers[i])) return false;
+  }
+  return true;
+}
+
+scree_status cli_parse_grid(const cli_verb *verb, const char *text, cli_grid *grid) {
+  double n[3];
+  if (!split(text, n) || !(n[0] >= 1e-12 && n[0] <= n[1] && n[1] <= 1) ||
+      !(n[2] >= 1 && n[2] <= 1000) || n[2] != (double)(int)n[2])
+    return cli_misuse(
+        verb,
+        "--grid '%s': must be MIN:MAX:N with 1e-12 <= MIN <= MAX <= 1 and a whole N from 1 to 1000",
+        text);
+  *grid = (cli_grid){n[0], n[1], (int)n[2]};
+  return SCREE_OK;
 }

@@ -26,5 +26,21 @@ bool cli_has_option(const cli_verb *verb, const char *name);
 /* "; did you mean '--tolerance'?", "; it is now '--points'", or "", for a word that is no option of
  * the verb; name is without dashes, of one letter for -x. */
 void cli_option_hint(const cli_verb *verb, const char *name, char *buffer, size_t size);
-/* "; did you mean 'choose'?" or "". */
+/* "; did you mean 'choose'?" or "", of the words in "one|two". */
+void cli_word_hint(const char *words, const char *word, char *buffer, size_t size);
 void cli_verb_hint(const char *word, char *buffer, size_t size);
+
+/* --grid: the levels of a table. */
+typedef struct cli_grid {
+  double least, most; /* Rp */
+  int per_decade;
+} cli_grid;
+
+#define CLI_GRID_DEFAULT "1e-5:1e-1:9"
+#define CLI_GRID_OPTION                                                                            \
+  CLI_ROW(CLI_TEXT, "grid", grid, "MIN:MAX:N",                                                     \
+          "Grid of Rp: from MIN upward with N points per factor of ten, as far as MAX, which "     \
+          "belongs to it only where a step meets it. Default: " CLI_GRID_DEFAULT ".")
+
+/* CLI_MISUSED after telling what is wrong with the text. */
+scree_status cli_parse_grid(const cli_verb *verb, const char *text, cli_grid *grid);

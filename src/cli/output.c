@@ -3,6 +3,7 @@
 #include "base/owned.h"
 #include "base/path.h"
 #include "base/platform.h"
+#include "cli/args.h"
 #include "cli/input.h"
 
 #include <errno.h>
@@ -116,7 +117,8 @@ static bool is_called(const char *file, const char *name) {
 
 typedef scree_status run_file_visit(const cli_call *call, const char *path, scree_error *error);
 
-/* Of a name with a # or a * those that are there, of another one the file, there or not. */
+/* Visits the files that a name with a # or a * stands for, or the one of another name, there or
+ * not. */
 static scree_status visit_files(const cli_call *call, const char *folder, const char *name,
                                 run_file_visit *visit, scree_error *error) {
   if (!strpbrk(name, "#*")) return visit(call, SCREE_PATH_IN(folder, name), error);
@@ -141,7 +143,7 @@ scree_status cli_check_run_output(const cli_call *call, const char *folder,
     scree_status status =
         visit_files(call, folder, files->names[i], overwrite ? check_replaced : check_new, error);
     if (status == SCREE_EXISTS && i == 0)
-      return cli_refuse(error, status, SCREE_PATH_IN(folder, files->names[i]),
+      return cli_refuse(error, SCREE_BAD_ARGUMENT, SCREE_PATH_IN(folder, files->names[i]),
                         "exists already: --resume goes on, -f begins anew");
     if (status != SCREE_OK) return status;
   }
@@ -219,4 +221,148 @@ scree_write_options cli_write_options(const cli_call *call, const char *path, do
   write.comment = call->command_line;
   if (!strcmp(path, "-")) write.format = SCREE_FORMAT_STL;
   return write;
+}
+
+/* A file in the folder, locked by the system: it knows when a process has gone, and a file that a
+ * killed one left behind stops nobody. Whoever gets the lock of a file that was removed meanwhile
+ * tries again with the new one. */
+
+static const char lock_name[] = ".scree-lock";
+static char lock_path[SCREE_PATH_BYTES];
+static int lock = -1;
+
+/* Who has it, as its file says. */
+static scree_status tell_holder(const char *folder, scree_error *error) {
+  char text[64] = "", reason[200];
+  scree_path_info info = {.modified = scree_calendar_time()};
+  int fd = scree_open_read(lock_path);
+  if (fd >= 0) {
+    scree_descriptor_look(fd, &info);
+    if (scree_read(fd, text, sizeof text - 1) < 0) text[0] = 0;
+    scree_close(fd);
+  }
+  double age = scree_calendar_time() - info.modified;
+  snprintf(reason, sizeof reason,
+           "process %ld writes into it, since %.0f %s ago: wait for it, stop it, or name another "
+           "folder",
+           strtol(text, NULL, 10), age < 120 ? age : age / 60, age < 120 ? "s" : "minutes");
+  return cli_refuse(error, SCREE_BAD_ARGUMENT, folder, reason);
+}
+
+static bool is_still_there(void) {
+  scree_path_info own, named;
+  return scree_descriptor_look(lock, &own) && scree_path_look(lock_path, &named) &&
+         own.number == named.number && own.device == named.device;
+}
+
+scree_status cli_lock_folder(const char *folder, scree_error *error) {
+  enum { TRIES = 100 };
+  if (lock >= 0) return SCREE_OK;
+  scree_path_put(lock_path, folder, lock_name);
+  for (int i = 0; i < TRIES; i++) {
+    lock = scree_lock_open(lock_path);
+    if (lock < 0) return errno == EWOULDBLOCK ? tell_holder(folder, error) : SCREE_OK;
+    if (is_still_there()) break;
+    scree_close(lock);
+    lock = -1;
+  }
+  char text[32]; /* as long for every process */
+  int length = snprintf(text, sizeof text, "%20ld\n", scree_process_number());
+  if (lock >= 0) (void)scree_write(lock, text, (size_t)length);
+  return SCREE_OK;
+}
+
+void cli_unlock_folder(void) {
+  if (lock < 0) return;
+  scree_path_remove(lock_path); /* stays, and stops nobody, where a file that is open cannot be */
+  scree_close(lock);
+  lock = -1;
+}
+
+enum { TEMPORARY_NAMES = 1000 };
+
+/* Up to the last slash, without those at the end. */
+static int parent_length(const char *folder, int length) {
+  while (length > 0 && folder[length - 1] != '/') length--;
+  while (length > 1 && folder[length - 1] == '/') length--;
+  return length;
+}
+
+static scree_status make_parent(const char *folder, int length, scree_error *error) {
+  char parent[CLI_STAGE_BYTES];
+  int above = parent_length(folder, length);
+  snprintf(parent, sizeof parent, "%.*s", above, folder);
+  return above ? cli_make_folder(parent, error) : SCREE_OK;
+}
+
+/* Under a name that nobody else has: a killed call may have left its folder. */
+static scree_status make_beside(const char *stem, int length, cli_stage *stage,
+                                scree_error *error) {
+  for (int attempt = 0; attempt < TEMPORARY_NAMES; attempt++) {
+    int used = snprintf(stage->path, sizeof stage->path, "%.*s%s.%ld-%d.part", length, stem,
+                        stage->existed ? "/results" : "", scree_process_number(), attempt);
+    if (used >= (int)sizeof stage->path) errno = ENAMETOOLONG;
+    if (used < (int)sizeof stage->path && scree_folder_make(stage->path)) return SCREE_OK;
+    if (errno != EEXIST) break;
+  }
+  char reason[256];
+  snprintf(reason, sizeof reason, "cannot create the folder: %s", strerror(errno));
+  stage->path[0] = 0;
+  return cli_refuse(error, SCREE_IO, stage->folder, reason);
+}
+
+scree_status cli_stage_open(const char *folder, cli_stage *stage, scree_error *error) {
+  int length = (int)strnlen(folder, CLI_STAGE_BYTES);
+  *stage = (cli_stage){.folder = folder, .existed = scree_path_look_at_link(folder, NULL)};
+  if (length >= CLI_STAGE_BYTES)
+    return cli_refuse(error, SCREE_LIMIT, folder, "the path is too long");
+  while (length > 1 && folder[length - 1] == '/') length--;
+  SCREE_TRY(stage->existed || length == 0 ? scree_folder_create(folder, error)
+                                          : make_parent(folder, length, error));
+  return make_beside(folder, length, stage, error);
+}
+
+scree_status cli_stage_rename(cli_stage *stage, scree_error *error) {
+  char target[CLI_STAGE_BYTES];
+  size_t length = strlen(stage->folder);
+  while (length > 1 && stage->folder[length - 1] == '/') length--;
+  snprintf(target, sizeof target, "%.*s", (int)length, stage->folder);
+  if (scree_path_rename(stage->path, target)) {
+    stage->path[0] = 0;
+    return SCREE_OK;
+  }
+  return cli_refuse(
+      error, errno == ENOTEMPTY || errno == EEXIST ? SCREE_EXISTS : SCREE_IO, stage->folder,
+      errno == ENOTEMPTY || errno == EEXIST ? "was made by somebody else meanwhile; not overwritten"
+                                            : strerror(errno));
+}
+
+/* Folders in folders, as deep as they are made here. */
+static void remove_to(const char *path, int depth) {
+  scree_folder *entries = depth > 0 ? scree_folder_open(path) : NULL;
+  for (const char *name; entries && (name = scree_folder_next(entries));) {
+    char inner[2 * CLI_STAGE_BYTES];
+    int used = snprintf(inner, sizeof inner, "%s/%s", path, name);
+    if (used < (int)sizeof inner && !scree_path_remove(inner)) remove_to(inner, depth - 1);
+  }
+  if (entries) scree_folder_close(entries);
+  (void)scree_folder_remove(path);
+}
+
+void cli_remove_tree(const char *path) {
+  enum { DEPTH = 3 };
+  if (!scree_path_remove(path)) remove_to(path, DEPTH);
+}
+
+void cli_stage_discard(cli_stage *stage) {
+  if (stage->path[0]) cli_remove_tree(stage->path);
+  stage->path[0] = 0;
+}
+
+void cli_stage_hide(const cli_stage *stage, scree_error *error) {
+  size_t length = strlen(stage->path);
+  char *at = length ? strstr(error->message, stage->path) : NULL, rest[sizeof error->message];
+  if (!at) return;
+  snprintf(rest, sizeof rest, "%s", at + length);
+  snprintf(at, sizeof error->message - (size_t)(at - error->message), "%s%s", stage->folder, rest);
 }

@@ -1,6 +1,7 @@
 /* What a verb may write to. */
 #pragma once
 
+#include "base/error.h"
 #include "cli/args.h"
 
 /* scree_output_check for a verb's output, before any work; and an input is never an output, not
@@ -57,3 +58,30 @@ scree_write_options cli_write_options(const cli_call *call, const char *path, do
  * not fit. */
 scree_status cli_beside(const char *path, const char *ending, char *buffer, size_t size,
                         scree_error *error);
+
+/* Locks a folder that is there until the call ends, however it does. SCREE_EXISTS with the process
+ * that has it, and since when; a file system without locks has none. */
+scree_status cli_lock_folder(const char *folder, scree_error *error);
+/* Ends it, and removes its file. */
+void cli_unlock_folder(void);
+
+/* A folder that is there whole or not at all: its files are written into another one and moved when
+ * all is written. */
+enum { CLI_STAGE_BYTES = 4096 };
+
+typedef struct cli_stage {
+  const char *folder;         /* as asked for; borrowed */
+  bool existed;               /* then the other folder lies in it, else beside it */
+  char path[CLI_STAGE_BYTES]; /* of the other one: NAME.PROCESS-N.part; "" where there is none */
+} cli_stage;
+
+/* Makes the folder to write into, and what is missing above it. */
+scree_status cli_stage_open(const char *folder, cli_stage *stage, scree_error *error);
+/* Renames it to what was asked for; only where that was not there before. */
+scree_status cli_stage_rename(cli_stage *stage, scree_error *error);
+/* Removes it with all that it holds; nothing where it was renamed. */
+void cli_stage_discard(cli_stage *stage);
+/* Has an error name the folder that was asked for. */
+void cli_stage_hide(const cli_stage *stage, scree_error *error);
+/* Removes a file, or a folder with what this program puts into one. */
+void cli_remove_tree(const char *path);

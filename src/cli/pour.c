@@ -364,6 +364,7 @@ static cli_scene_run run_of(cli_pour *r, size_t level, char folder[NAME_BYTES]) 
                          .store = r->store,
                          .views = views_of(r->arguments->view),
                          .states = r->states,
+                         .brief = true,
                          .common_page = several,
                          .name = several ? name : NULL};
 }

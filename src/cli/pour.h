@@ -16,7 +16,7 @@ typedef struct cli_pour_arguments {
   bool samples, spheres, no_repair;
 } cli_pour_arguments;
 
-#define CLI_POUR_DEFAULTS .source = CLI_SOURCE_DEFAULTS, .scene.rays = 24, .view = CLI_VIEW_UNSET
+#define CLI_POUR_DEFAULTS .source = CLI_SOURCE_DEFAULTS, .scene.rays = 8, .view = CLI_VIEW_UNSET
 
 /* Options of all such verbs. */
 #define CLI_POUR_OPTIONS                                                                           \
@@ -53,7 +53,7 @@ typedef struct cli_pour_arguments {
       CLI_FLAG_ROW("json", scene.json, "Print result.json instead of text."),                      \
       CLI_FLAG_ROW("no-picture", scene.no_picture, "Do not write scene.png."),                     \
       CLI_RANGE_ROW(CLI_COUNT, "rays", scene.rays, "N", 1, 65536,                                  \
-                    "Rays a pixel of scene.png. Default: 24.")
+                    "Rays a pixel of scene.png. Default: 8.")
 #define CLI_POUR_PARTNERS                                                                          \
   "method:rp resolution:sample:|samples noise:sample:|samples sample-seed:sample:|samples "        \
   "rp::|samples count::|samples clump::|samples spheres::|samples no-repair::|samples "            \

@@ -1,4 +1,5 @@
 #include "cli/scene_run.h"
+#include "cli/output.h"
 #include "report/program.h"
 
 #include "base/array.h"
@@ -7,7 +8,6 @@
 #include "base/path.h"
 #include "base/platform.h"
 #include "cli/options.h"
-#include "cli/output.h"
 #include "cli/terminal.h"
 
 #include <math.h>
@@ -93,8 +93,18 @@ static scree_status list_frames(const cli_frames *frames, const char *kind, cons
 
 /* ---- while it runs ---- */
 
+/* Once, where that is long: by what the first steps cost. */
+static void tell_time(cli_scene_run *r, const char *left, double seconds) {
+  enum { LONG = 60 };
+  if (r->time_told || isnan(seconds)) return;
+  r->time_told = true;
+  if (seconds < LONG || r->call->quiet || r->options->json) return;
+  cli_terminal_end();
+  printf("  about %s, by what its first steps cost\n", left);
+  cli_flush();
+}
+
 static bool watch(void *context, const scree_scene_state *state) {
-  (void)context;
   char left[32], line[200];
   scree_scene_book b;
   scree_scene_get_book(state->scene, &b);
@@ -103,6 +113,7 @@ static bool watch(void *context, const scree_scene_state *state) {
            state->time, scree_scene_duration(state->scene), 100 * state->fraction, b.inside_count,
            b.left_count, b.waiting_count ? ", some wait" : "",
            isnan(state->steps_per_second) ? 0 : state->steps_per_second, left);
+  tell_time(context, left, state->seconds_left);
   cli_terminal_line(line);
   return !cli_interrupted();
 }
@@ -189,14 +200,7 @@ static void print_walls(const scree_scene *scene) {
 }
 
 static void print_forecast(scree_scene_forecast f) {
-  printf("  %.0f steps of up to %.0f bodies: ", f.step_count, f.body_count);
-  if (f.seconds < 60)
-    printf("seconds");
-  else if (f.seconds < 5400)
-    printf("about %.0f minute%s", f.seconds / 60, f.seconds < 90 ? "" : "s");
-  else
-    printf("about %.3g hours", f.seconds / 3600);
-  printf(" on one core");
+  printf("  %.0f steps of up to %.0f bodies", f.step_count, f.body_count);
   if (f.frame_count > 0)
     printf("; %.0f frames, up to %.3g MB", f.frame_count, 1e-6 * f.frame_count * f.frame_bytes);
   putchar('\n');
@@ -256,8 +260,14 @@ static const char *window_text(const scree_scene_summary *s, char text[64]) {
   return text;
 }
 
-static void print_sensors(FILE *stream, const scree_scene *scene) {
-  size_t rows, columns = scree_scene_column_count(scene), first = 0;
+/* Whether a column is of one shape, and the one before of all. */
+static bool is_of_shape(const char *name, const char *whole) {
+  return whole && !strncmp(name, whole, strlen(whole)) && name[strlen(whole)] == '.';
+}
+
+static void print_sensors(FILE *stream, const scree_scene *scene, bool by_shape) {
+  size_t rows, columns = scree_scene_column_count(scene), first = 0, hidden = 0;
+  const char *whole = NULL;
   (void)scree_scene_series(scene, &rows);
   while (first < columns && !strchr(scree_scene_column_name(scene, first), '.')) first++;
   if (!rows || first == columns) return;
@@ -265,26 +275,32 @@ static void print_sensors(FILE *stream, const scree_scene *scene) {
   for (size_t k = first; k < columns; k++) {
     scree_scene_summary s = scree_scene_summarise(scene, k, NAN, NAN);
     char last[32], mean[32], sd[32], window[64];
-    fprintf(stream, "  %-34s %12s %12s %12s %s%s\n", scree_scene_column_name(scene, k),
-            value_text(s.last, last), value_text(s.mean, mean), value_text(s.sd, sd),
-            scree_scene_column_unit(scene, k), window_text(&s, window));
+    const char *name = scree_scene_column_name(scene, k);
+    bool of_shape = is_of_shape(name, whole);
+    if (!of_shape) whole = name;
+    if (of_shape && !by_shape && ++hidden) continue;
+    fprintf(stream, "  %-34s %12s %12s %12s %s%s\n", name, value_text(s.last, last),
+            value_text(s.mean, mean), value_text(s.sd, sd), scree_scene_column_unit(scene, k),
+            window_text(&s, window));
   }
+  if (hidden) fprintf(stream, "  and %zu by shape, which -v tells\n", hidden);
 }
 
 void cli_print_repose(FILE *stream, const scree_repose *r) {
   if (!r->heap) {
     fprintf(stream, "  angle of repose   none: no heap, %s\n", r->reason);
   } else {
-    fprintf(stream, "  angle of repose   %5.1f deg  sd %4.1f   sectors (%zu of %zu)\n",
+    fprintf(stream, "  angle of repose   %5.1f deg  se %4.1f   by volume and centroid\n",
+            r->volume_deg, r->volume_se_deg);
+    fprintf(stream, "                    %5.1f deg  sd %4.1f   sectors (%zu of %zu)\n",
             r->sector_deg, r->sector_sd_deg, r->sector_count, r->sector_total);
     fprintf(stream, "                    %5.1f deg  rms %4.1f mm  cone\n", r->cone_deg,
             1e3 * r->cone_rms);
-    fprintf(stream, "                    %5.1f deg  sd %4.1f   silhouettes (%zu flank%s)\n",
-            r->silhouette_deg, r->silhouette_sd_deg, r->flank_count, cli_plural(r->flank_count));
     fprintf(stream,
-            "                    %5.1f deg  se %4.1f   by volume and centroid; the three differ by "
-            "%.1f\n",
-            r->volume_deg, r->volume_se_deg, r->spread_deg);
+            "                    %5.1f deg  sd %4.1f   silhouettes (%zu flank%s); the last three "
+            "differ by %.1f\n",
+            r->silhouette_deg, r->silhouette_sd_deg, r->flank_count, cli_plural(r->flank_count),
+            r->spread_deg);
   }
   if (r->peak == 0) return;
   fprintf(stream, "  height            %5.0f mm, its highest point %.0f mm\n", 1e3 * r->height,
@@ -331,12 +347,59 @@ static void print_changes(FILE *stream, const scree_scene *scene) {
   }
 }
 
-static void print_summary(FILE *stream, const scree_scene *scene, const char *stopped) {
+static void print_end(FILE *stream, const scree_scene *scene, const char *stopped) {
+  scree_scene_book b;
+  scree_scene_get_book(scene, &b);
+  fprintf(stream, "%s after %.6g s, %llu steps: %zu came in, %zu are inside, %zu went out\n",
+          stopped ? "stopped" : scree_scene_end(scene), scree_world_time(scree_scene_view(scene)),
+          (unsigned long long)scree_world_step_count(scree_scene_view(scene)), b.entered_count,
+          b.inside_count, b.left_count);
+}
+
+/* The answer on a few lines; a heap's other numbers behind it. */
+static void print_brief(FILE *stream, const scree_scene *scene, const char *stopped) {
+  scree_words words;
+  scree_pile pile;
+  const scree_repose *r = &pile.repose;
+  bool has = scree_scene_pile_name(scene, 0) &&
+             scree_scene_measure_pile(scene, 0, NULL, &pile, NULL) == SCREE_OK;
+  scree_scene_words(scene, has ? &pile : NULL, stopped, &words);
+  if (has)
+    fprintf(stream, "%s.\n%s\n", words.state, words.answer);
+  else
+    print_end(stream, scene, stopped);
+  if (*words.but) fprintf(stream, "%s\n", words.but);
+  if (has && words.verdict == SCREE_ANSWERED)
+    fprintf(stream,
+            "sectors %.1f, cone %.1f, silhouettes %.1f deg; height %.4g mm, foot %.4g mm, packing "
+            "fraction %.2f\n",
+            r->sector_deg, r->cone_deg, r->silhouette_deg, 1e3 * r->height, 1e3 * r->base_radius,
+            pile.packing_fraction);
+  if (*words.next) fprintf(stream, "Next: %s\n", words.next);
+  if (has) print_end(stream, scene, stopped);
+}
+
+/* Which stiffness would have kept contacts soft. */
+static void print_hardening(FILE *stream, const scree_scene *scene) {
+  scree_scene_hardening h;
+  for (size_t i = 0; scree_scene_get_hardening(scene, i, &h); i++) {
+    const char *both[2] = {h.material ? h.material : "bodies", h.other ? h.other : "bodies"};
+    fprintf(
+        stream,
+        "  %s and %s were pressed beyond the overlap limit, where springs harden, %llu times, by "
+        "up to %.2g limits: %.3g times as stiff they would have stayed within\n",
+        both[0], both[1], (unsigned long long)h.count, h.deepest, h.stiffness_missing);
+  }
+}
+
+static void print_summary(FILE *stream, const scree_scene *scene, const char *stopped,
+                          bool by_shape) {
   scree_scene_book b;
   scree_scene_get_book(scene, &b);
   fprintf(stream, "%s after %.6g s, %llu steps\n", stopped ? "stopped" : scree_scene_end(scene),
           scree_world_time(scree_scene_view(scene)),
           (unsigned long long)scree_world_step_count(scree_scene_view(scene)));
+  print_hardening(stream, scene);
   fprintf(stream,
           "  %zu came in, %zu are inside, %zu went out: %.5g kg in, %.5g kg inside, %.5g kg out\n",
           b.entered_count, b.inside_count, b.left_count, b.entered_mass, b.inside_mass,
@@ -355,7 +418,7 @@ static void print_summary(FILE *stream, const scree_scene *scene, const char *st
           o.coordination, 1e6 * o.largest_overlap);
   fprintf(stream, "  energy that the sums miss: %.2g of all that changed its form\n", b.ledger);
   print_changes(stream, scene);
-  print_sensors(stream, scene);
+  print_sensors(stream, scene, by_shape);
   char doubt[SCREE_REMARK];
   for (size_t i = 0; scree_scene_doubt(scene, i, doubt); i++) fprintf(stream, "  %s\n", doubt);
   print_piles(stream, scene);
@@ -385,6 +448,7 @@ static scree_status draw(const cli_scene_run *r, scree_error *error) {
   SCREE_CLEANUP(scree_image_free) scree_image image = {0};
   scree_render_options o = scree_default_render_options();
   if (r->options->no_picture) return SCREE_OK;
+  o.width = 800, o.height = 600; /* in a second or so, beside runs of a few */
   o.samples = r->options->rays;
   bool pile = scree_scene_pile_name(r->scene, 0);
   if (pile) o.elevation_deg = 18;
@@ -405,40 +469,37 @@ static scree_status write_page(const cli_scene_run *r, scree_error *error) {
 }
 
 static scree_status write_all(const cli_scene_run *r, const char *stopped, double seconds,
-                              const char *text, scree_error *error) {
+                              scree_error *error) {
+  scree_output text;
   SCREE_TRY(write_collections(r, error));
   SCREE_TRY(write_json(r, stopped, seconds, IN_FOLDER(r, "result.json"), error));
   SCREE_TRY(scree_scene_bodies_write(r->scene, IN_FOLDER(r, "bodies.csv"), true, error));
   if (scree_scene_has_maps(r->scene))
     SCREE_TRY(scree_scene_walls_vtp_write(r->scene, IN_FOLDER(r, "walls.vtp"), true, error));
-  SCREE_TRY(scree_text_write(text, IN_FOLDER(r, "result.txt"), true, error));
+  SCREE_TRY(scree_output_open(IN_FOLDER(r, "result.txt"), true, &text, error));
+  print_summary(text.stream, r->scene, stopped, true);
+  SCREE_TRY(scree_output_commit(&text, error));
   SCREE_TRY(draw(r, error));
   return write_page(r, error);
 }
 
-static void free_text(char **text) {
-  free(*text);
-}
-
-static scree_status tell(cli_scene_run *r, const char *stopped, double seconds,
+static scree_status tell(const cli_scene_run *r, const char *stopped, double seconds,
                          scree_error *error) {
-  SCREE_CLEANUP(free_text) char *text = NULL;
-  size_t size;
-  FILE *stream = scree_memory_open(&text, &size);
-  if (stream) print_summary(stream, r->scene, stopped);
-  if (!stream || !scree_memory_close(stream)) return scree_fail_memory(error, 0, "the summary");
   cli_terminal_end();
   if (r->options->json)
     SCREE_TRY(write_json(r, stopped, seconds, "-", error));
+  else if (r->brief && !r->call->verbose)
+    print_brief(stdout, r->scene, stopped);
   else
-    fputs(text, stdout);
+    print_summary(stdout, r->scene, stopped, r->call->verbose);
   if (!r->options->json && !r->call->quiet) print_costs(r->scene);
   cli_flush();
-  return r->output ? write_all(r, stopped, seconds, text, error) : SCREE_OK;
+  return r->output ? write_all(r, stopped, seconds, error) : SCREE_OK;
 }
 
 scree_status cli_check_scene_output(const cli_scene_run *r, scree_error *error) {
   SCREE_TRY(cli_make_folder(r->output, error));
+  SCREE_TRY(cli_lock_folder(r->output, error));
   if (!r->options->resume)
     SCREE_TRY(cli_check_run_output(r->call, r->output, &run_files, r->options->overwrite, error));
   return SCREE_OK;
@@ -478,6 +539,10 @@ scree_status cli_run_scene(cli_scene_run *r, scree_error *error) {
   scree_error later; /* what happened first is what is told */
   scree_status telling = tell(r, status == SCREE_OK ? NULL : error->message, seconds,
                               status == SCREE_OK ? error : &later);
+  char folder[CLI_PRINTABLE_BYTES];
+  if (status == SCREE_CANCELLED && r->output && !r->common_page)
+    scree_add_text(error->message, sizeof error->message, ": scree %s --resume -o %s",
+                   r->call->verb->name, cli_printable(r->output, folder));
   return status == SCREE_OK ? telling : status;
 }
 

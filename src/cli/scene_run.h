@@ -31,7 +31,9 @@ typedef struct cli_scene_run {
   scree_shape_store *store;
   unsigned views;
   bool states;      /* also frames that can be measured again */
+  bool brief;       /* the answer, not every number: these are in result.txt */
   bool common_page; /* one of several, which get one report together */
+  bool time_told;
   const char *name; /* of this one among several; NULL: it is the only one */
   scree_scene *scene;
   scree_scene_forecast forecast;

@@ -7,11 +7,11 @@ typedef struct study_arguments {
   const char *output;
   size_t jobs, tasks;
   double lease;
-  bool worker, no_wait, keep_failed, slurm, dry_run, json, csv;
+  bool worker, no_wait, keep_failed, overwrite, slurm, dry_run, json, csv;
 } study_arguments;
 
-/* Of study, calibrate and optimise. */
-enum { STUDY_OPTIONS = 11 };
+/* Options of study, calibrate and optimise. */
+enum { STUDY_OPTIONS = 12, STUDY_ALONE = 2 };
 extern const cli_option study_options[STUDY_OPTIONS];
 extern const study_arguments study_defaults;
 
@@ -20,8 +20,8 @@ extern const study_arguments study_defaults;
 /* FOLDER/report.html of what lies there. */
 scree_status study_write_page(const char *folder, scree_error *error);
 
-/* The states, a table of the points, and what follows from them, on one screen. */
-void study_print(FILE *stream, const scree_study_result *result);
+/* The answer and the states; all: also a table of the points, and what follows from them. */
+void study_print(FILE *stream, const scree_study_result *result, bool all);
 
 /* Workers of a study or of what is made of studies; the verb's options begin with
  * study_arguments. */
@@ -36,7 +36,7 @@ typedef struct study_crew {
                        const scree_progress *progress, scree_error *error);
 } study_crew;
 
-/* Of study, calibrate and optimise: one file, or the word status and a folder. */
+/* Checks a call of study, calibrate or optimise: one file, or the word status and a folder. */
 scree_status study_check_call(const cli_call *call);
 /* Whether it is that word. */
 bool study_asks_status(const cli_call *call);
@@ -72,6 +72,7 @@ scree_status calibrate_run(const cli_call *call, scree_error *error);
 
 /* All but what a study alone has. */
 #define CALIBRATION                                                                                \
-  .options = study_options, .option_count = STUDY_OPTIONS - 1, .defaults = &study_defaults,        \
-  .options_size = sizeof study_defaults, .input_minimum = 1, .input_maximum = 2,                   \
-  .partners = "tasks:slurm", .exclusive = STUDY_EXCLUSIVE, .run = calibrate_run
+  .options = study_options, .option_count = STUDY_OPTIONS - STUDY_ALONE,                           \
+  .defaults = &study_defaults, .options_size = sizeof study_defaults, .input_minimum = 1,          \
+  .input_maximum = 2, .partners = "tasks:slurm", .exclusive = STUDY_EXCLUSIVE,                     \
+  .run = calibrate_run

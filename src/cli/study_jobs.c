@@ -47,7 +47,7 @@ static bool start_worker(pool *p, size_t slot) {
   }
   words[count++] = "--";
   words[count++] = p->call->inputs[0];
-  int code = scree_process_run(words, NULL, &p->workers[slot]);
+  int code = scree_process_run(words, NULL, NULL, &p->workers[slot]);
   if (code != 0) {
     fprintf(stderr, "scree: cannot start a worker: %s\n", strerror(code));
     p->workers[slot] = 0;

@@ -11,7 +11,7 @@ typedef struct lane {
   scree_error error;
 } lane;
 
-/* Of all lanes' runs one shows how far it is. */
+/* Shows how far one of all lanes' runs is. */
 static bool look(void *context, const char *phase, double fraction) {
   const lane *l = context;
   scree_enter_alone();
@@ -26,11 +26,11 @@ static bool look_away(void *context, const char *phase, double fraction) {
   return !cli_interrupted();
 }
 
-static void work_in_lane(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)end, (void)block, (void)worker;
-  lane *l = (lane *)context + begin;
+static void work_in_lane(void *context, scree_block block) {
+  lane *l = (lane *)context + block.begin;
   const cli_call *call = l->crew->call;
-  const scree_progress progress = {begin == 0 ? look : look_away, l, call->progress->interval};
+  const scree_progress progress = {block.begin == 0 ? look : look_away, l,
+                                   call->progress->interval};
   scree_study_options options = study_work_options(call->options);
   l->status = l->crew->work(call, l->crew->folder, &options, &progress, &l->error);
 }

@@ -1,4 +1,5 @@
 #include "cli/study.h"
+#include "report/program.h"
 
 #include <math.h>
 #include <string.h>
@@ -151,16 +152,7 @@ static void print_needed(FILE *stream, const scree_study_result *r, const scree_
 }
 
 static void print_family(FILE *stream, const scree_study_result *r, const scree_family_result *f) {
-  const char *finest = r->points[f->levels[f->level_count - 1]].rp;
   if (f->label[0]) fprintf(stream, "%s:\n", f->label);
-  if (f->converged)
-    fprintf(stream,
-            "the angle has converged from Rp %s on: same as at %s within %g degrees (%g %% "
-            "confidence)\n",
-            r->points[f->levels[f->converged_from]].rp, finest, r->margin_deg, 100 * r->confidence);
-  else
-    fprintf(stream, "convergence of the angle within %g degrees is not shown (%g %% confidence)\n",
-            r->margin_deg, 100 * r->confidence);
   print_needed(stream, r, f);
   print_pick(stream, "Rp that choose recommends", &f->recommended);
   print_pick(stream, "Rp by the paper's criterion", &f->by_ip);
@@ -201,8 +193,27 @@ static void print_answers(FILE *stream, const scree_study_result *r) {
   }
 }
 
-void study_print(FILE *stream, const scree_study_result *r) {
+/* The answer, a line for each of those that it has. */
+static void print_words(FILE *stream, const scree_study_result *r) {
+  enum { MOST_ANSWERS = 5 };
+  size_t count = r->answer_count ? r->answer_count : 1;
+  scree_words words;
+  for (size_t k = 0; k < count && k < MOST_ANSWERS; k++) {
+    scree_study_words(r, k, &words);
+    if (k == 0) fprintf(stream, "%s.\n", words.state);
+    fprintf(stream, "%s\n", words.answer);
+    if (r->counts.done == 0) return;
+  }
+  if (count > MOST_ANSWERS) fprintf(stream, "and %zu more answers\n", count - MOST_ANSWERS);
+  scree_study_words(r, 0, &words);
+  fprintf(stream, "%s\n", words.but);
+  if (*words.next) fprintf(stream, "Next: %s\n", words.next);
+}
+
+void study_print(FILE *stream, const scree_study_result *r, bool all) {
+  print_words(stream, r);
   print_counts(stream, r);
+  if (!all) return;
   if (r->answer_count) {
     print_answers(stream, r);
   } else {

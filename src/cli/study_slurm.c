@@ -6,17 +6,22 @@
 #include "base/file.h"
 #include "base/path.h"
 #include "base/platform.h"
+#include "base/quote.h"
 
 #include <errno.h>
 #include <string.h>
 
 enum { MOST_PATH = 4096, MOST_JOBS = 1024 };
 
-/* In single quotes, for a shell. */
-static void write_quoted(FILE *stream, const char *text) {
-  putc('\'', stream);
-  for (; *text; text++) fprintf(stream, *text == '\'' ? "'\\''" : "%c", *text);
-  putc('\'', stream);
+/* In the names of Slurm's files % begins what it fills in. */
+static void put_file_name(FILE *stream, const char *folder) {
+  char doubled[2 * MOST_PATH], *at = doubled;
+  for (; *folder; folder++) {
+    if (*folder == '%') *at++ = '%';
+    *at++ = *folder;
+  }
+  *at = 0;
+  scree_quote(stream, SCREE_QUOTE_SHELL, doubled);
 }
 
 static void write_script(FILE *stream, const cli_call *call, const char *study, const char *folder,
@@ -36,23 +41,23 @@ static void write_script(FILE *stream, const cli_call *call, const char *study, 
           "#SBATCH --signal=B:TERM@60\n"
           "#SBATCH --output=",
           scree_version(), call->verb->name, call->verb->name, tasks - 1);
-  write_quoted(stream, folder);
+  put_file_name(stream, folder);
   fputs("/slurm-%A_%a.out\nexec ", stream);
-  write_quoted(stream, program);
+  scree_quote(stream, SCREE_QUOTE_SHELL, program);
   fprintf(stream, " %s -o ", call->verb->name);
-  write_quoted(stream, folder);
+  scree_quote(stream, SCREE_QUOTE_SHELL, folder);
   if (call->max_memory) fprintf(stream, " --max-memory %zu", call->max_memory);
   if (call->backend) fprintf(stream, " --backend %s", call->backend);
   fprintf(stream, " --worker --jobs %zu --lease %.9g --threads \"${SLURM_CPUS_PER_TASK:-1}\" -- ",
           tasks < MOST_JOBS ? tasks : MOST_JOBS, a->lease);
-  write_quoted(stream, study);
+  scree_quote(stream, SCREE_QUOTE_SHELL, study);
   putc('\n', stream);
 }
 
 static scree_status submit(const char *script, scree_error *error) {
   const char *words[] = {"sbatch", script, NULL};
   long process;
-  int result, code = scree_process_run(words, NULL, &process);
+  int result, code = scree_process_run(words, NULL, NULL, &process);
   if (code == 0 && scree_process_look(process, true, &result) == SCREE_PROCESS_ENDED && result == 0)
     return SCREE_OK;
   return scree_fail(error, SCREE_IO, "%s could not be submitted: %s", script,
@@ -67,6 +72,9 @@ scree_status study_run_slurm(const cli_call *call, const char *folder, size_t mo
   if (!scree_path_full(call->inputs[0], file, sizeof file) ||
       !scree_path_full(folder, full, sizeof full))
     return cli_refuse(error, SCREE_IO, folder, strerror(errno));
+  if (full[strcspn(full, "\r\n")])
+    return cli_refuse(error, SCREE_BAD_ARGUMENT, folder,
+                      "a line end in its name is none of Slurm's");
   const char *script = SCREE_PATH_IN(full, "study.sbatch");
   scree_output output;
   SCREE_TRY(scree_output_open(script, true, &output, error));

@@ -1,11 +1,14 @@
 #include "cli/surface.h"
+
+#include "base/owned.h"
+#include "base/quote.h"
 #include "cli/terminal.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-scree_status cli_recommended_level(const scree_curve *curve, const scree_mesh *mesh,
+scree_status cli_recommended_level(scree_curve *curve, const scree_mesh *mesh,
                                    const scree_progress *progress, size_t *level,
                                    scree_error *error) {
   scree_choice choice;
@@ -17,27 +20,25 @@ scree_status cli_recommended_level(const scree_curve *curve, const scree_mesh *m
 
 /* The command that repairs the word with an option, and what that does. */
 static void offer(const char *word, const char *option, const char *does, scree_error *error) {
-  char shown[CLI_PRINTABLE_BYTES];
+  char shown[CLI_PRINTABLE_BYTES], quoted[CLI_PRINTABLE_BYTES];
   size_t used = strlen(error->message);
+  scree_quote_text(SCREE_QUOTE_SHELL, word, quoted, sizeof quoted);
   snprintf(error->message + used, sizeof error->message - used,
-           "; `scree repair %s -o closed.stl %s` %s", cli_printable(word, shown), option, does);
+           "; `scree repair %s -o closed.stl %s` %s", cli_printable(quoted, shown), option, does);
 }
 
-/* Holes by the mean of those that are left, of which the largest is at least that. */
 void cli_hint_at_option(const char *word, const scree_repair_report *report,
                         const scree_repair_options *options, scree_error *error) {
   const scree_check *after = &report->after;
-  size_t holes = after->defects[SCREE_DEFECT_HOLE];
-  size_t edges = after->defects[SCREE_DEFECT_BOUNDARY_EDGE];
   double change = 100 * fabs(report->volume_after / report->volume_before - 1);
   char option[32], does[64];
   if (error->status != SCREE_BAD_MESH) return;
   if (after->usable && change <= 99) {
     snprintf(option, sizeof option, "--volume-change %.0f%%", ceil(change));
     offer(word, option, "allows it", error);
-  } else if (!options->fill_large_holes && holes > 0 && edges / holes > options->hole_edges) {
-    snprintf(does, sizeof does, "fills those of more than %zu edges", options->hole_edges);
-    offer(word, "--large-holes", does, error);
+  } else if (report->refused_share > options->hole_share) {
+    snprintf(does, sizeof does, "guesses %.2g %% of its area", 100 * report->refused_share);
+    offer(word, "--holes 100%", does, error);
   } else if (!options->keep_largest && after->shell_count > 1) {
     offer(word, "--largest", "keeps the largest shell alone", error);
   }
@@ -70,9 +71,14 @@ static void scale_report(scree_repair_report *report, double scale) {
   report->seam_distance *= scale;
   report->area_before *= scale * scale;
   report->area_after *= scale * scale;
+  report->guessed_area *= scale * scale;
   report->volume_before *= scale * scale * scale;
   report->volume_after *= scale * scale * scale;
   report->filled_volume *= scale * scale * scale;
+  report->handle_length *= scale;
+  report->moved_mean *= scale;
+  report->moved_most *= scale;
+  for (int k = 0; k < 3; k++) report->handle_place[k] *= scale, report->moved_place[k] *= scale;
   scale_check(&report->before, scale);
   scale_check(&report->after, scale);
 }
@@ -84,7 +90,10 @@ scree_status cli_load_closed(const char *word, const cli_input_options *options,
   scree_repair_report made = {.before.usable = true};
   scree_status status = scale ? load_unscaled(word, options, progress, scan, scale, error)
                               : cli_load(word, options, progress, scan, error);
-  if (status == SCREE_OK && !cli_is_sample(word, NULL)) {
+  const bool sample = cli_is_sample(word, NULL);
+  if (options->keep_handles) repair.handle_edges = 0;
+  if (sample) repair.intersections = false;
+  if (status == SCREE_OK && !(sample && (no_repair || options->keep_handles))) {
     status = scree_mesh_prepare(&scan->mesh, no_repair ? NULL : &repair, progress, &scan->mesh,
                                 &made, error);
     if (status != SCREE_OK && !no_repair) cli_hint_at_option(word, &made, &repair, error);
@@ -119,6 +128,7 @@ scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
   scree_repair_report report;
   char note[1024], shown[CLI_PRINTABLE_BYTES];
   const char *word = call->inputs[0];
+  input.keep_handles = how->keep_handles;
   if (how->unchecked) return load_unscaled(word, &input, call->progress, scan, scale, error);
   SCREE_TRY(
       cli_load_closed(word, &input, how->no_repair, call->progress, scan, scale, &report, error));
@@ -167,6 +177,19 @@ static size_t tell_change(const char *what, const char *unit, double before, dou
   return length > 0 && (size_t)length < size ? (size_t)length : 0;
 }
 
+/* Where what became of the surface lies off what was given by more than a choice keeps of it. */
+static void tell_move(const scree_repair_report *report, char *buffer, size_t size) {
+  static const double MOST = 0.04, MEAN = 0.003;
+  double length = sqrt(report->area_after / 3.14159265358979323846);
+  const double *at = report->moved_place;
+  if (report->moved_most <= MOST * length && report->moved_mean <= MEAN * length) return;
+  snprintf(buffer, size,
+           "; that is off the file's surface by %.3g mm in the mean, and by up to %.3g mm, %.2g %% "
+           "of the body's size, at %.4g, %.4g, %.4g mm: tolerances hold from there on",
+           1e3 * report->moved_mean, 1e3 * report->moved_most, 100 * report->moved_most / length,
+           1e3 * at[0], 1e3 * at[1], 1e3 * at[2]);
+}
+
 void cli_repair_text(const scree_repair_report *report, char *buffer, size_t size) {
   size_t used = 0;
   buffer[0] = 0;
@@ -182,13 +205,27 @@ void cli_repair_text(const scree_repair_report *report, char *buffer, size_t siz
       used += (size_t)snprintf(buffer + used, size - used, " (%.3g mm3, %.2g %% of the mass)",
                                1e9 * report->filled_volume,
                                100 * report->filled_volume / report->volume_after);
+    if (a == SCREE_REPAIR_CUT_HANDLE && used + 1 < size)
+      used += (size_t)snprintf(buffer + used, size - used,
+                               " (loops of up to %.3g mm, that one at %.4g, %.4g, %.4g mm)",
+                               1e3 * report->handle_length, 1e3 * report->handle_place[0],
+                               1e3 * report->handle_place[1], 1e3 * report->handle_place[2]);
   }
   if (used > 0 && used < size)
     used += tell_change("area", "cm2", 1e4 * report->area_before, 1e4 * report->area_after,
                         buffer + used, size - used);
   if (used > 0 && used < size)
-    tell_change("volume", "cm3", 1e6 * report->volume_before, 1e6 * report->volume_after,
-                buffer + used, size - used);
+    used += tell_change("volume", "cm3", 1e6 * report->volume_before, 1e6 * report->volume_after,
+                        buffer + used, size - used);
+  if (used < size && report->guessed_area > 0)
+    used += (size_t)snprintf(buffer + used, size - used,
+                             "; %.2g %% of the area is guessed: a scan of that side would say more",
+                             100 * report->guessed_area / report->area_after);
+  if (used < size) tell_move(report, buffer + used, size - used);
+}
+
+size_t cli_body_count(const scree_repair_report *report) {
+  return report->after.defects[SCREE_DEFECT_EXTRA_BODY] + 1;
 }
 
 /* "4.15 -> 4.21 cm2 area (+1.5 %)" */
@@ -214,6 +251,14 @@ void cli_print_repair(FILE *stream, const scree_repair_report *report) {
     fprintf(stream, "%10s the plane %.4g x %+.4g y %+.4g z = %.6g mm\n", "at", n[0], n[1], n[2],
             1e3 * report->plane.offset);
   }
+  if (report->done[SCREE_REPAIR_CUT_HANDLE])
+    fprintf(stream, "%10.3g mm long is the longest loop of a handle cut, at %.4g, %.4g, %.4g mm\n",
+            1e3 * report->handle_length, 1e3 * report->handle_place[0],
+            1e3 * report->handle_place[1], 1e3 * report->handle_place[2]);
+  if (report->moved_most > 0)
+    fprintf(stream, "%10.3g mm off what was given, at %.4g, %.4g, %.4g mm; %.3g mm in the mean\n",
+            1e3 * report->moved_most, 1e3 * report->moved_place[0], 1e3 * report->moved_place[1],
+            1e3 * report->moved_place[2], 1e3 * report->moved_mean);
   if (report->seam_distance > 0)
     fprintf(stream, "%10.3g mm is the distance within which seams were closed\n",
             report->seam_distance * 1e3);
@@ -221,6 +266,9 @@ void cli_print_repair(FILE *stream, const scree_repair_report *report) {
     if (report->done[SCREE_REPAIR_FILL_CAVITY])
       fprintf(stream, "%10.3g mm3 of small cavities filled, %.2g %% of the mass\n",
               1e9 * report->filled_volume, 100 * report->filled_volume / report->volume_after);
+    if (report->guessed_area > 0)
+      fprintf(stream, "%10.2g %% of the area is guessed: a scan of that side would say more\n",
+              100 * report->guessed_area / report->area_after);
     print_change(stream, "cm2 area", 1e4 * report->area_before, 1e4 * report->area_after);
     print_change(stream, "cm3 volume", 1e6 * report->volume_before, 1e6 * report->volume_after);
   }
@@ -285,4 +333,38 @@ scree_status cli_check_rounded(const scree_mesh *mesh, const char *path, double 
            "`scree simplify` writes, would hold it",
            path, check.verdict);
   return SCREE_BAD_MESH;
+}
+
+/* Into metres as well. */
+static scree_status decimate(scree_scan *scan, double scale, size_t triangles,
+                             const scree_progress *progress, scree_mesh *mesh, scree_error *error) {
+  SCREE_OWNED(scree_curve, curve);
+  scree_simplify_options simplify = scree_default_simplify_options();
+  simplify.stop_count = triangles;
+  SCREE_TRY(scree_curve_build_scaled(&scan->mesh, scale, &simplify, progress, &curve, error));
+  return scree_curve_mesh(curve, scree_curve_find(curve, triangles), mesh, error);
+}
+
+scree_status cli_load_for_clump(const char *word, const cli_input_options *input,
+                                const scree_progress *progress, cli_clump_surface *surface,
+                                scree_error *error) {
+  scree_repair_report repair;
+  SCREE_CLEANUP(scree_scan_free) scree_scan scan = {0};
+  double scale = 1;
+  SCREE_TRY(
+      cli_load_closed(word, input, surface->no_repair, progress, &scan, &scale, &repair, error));
+  cli_repair_text(&repair, surface->note, sizeof surface->note);
+  memcpy(surface->format, scan.format, sizeof surface->format);
+  surface->unit_m = scan.unit_m;
+  surface->checksum = scan.checksum;
+  surface->scan_triangle_count = scan.mesh.triangle_count;
+  scree_status status;
+  if (scan.mesh.triangle_count > surface->triangles) {
+    status = decimate(&scan, scale, surface->triangles, progress, &surface->mesh, error);
+  } else {
+    status = cli_into_metres(word, input, surface->no_repair, scale, progress, &scan.mesh, error);
+    surface->mesh = scan.mesh;
+    scan.mesh = (scree_mesh){0};
+  }
+  return status == SCREE_OK ? status : cli_name_in_error(word, error);
 }

@@ -3,10 +3,11 @@
 
 #include "cli/input.h"
 
-/* cli_load, and what is no closed surface is repaired, or with no_repair refused; samples are made
- * closed and not looked at. Errors name the word. scale is NULL where the surface is not decimated;
- * else it is in metres only once it is multiplied by *scale, as scree_curve_build_scaled does,
- * because levels must not hang on the unit. report is in metres, and may be NULL. */
+/* cli_load, and what is no closed surface is repaired, or with no_repair refused; of samples, which
+ * are made closed, short handles alone are cut. Errors name the word. scale is NULL where the
+ * surface is not decimated; else it is in metres only once it is multiplied by *scale, as
+ * scree_curve_build_scaled does, because levels must not hang on the unit. report is in metres, and
+ * may be NULL. */
 scree_status cli_load_closed(const char *word, const cli_input_options *options, bool no_repair,
                              const scree_progress *progress, scree_scan *scan, double *scale,
                              scree_repair_report *report, scree_error *error);
@@ -19,8 +20,13 @@ scree_status cli_into_metres(const char *word, const cli_input_options *options,
 
 /* How a scan comes to be what a decimation may assume, as a member of a verb's struct. */
 typedef struct cli_soundness {
-  bool no_repair, unchecked;
+  bool no_repair, unchecked, keep_handles;
 } cli_soundness;
+
+#define CLI_KEEP_HANDLES_ROW(member)                                                               \
+  CLI_FLAG_ROW("keep-handles", member,                                                             \
+               "Leave handles round which a loop of six mean edges or less leads: slots that the " \
+               "scan's net has bridged, which cannot be decimated away.")
 
 /* Their rows in the option table of a verb whose struct has the member `soundness`; they exclude
  * each other. */
@@ -29,7 +35,8 @@ typedef struct cli_soundness {
                "Refuse a scan that is no closed surface instead of repairing it."),                \
       CLI_FLAG_ROW("unchecked", soundness.unchecked,                                               \
                    "Take the scan as it is, neither checked nor repaired: an open surface stays "  \
-                   "open, and what meets itself may go on doing so.")
+                   "open, and what meets itself may go on doing so."),                             \
+      CLI_KEEP_HANDLES_ROW(soundness.keep_handles)
 #define CLI_SOUNDNESS_EXCLUSIVE "no-repair|unchecked"
 
 /* The call's first input as the options ask, as cli_load_closed gives it; repairs are said on
@@ -39,7 +46,7 @@ scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
                                  scree_error *error);
 
 /* The level that `scree choose` recommends of a curve of the mesh. */
-scree_status cli_recommended_level(const scree_curve *curve, const scree_mesh *mesh,
+scree_status cli_recommended_level(scree_curve *curve, const scree_mesh *mesh,
                                    const scree_progress *progress, size_t *level,
                                    scree_error *error);
 
@@ -54,6 +61,8 @@ void cli_print_left_out(FILE *stream, size_t count);
 void cli_print_check(FILE *stream, const scree_check *check);
 /* "repaired: 3 holes filled, ..." of a surface that needed it, else "". */
 void cli_repair_text(const scree_repair_report *report, char *buffer, size_t size);
+/* The bodies of the repaired surface: outward shells that nothing holds together. */
+size_t cli_body_count(const scree_repair_report *report);
 /* What was done, a line each; "nothing" where nothing was. */
 void cli_print_repair(FILE *stream, const scree_repair_report *report);
 
@@ -71,3 +80,25 @@ double cli_volume_lost(const scree_mesh *mesh, const char *path, double unit);
 #define CLI_NOTABLE_LOSS 1e-6
 /* So is what a repair changes the volume by. */
 #define CLI_NOTABLE_CHANGE 1e-3
+
+/* Surfaces that clumps are fitted to. */
+typedef struct cli_clump_surface {
+  size_t triangles; /* at most so many */
+  bool no_repair;   /* refuse instead */
+  /* What cli_load_for_clump fills. */
+  scree_mesh mesh; /* m; free with scree_mesh_free */
+  char note[1024]; /* what was repaired; "" */
+  char format[sizeof((scree_scan *)0)->format];
+  double unit_m;
+  scree_checksum checksum;
+  size_t scan_triangle_count;
+} cli_clump_surface;
+
+static inline void cli_clump_surface_free(cli_clump_surface *surface) {
+  scree_mesh_free(&surface->mesh);
+}
+
+/* Loads, checks, repairs and decimates. Errors name the word. */
+scree_status cli_load_for_clump(const char *word, const cli_input_options *input,
+                                const scree_progress *progress, cli_clump_surface *surface,
+                                scree_error *error);

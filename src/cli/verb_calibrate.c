@@ -13,11 +13,12 @@ static scree_status report(const cli_call *call, scree_calibration *c, const cha
   const study_arguments *a = call->options;
   SCREE_CLEANUP(scree_calibration_result_free) scree_calibration_result result = {0};
   SCREE_TRY(scree_calibration_analyse(c, &result, error));
+  result.origin.command = call->command_line;
   if (files) SCREE_TRY(scree_calibration_report_write(&result, folder, error));
   if (files) SCREE_TRY(study_write_page(folder, error));
   if (a->json) return scree_calibration_json_write(&result, "-", true, error);
   if (a->csv) return scree_calibration_csv_write(&result, "-", true, error);
-  scree_calibration_print(&result, stdout);
+  scree_calibration_print(&result, call->verbose, stdout);
   return SCREE_OK;
 }
 
@@ -81,6 +82,7 @@ scree_status calibrate_run(const cli_call *call, scree_error *error) {
 
 const cli_verb cli_verb_calibrate = {
     .name = "calibrate",
+    .group = CLI_DECIDE,
     .summary = "the parameters that measurements can tell, and those that they cannot",
     .inputs = "FILE.yaml | status DIR",
     .description =

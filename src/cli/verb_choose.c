@@ -1,6 +1,7 @@
 #include "base/alloc.h"
 #include "cli/choose.h"
-#include "cli/grid.h"
+#include "cli/options.h"
+#include "cli/output.h"
 #include "cli/surface.h"
 #include "cli/terminal.h"
 #include "report/program.h"
@@ -27,9 +28,10 @@ static const cli_option options[] = {
     CLI_FLAG_ROW(
         "paper", paper,
         "Do exactly what the paper did: method qecd, its grid, plain Ip; meshes by its choice."),
-    CLI_CHOICE_ROW("rule", rule, "RULE", "recommended|robust|paper",
-                   "Whose choice is told first and written: recommended (keeps tolerances), robust "
-                   "or paper (least Ip). Default: recommended."),
+    CLI_CHOICE_ROW(
+        "rule", rule, "RULE", "recommended|paper",
+        "Whose choice is told first and written: recommended (keeps tolerances) or paper "
+        "(least Ip). Default: recommended."),
     CLI_ROW(CLI_TEXT, "tolerance", tolerance, "LIST",
             "What the recommended level keeps, instead of the defaults, as shares or, of "
             "distances, lengths: mean=0.3%,hausdorff=4%,inertia=2%,widths=3%,thickness=3% are the "
@@ -50,6 +52,7 @@ static const cli_option options[] = {
                   "Density in kg/m3, for the mass and inertia written. Default: 2000."),
     CLI_FLAG_ROW("no-repair", no_repair,
                  "Refuse scans that are no closed surface instead of repairing them."),
+    CLI_KEEP_HANDLES_ROW(keep_handles),
     CLI_SOURCE_OPTIONS,
     CLI_FLAG_ROW("json", json, "Print JSON instead of text."),
     CLI_FLAG_ROW("csv", csv, "Print CSV instead of text: a row per grid level and choice."),
@@ -83,7 +86,9 @@ static bool find_error(const char *word, scree_shape_error *error) {
 }
 
 /* "mean=0.3%,widths=2%" */
-static bool parse_tolerances(const char *text, scree_choice_options *o) {
+static bool parse_tolerances(const char *text, scree_choice_options *o, char hint[64]) {
+  static const char names[] =
+      "mean|hausdorff|inertia|widths|thickness|area|volume|thinnest|convexity|normals";
   while (*text) {
     char word[64];
     size_t length = strcspn(text, ",");
@@ -94,7 +99,8 @@ static bool parse_tolerances(const char *text, scree_choice_options *o) {
     if (!bound) return false;
     *bound++ = 0;
     scree_shape_error error;
-    if (!find_error(word, &error) || !parse_bound(bound, error, o)) return false;
+    if (!find_error(word, &error)) return cli_word_hint(names, word, hint, 64), false;
+    if (!parse_bound(bound, error, o)) return false;
     text += length;
     if (*text == ',' && !*++text) return false;
   }
@@ -125,6 +131,7 @@ static scree_status load(void *context, size_t index, const scree_progress *prog
   scree_repair_report report;
   scree_scan scan;
   char repaired[CHOOSE_NOTE_BYTES];
+  input.keep_handles = run->arguments->keep_handles;
   input.remarked = true; /* with the other warnings */
   SCREE_TRY(cli_load_closed(object->word, &input, run->arguments->no_repair, progress, &scan, scale,
                             &report, error));
@@ -136,6 +143,11 @@ static scree_status load(void *context, size_t index, const scree_progress *prog
     cli_scan_remarks(&input, &scan, *scale, object->note, sizeof object->note);
   cli_repair_text(&report, repaired, sizeof repaired);
   if (repaired[0]) cli_add_line(object->note, sizeof object->note, "%s", repaired);
+  if (cli_body_count(&report) > 1)
+    cli_add_line(object->note, sizeof object->note,
+                 "%zu separate bodies, taken as one rigid particle; `scree repair --body 1`, 2 and "
+                 "so on makes a file of each, --largest keeps the largest",
+                 cli_body_count(&report));
   return SCREE_OK;
 }
 
@@ -215,10 +227,11 @@ static scree_status write_output(choose_run *run, scree_error *error) {
   note_all(run);
   if (a->output) SCREE_TRY(choose_write_reports(run, error));
   cli_terminal_end();
-  if (a->csv && !run->call->quiet) choose_print_warnings(stderr, run);
   if (a->json) return scree_choice_json_write(&run->report, "-", false, error);
-  if (a->csv) return scree_choice_csv_write(&run->report, "-", false, error);
-  choose_print(stdout, run);
+  if (a->csv) SCREE_TRY(scree_choice_csv_write(&run->report, "-", false, error));
+  if (!a->csv && (!run->call->quiet || !a->output)) choose_print(stdout, run, run->call->verbose);
+  cli_flush(); /* the answer first */
+  if (!run->call->quiet && (a->csv || !run->call->verbose)) choose_print_warnings(stderr, run);
   return SCREE_OK;
 }
 
@@ -242,12 +255,13 @@ static scree_status take_options(choose_run *run) {
   run->options.weight = a->weight;
   run->options.fine_errors = a->errors;
   run->options.reference = (scree_reference)a->reference;
-  if (a->tolerance && !parse_tolerances(a->tolerance, &run->options))
+  char hint[64] = "";
+  if (a->tolerance && !parse_tolerances(a->tolerance, &run->options, hint))
     return cli_misuse(
         verb,
         "--tolerance '%s': must be a list of NAME=BOUND as in mean=0.3%%,hausdorff=2mm, bounds "
         "above 0 and up to 100%%, lengths with a unit and of mean and hausdorff alone%s",
-        a->tolerance, cli_comma_hint(a->tolerance));
+        a->tolerance, *hint ? hint : cli_comma_hint(a->tolerance));
   if (a->paper && a->rule != RULE_UNSET && a->rule != SCREE_RULE_PAPER)
     return cli_misuse(verb, "--paper is --rule paper");
   run->report.rule = a->paper                ? SCREE_RULE_PAPER
@@ -299,8 +313,7 @@ const cli_verb cli_verb_choose = {
         "inertia 2 %, every width 3 %, and 3 % for the mean of distance over local wall "
         "thickness.\n\n"
         "Beside it stand the paper's criterion (Katagiri and Koyanaka 2020), Ip = eps_s + W Nr/Nm "
-        "with eps_s = |S - Sm|/Sm and Rp = Nr/Nm: the least on a logarithmic grid of Rp; and the "
-        "robust choice, which takes the worst eps_s at a count or any finer one, over every count. "
+        "with eps_s = |S - Sm|/Sm and Rp = Nr/Nm: the least on a logarithmic grid of Rp. "
         "Several scans also get the paper's one Rp for all.\n\n"
         "Scans that are no closed surface are repaired first. One that cannot be used is told on "
         "stderr and left out; the exit code is then 1. sample:NAME stands for a built-in sample. "

@@ -1,8 +1,9 @@
 /* scree clump: spheres for a scan, and how many. */
 #include "base/file.h"
 #include "base/number.h"
-#include "cli/clump_surface.h"
+#include "base/quote.h"
 #include "cli/output.h"
+#include "cli/surface.h"
 #include "cli/terminal.h"
 #include "report/program.h"
 #include "report/provenance.h"
@@ -182,7 +183,8 @@ static void print_row(FILE *out, const clump_object *object, const scree_clump *
           c->slope_deg, c->volume_criterion, c->distance_criterion, mark);
 }
 
-/* Of the last of so many as were to be tried it is not known whether more were better. */
+/* A mark behind the last of so many as were to be tried: it is not known whether more were better.
+ */
 static const char *mark_of(const clump_object *object, size_t index, size_t most) {
   const scree_clumps *c = &object->clumps;
   bool last = index + 1 == c->clump_count && c->clumps[index].sphere_count >= most;
@@ -216,7 +218,7 @@ static void print_object(FILE *out, const clump_object *object, size_t most) {
 static void print_wrong_shape(FILE *out, const clump_object *object) {
   const scree_clumps *c = &object->clumps;
   const char *unit = cli_unit_name(object->surface.unit_m);
-  char shown[CLI_PRINTABLE_BYTES], count[32];
+  char shown[CLI_PRINTABLE_BYTES], quoted[CLI_PRINTABLE_BYTES], count[32];
   if (c->wall_cells < LEAST_CELLS)
     fprintf(out,
             "Its walls of %.3g %s are thinner than three cells of the grid: spheres are the wrong "
@@ -228,7 +230,10 @@ static void print_wrong_shape(FILE *out, const clump_object *object) {
             "spheres are the wrong shape for it.",
             LEAST_IOU);
   fprintf(out, " Take its mesh, of %s triangles: scree choose %s -u %s -o DIR\n",
-          scree_count_text(object->mesh_count, count), cli_printable(object->word, shown), unit);
+          scree_count_text(object->mesh_count, count),
+          cli_printable(scree_quote_text(SCREE_QUOTE_SHELL, object->word, quoted, sizeof quoted),
+                        shown),
+          unit);
 }
 
 static void print_advice(FILE *out, const clump_object *object) {
@@ -289,7 +294,7 @@ static scree_status write_page(const void *report, const char *path, bool overwr
   return scree_page_write(&run_of(report)->arguments->output, 1, path, overwrite, error);
 }
 
-/* Of the report; the text and the page are of all this. */
+/* What is written of the report; the text and the page are of all this. */
 static const scree_product products[] = {
     {"clump.png", scree_clump_figure_write}, {"clump.svg", scree_clump_figure_write},
     {"clump.pdf", scree_clump_figure_write}, {"clump.json", scree_clump_json_write},
@@ -302,6 +307,7 @@ static scree_status check_files(clump_run *run, scree_error *error) {
   const clump_arguments *a = run->arguments;
   char path[PATH_BYTES];
   SCREE_TRY(cli_make_folder(a->output, error));
+  SCREE_TRY(cli_lock_folder(a->output, error));
   for (size_t i = 0; i < run->count; i++) {
     clump_object *o = &run->objects[i];
     snprintf(o->file, sizeof o->file, "%s.csv", o->name);

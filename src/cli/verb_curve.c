@@ -1,8 +1,8 @@
 /* scree curve: the table of levels. */
 #include "base/math.h"
 #include "base/owned.h"
-#include "cli/grid.h"
 #include "cli/input.h"
+#include "cli/options.h"
 #include "cli/surface.h"
 #include "cli/terminal.h"
 #include "report/program.h"
@@ -41,7 +41,7 @@ static const curve_arguments defaults = {.source = CLI_SOURCE_DEFAULTS, .grid = 
 /* Parts of the time with --distance, without which the curve takes the rest. */
 static const double LOAD_PART = 0.1, CURVE_PART = 0.3;
 
-/* Of a step, at the end of the grid. */
+/* Share of a step by which the end of the grid may be missed. */
 static const double GRID_SLACK = 1e-9;
 
 /* What the rows need. */

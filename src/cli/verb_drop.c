@@ -63,6 +63,7 @@ static scree_status run(const cli_call *call, scree_error *error) {
 
 const cli_verb cli_verb_drop = {
     .name = "drop",
+    .group = CLI_SIMULATE,
     .summary = "pour shapes into a container and watch them come to rest",
     .inputs = "SHAPE[=COUNT]...",
     .description =

@@ -57,7 +57,7 @@ static void print_axis(const char *label, const double axis[3]) {
   putchar('\n');
 }
 
-/* Of what encloses no volume. */
+/* The row of what encloses no volume. */
 static void print_none(const char *label) {
   printf("  %-22s none\n", label);
 }

@@ -3,6 +3,7 @@
 
 const cli_verb cli_verb_optimise = {
     .name = "optimise",
+    .group = CLI_DECIDE,
     .summary = "the settings of a design that give the most or the least of an answer",
     .inputs = "FILE.yaml | status DIR",
     .description =

@@ -13,7 +13,7 @@ typedef struct pile_arguments {
   const char *cell, *sectors, *band_low, *band_high; /* in the order of `settings` */
   const char *picture, *size;
   double unit, particle_size;
-  double azimuth_deg, elevation_deg, picture_width;
+  double azimuth_deg, elevation_deg, picture_width, ruler;
   size_t rays;
   int vtp_view;
   const char *vtp;
@@ -24,7 +24,7 @@ static const pile_arguments defaults = {.unit = 1e-3,
                                         .size = "1200x900",
                                         .azimuth_deg = 35,
                                         .elevation_deg = 18,
-                                        .rays = 24,
+                                        .rays = 8,
                                         .vtp_view = SCREE_VIEW_SURFACES};
 
 static const struct {
@@ -46,8 +46,8 @@ enum { SETTING_COUNT = sizeof settings / sizeof *settings };
 
 #define ARGUMENTS pile_arguments
 static const cli_option options[] = {
-    CLI_ROW(CLI_UNIT, "unit", unit, "UNIT",
-            "Unit of length of a scan or an outline that says none. Default: mm."),
+    CLI_WORDS_ROW(CLI_UNIT, "unit", unit, "UNIT", CLI_UNITS,
+                  "Unit of length of a scan or an outline that says none. Default: mm."),
     CLI_RANGE_ROW(CLI_LENGTH, "particle-size", particle_size, "LENGTH", 0, 1e3,
                   "Diameter of the particles of a measured heap: widths of bins and sectors keep "
                   "to it. Default: not known."),
@@ -71,7 +71,10 @@ static const cli_option options[] = {
     CLI_RANGE_ROW(CLI_LENGTH, "picture-width", picture_width, "LENGTH", 0, 1e4,
                   "What a picture that is measured shows across. Of one that is written: what it "
                   "shows about the middle of the heap; default: the heap."),
-    CLI_RANGE_ROW(CLI_COUNT, "rays", rays, "N", 1, 65536, "Rays a pixel. Default: 24."),
+    CLI_RANGE_ROW(CLI_LENGTH, "ruler", ruler, "LENGTH", 0, 1e4,
+                  "Of a picture that is measured, in place of its width: how long the ruler beside "
+                  "the heap is."),
+    CLI_RANGE_ROW(CLI_COUNT, "rays", rays, "N", 1, 65536, "Rays a pixel. Default: 8."),
     CLI_ROW(CLI_TEXT, "vtp", vtp, "FILE", "Write the particles for ParaView, a .vtp."),
     CLI_CHOICE_ROW(
         "view", vtp_view, "VIEW", "surfaces|points|contacts|walls",
@@ -238,9 +241,22 @@ static scree_status measure_scan(const cli_call *call, double cell, found *f, sc
 static scree_status measure_picture(const cli_call *call, found *f, scree_error *error) {
   const pile_arguments *a = call->options;
   SCREE_CLEANUP(scree_image_free) scree_image image = {0};
+  scree_outline *o = &f->outline;
   SCREE_TRY(scree_image_read_png(call->inputs[0], &image, error));
-  return scree_outline_trace(image.pixels, image.width, image.height,
-                             a->picture_width / (double)image.width, &f->outline, error);
+  double pixel = a->ruler > 0 ? 1 : a->picture_width / (double)image.width;
+  SCREE_TRY(scree_outline_trace(image.pixels, image.width, image.height, pixel, o, error));
+  if (a->ruler > 0 && o->ruler == 0)
+    return scree_fail(error, SCREE_BAD_FILE,
+                      "no ruler: a bar beside the heap that stands out of the ground, or apart");
+  double scale = a->ruler > 0 ? a->ruler / o->ruler : 1;
+  for (size_t i = 0; i < o->count; i++) {
+    o->x[i] *= scale;
+    o->z[i] *= scale;
+  }
+  if (o->ruler > 0 && a->ruler == 0 && !call->quiet)
+    fprintf(stderr, "scree: %s: a bar of %.4g mm beside the heap is left out, as a ruler\n",
+            call->inputs[0], 1e3 * o->ruler);
+  return SCREE_OK;
 }
 
 static scree_status find(const cli_call *call, double cell, found *f, scree_error *error) {
@@ -279,9 +295,10 @@ static scree_status check_measured(const cli_call *call, pile_kind kind) {
   if (a->picture || a->vtp)
     return cli_misuse(call->verb, "--%s draws the heap of a scene; %s is none",
                       a->picture ? "output" : "vtp", file);
-  if (picture != (a->picture_width > 0))
+  if (picture != (a->picture_width > 0 || a->ruler > 0))
     return cli_misuse(call->verb,
-                      picture ? "%s is a picture: --picture-width says what it shows across"
+                      picture ? "%s is a picture: --picture-width says what it shows across, or "
+                                "--ruler how long the ruler in it is"
                               : "--picture-width is of pictures, which are PNG here; %s is none",
                       file);
   if (kind != SCAN && a->sectors)
@@ -341,6 +358,7 @@ static scree_status run(const cli_call *call, scree_error *error) {
 
 const cli_verb cli_verb_pile = {
     .name = "pile",
+    .group = CLI_DECIDE,
     .summary = "measure a heap: of a scene, or a real one",
     .inputs = "FILE",
     .description =
@@ -354,10 +372,12 @@ const cli_verb cli_verb_pile = {
                 "scree pile heap/last.scree --band-low 0.1 --band-high 0.9 --json\n"
                 "scree pile heap/frame-000012.scree -o frame.png --elevation 5\n"
                 "scree pile heap.ply --unit m --particle-size 8mm\n"
-                "scree pile photograph.png --picture-width 0.5m --csv\n",
+                "scree pile photograph.png --picture-width 0.5m --csv\n"
+                "scree pile photograph.png --ruler 300mm\n",
     CLI_OPTIONS(options, defaults),
     .input_minimum = 1,
     .input_maximum = 1,
+    .exclusive = "picture-width|ruler",
     .partners = "size:output azimuth:output elevation:output rays:output view:vtp",
     .run = run,
 };

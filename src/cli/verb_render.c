@@ -3,11 +3,86 @@
 #include "base/radix.h"
 #include "cli/input.h"
 #include "cli/output.h"
-#include "cli/render_refine.h"
 #include "cli/surface.h"
+#include "scree.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* Large triangles cut into small ones in their planes, so that a colour that is known at corners
+ * tells what lies between. */
+
+static const double wanted_triangles = 400000;
+
+static double doubled_area(const scree_mesh *mesh, size_t t) {
+  const double *p[3];
+  double u[3], v[3];
+  for (int i = 0; i < 3; i++)
+    p[i] = mesh->positions + 3 * (size_t)mesh->triangles[3 * t + (size_t)i];
+  for (int k = 0; k < 3; k++) {
+    u[k] = p[1][k] - p[0][k];
+    v[k] = p[2][k] - p[0][k];
+  }
+  double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+}
+
+/* Into how many parts the sides of triangle t are cut. */
+static size_t cuts(const scree_mesh *mesh, size_t t, double total) {
+  double share = total > 0 ? doubled_area(mesh, t) / total : 0;
+  return 1 + (size_t)sqrt(share * wanted_triangles);
+}
+
+/* The corners of small triangle (i, j) of n x n, the upper or the lower one of its cell. */
+static double *put_small(double *out, const double *p[3], size_t n, size_t i, size_t j,
+                         bool upper) {
+  size_t at[3][2] = {{i, j}, {i + 1, j}, {i, j + 1}};
+  if (upper) {
+    at[0][0]++;
+    at[1][1]++;
+  }
+  for (int c = 0; c < 3; c++) {
+    double b = (double)at[c][0] / (double)n, d = (double)at[c][1] / (double)n;
+    for (int k = 0; k < 3; k++)
+      *out++ = p[0][k] + b * (p[1][k] - p[0][k]) + d * (p[2][k] - p[0][k]);
+  }
+  return out;
+}
+
+/* Replaces a mesh of fewer than 200,000 triangles by some 400,000; a finer
+ * one stays as it is. Freed with scree_mesh_free as before. False: out of memory. */
+static bool refine_mesh(scree_mesh *mesh) {
+  if ((double)mesh->triangle_count > 0.5 * wanted_triangles) return true;
+  double total = 0;
+  size_t count = 0;
+  for (size_t t = 0; t < mesh->triangle_count; t++) total += doubled_area(mesh, t);
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    size_t n = cuts(mesh, t, total);
+    count += n * n;
+  }
+  double *corners = malloc((count + 1) * 9 * sizeof *corners), *out = corners;
+  if (!corners) return false;
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    size_t n = cuts(mesh, t, total);
+    const double *p[3];
+    for (int c = 0; c < 3; c++)
+      p[c] = mesh->positions + 3 * (size_t)mesh->triangles[3 * t + (size_t)c];
+    for (size_t i = 0; i < n; i++)
+      for (size_t j = 0; i + j < n; j++) {
+        out = put_small(out, p, n, i, j, false);
+        if (i + j + 1 < n) out = put_small(out, p, n, i, j, true);
+      }
+  }
+  scree_mesh made;
+  scree_error error;
+  bool done = scree_mesh_weld(corners, count, 0, &made, NULL, &error) == SCREE_OK;
+  free(corners);
+  if (!done) return false;
+  scree_mesh_free(mesh);
+  *mesh = made;
+  return true;
+}
 
 enum { MOST_LEVELS = 32 };
 static const double RECOMMENDED = 0; /* in place of an Rp */
@@ -25,7 +100,7 @@ static const render_arguments defaults = {.size = "1200x900",
                                           .source = CLI_SOURCE_DEFAULTS,
                                           .azimuth_deg = NAN, /* the view's */
                                           .elevation_deg = NAN,
-                                          .rays = 24};
+                                          .rays = 8};
 
 #define ARGUMENTS render_arguments
 static const cli_option options[] = {
@@ -39,7 +114,7 @@ static const cli_option options[] = {
     CLI_RANGE_ROW(CLI_REAL, "elevation", elevation_deg, "DEG", -90, 90,
                   "The camera's angle above the horizontal. Default: the view's; 25 of oblique."),
     CLI_RANGE_ROW(CLI_COUNT, "rays", rays, "N", 1, 65536,
-                  "Rays a pixel: more is smoother and slower. Default: 24."),
+                  "Rays a pixel: more is smoother and slower. Default: 8."),
     CLI_RANGE_ROW(CLI_COUNT, "columns", columns, "N", 1, 1000,
                   "Columns of views. Default: what makes them largest."),
     CLI_FLAG_ROW("edges", edges, "Draw the edges of the triangles."),
@@ -105,7 +180,7 @@ static scree_status read_one(picture *p, size_t i, const char *word, const cli_s
   return SCREE_OK;
 }
 
-static scree_status make_level(picture *p, size_t i, double rp, const scree_curve *curve,
+static scree_status make_level(picture *p, size_t i, double rp, scree_curve *curve,
                                const scree_progress *progress, scree_error *error) {
   scree_mesh *scan = &p->views[0].scan.mesh, *mesh = &p->views[i].scan.mesh;
   bool recommended = rp == RECOMMENDED;
@@ -159,7 +234,7 @@ static scree_status measure_distances(picture *p, const scree_mesh *reference, b
   for (size_t i = 0; i < p->count; i++) {
     view *v = &p->views[i];
     scree_mesh *mesh = &v->scan.mesh;
-    if (refine && mesh != reference && !render_refine(mesh))
+    if (refine && mesh != reference && !refine_mesh(mesh))
       return scree_fail_memory(error, 0, "the picture");
     SCREE_TRY_ALLOC(v->distances, mesh->vertex_count, error);
     SCREE_TRY(scree_mesh_distance_field(mesh, reference, v->distances, error));
@@ -263,6 +338,7 @@ static scree_status run(const cli_call *call, scree_error *error) {
 
 const cli_verb cli_verb_render = {
     .name = "render",
+    .group = CLI_SHOW,
     .summary = "picture of meshes, ray-traced",
     .inputs = "FILE...|sample:NAME...",
     .description = "Writes one PNG with a view of each mesh, framed alike, captioned with its name "

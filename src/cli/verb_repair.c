@@ -13,11 +13,11 @@ typedef struct repair_arguments {
   const char *output, *cut_plane;
   cli_source source;
   double seam_tolerance, debris_share, cavity_share, volume_change;
-  size_t hole_edges; /* HOLES_UNSET: the library's default */
-  bool large_holes, flat_holes, drop_cavities, largest, no_cut, no_merge, folds, fast, json, force;
+  double hole_share;
+  size_t body; /* 0: all */
+  bool flat_holes, drop_cavities, largest, no_cut, no_merge, folds, fast;
+  bool keep_handles, json, force;
 } repair_arguments;
-
-#define HOLES_UNSET SIZE_MAX
 
 #define ARGUMENTS repair_arguments
 
@@ -27,20 +27,20 @@ static const cli_option options[] = {
     CLI_RANGE_ROW(CLI_SHARE, "seam", seam_tolerance, "SHARE", 0, 0.01,
                   "Boundary vertices no farther apart than this share of the bounding box diagonal "
                   "may be united to close a seam. Default: 1e-4."),
-    CLI_RANGE_ROW(CLI_COUNT, "holes", hole_edges, "EDGES", 0, 4096,
-                  "Fill holes of at most this many edges; 0 fills none. Not with --large-holes. "
-                  "Default: 128."),
-    CLI_FLAG_ROW("large-holes", large_holes,
-                 "Fill holes of up to 4096 edges, those of more than 32 smoothly: with triangles "
-                 "as small as round the hole, and its slope."),
+    CLI_RANGE_ROW(CLI_SHARE, "holes", hole_share, "SHARE", 0, 1,
+                  "Fill holes whose filling is at most this share of the area; 0 fills none. Where "
+                  "the surface does not go on flat, the filling has its slope. Default: 0.45."),
     CLI_FLAG_ROW("flat", flat_holes,
-                 "With --large-holes: no new vertices in any, as where flat faces with rough rims "
-                 "are missing."),
+                 "Fill with no new vertices, as where flat faces with rough rims are missing."),
     CLI_RANGE_ROW(CLI_SHARE, "debris", debris_share, "SHARE", 0, 0.999,
                   "Drop shells with less than this share of the largest shell's area; cavities are "
                   "kept. Default: 0.01."),
     CLI_FLAG_ROW("largest", largest,
                  "Keep only the largest shell, after merging, and its cavities."),
+    CLI_RANGE_ROW(
+        CLI_COUNT, "body", body, "NUMBER", 1, 1000000,
+        "Keep only this one of several separate bodies, and its cavities: 1 is the one of "
+        "the largest area, 2 the next."),
     CLI_RANGE_ROW(CLI_SHARE, "cavities", cavity_share, "SHARE", 0, 1,
                   "Fill cavities, the smallest first, up to this share of the volume in all: "
                   "nothing ever touches them. Default: 1e-3."),
@@ -61,6 +61,7 @@ static const cli_option options[] = {
     CLI_RANGE_ROW(CLI_SHARE, "volume-change", volume_change, "SHARE", 0, 1,
                   "Refuse where cutting and merging change the volume by more than this share. "
                   "Default: 0.01."),
+    CLI_KEEP_HANDLES_ROW(keep_handles),
     CLI_FLAG_ROW("fast", fast, "Do not look for self-intersections: the result may have some."),
     CLI_SOURCE_OPTIONS,
     CLI_FLAG_ROW("json", json, "Print JSON instead of text."),
@@ -72,7 +73,7 @@ static const repair_arguments defaults = {.source = CLI_SOURCE_DEFAULTS,
                                           .debris_share = 0.01,
                                           .cavity_share = 1e-3,
                                           .volume_change = 0.01,
-                                          .hole_edges = HOLES_UNSET};
+                                          .hole_share = 0.45};
 
 static scree_repair_options options_of(const repair_arguments *a) {
   scree_repair_options o = scree_default_repair_options();
@@ -80,15 +81,16 @@ static scree_repair_options options_of(const repair_arguments *a) {
   o.debris_share = a->debris_share;
   o.cavity_share = a->cavity_share;
   o.volume_change = a->volume_change;
-  if (a->hole_edges != HOLES_UNSET) o.hole_edges = a->hole_edges;
-  o.fill_large_holes = a->large_holes;
-  o.flat_large_holes = a->flat_holes;
+  o.hole_share = a->hole_share;
+  o.flat_holes = a->flat_holes;
   o.drop_cavities = a->drop_cavities;
   o.keep_largest = a->largest;
+  o.keep_body = a->body;
   o.cut_intersections = !a->no_cut;
   o.merge_shells = !a->no_merge;
   o.merge_folds = a->folds;
   o.intersections = !a->fast;
+  if (a->keep_handles) o.handle_edges = 0;
   return o;
 }
 
@@ -181,20 +183,20 @@ const cli_verb cli_verb_repair = {
     .inputs = "FILE|sample:NAME",
     .description =
         "Welds, drops duplicate and degenerate facets, closes seams, splits T-junctions and "
-        "non-manifold edges and vertices, turns facets to agree and shells outward, fills small "
-        "holes, drops debris and fills small cavities.\n\n"
+        "non-manifold edges and vertices, turns facets to agree and shells outward, fills "
+        "holes, drops debris, fills small cavities and cuts short handles.\n\n"
         "Cuts out places where a shell meets itself, or merges its folds where that keeps more of "
         "the body. Merges shells that cross, overlap or touch into the surface of their union.\n\n"
         "Prints what was done with counts, and area and volume before and after. The result passes "
         "`scree check`, or nothing is written and what remains is said.\n\n"
         "Exit code 0 where the result was written, 2 for wrong usage, 1 otherwise.",
     .examples = "scree repair scan.stl -o closed.stl\n"
-                "scree repair scan.ply -o closed.ply --large-holes --largest\n"
+                "scree repair scan.ply -o closed.ply --holes 60% --largest\n"
                 "scree repair rock-on-table.obj --cut-plane auto -o rock.ply\n",
     CLI_OPTIONS(options, defaults),
     .input_minimum = 1,
     .input_maximum = 1,
-    .partners = "flat:large-holes " CLI_SAMPLE_PARTNERS,
-    .exclusive = "holes|large-holes",
+    .partners = CLI_SAMPLE_PARTNERS,
+    .exclusive = "largest|body",
     .run = run,
 };

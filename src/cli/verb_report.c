@@ -29,16 +29,15 @@ static scree_status run(const cli_call *call, scree_error *error) {
 
 const cli_verb cli_verb_report = {
     .name = "report",
+    .group = CLI_SHOW,
     .summary = "one HTML page of results, with the shapes in 3D",
     .inputs = "DIR...",
     .description =
-        "Makes one self-contained HTML page of the folders that scree choose -o, scree repose -o, "
-        "scree drop and scree study write. Of a choice: the answer, the curve with a slider that "
-        "shows the mesh at every level beside the scan, the tables. Of a heap: its angles, and the "
-        "particles in 3D to turn around and play through time beside the curves; of a pour the "
-        "same without angles. Of a study: angle of repose, its spread, rotation and computation "
-        "time with their curves and tables, and a heap of each point. And how each was made. It "
-        "opens by double-click, also from a mail, and asks nothing of any network.\n\n"
+        "Makes one self-contained HTML page of the folders that choose, clump, repose, drop, run, "
+        "study, calibrate and optimise write: the answer in a sentence, a picture beside a few "
+        "numbers, what to do next, charts, tables, and how it was made. Meshes at every level and "
+        "heaps through time are there in 3D. It opens by double-click, also from a mail, and asks "
+        "nothing of any network.\n\n"
         "These verbs already leave such a page as DIR/report.html; this one makes it of several "
         "folders, or makes it again.",
     .examples = "scree choose --samples -o devices\n"

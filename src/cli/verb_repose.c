@@ -1,14 +1,15 @@
 /* scree repose: the scene of the template of that name, with shapes of the call. */
 #include "cli/pour.h"
 
-static const cli_pour_arguments defaults = {CLI_POUR_DEFAULTS, .preset = "demo"};
+static const cli_pour_arguments defaults = {CLI_POUR_DEFAULTS, .preset = "heap"};
 
 /* What has no option is set by its field, with --set. */
 
 #define ARGUMENTS cli_pour_arguments
 static const cli_option options[] = {
-    CLI_ROW(CLI_TEXT, "preset", preset, "NAME",
-            "What the file and the options change: paper, small or demo (the default)."),
+    CLI_WORDS_ROW(
+        CLI_TEXT, "preset", preset, "NAME", "heap|paper|small|demo",
+        "What the file and the options change: heap (the default), paper, small or demo."),
     CLI_ROW(CLI_TEXT, "output", scene.output, "DIR",
             "A folder, made if need be, for checkpoints, frames, result.json, series.csv, "
             "scene.yaml, scene.png and report.html; with several runs, a folder in it for each, "
@@ -46,8 +47,8 @@ static const cli_option options[] = {
     CLI_FIELD_ROW(CLI_TEXT, "young-wall", "contact.young_wall", "PA",
                   "Young's modulus of the walls."),
     CLI_FIELD_ROW(CLI_TEXT, "restitution", "contact.restitution", "E", "Of every contact."),
-    CLI_FIELD_ROW(CLI_TEXT, "friction", "contact.friction_particle", "MU", "Particle on particle."),
-    CLI_FIELD_ROW(CLI_TEXT, "friction-wall", "contact.friction_wall", "MU", "Particle on wall."),
+    CLI_FIELD_ROW(CLI_TEXT, "friction", "friction", "MU", "Particle on particle."),
+    CLI_FIELD_ROW(CLI_TEXT, "friction-wall", "friction_wall", "MU", "Particle on wall."),
     CLI_FIELD_ROW(CLI_TEXT, "law", "contact.law", "NAME", "linear or hysteretic."),
     CLI_FIELD_ROW(CLI_TEXT, "steps", "contact.steps", "N",
                   "Time steps in a quarter of a contact's period, at least 15."),
@@ -79,6 +80,7 @@ static scree_status run(const cli_call *call, scree_error *error) {
 
 const cli_verb cli_verb_repose = {
     .name = "repose",
+    .group = CLI_SIMULATE,
     .summary = "pour a heap and measure its angle of repose",
     .inputs = "SHAPE[=COUNT]...",
     .description =
@@ -86,10 +88,12 @@ const cli_verb cli_verb_repose = {
         "cylinder, come to rest, the cylinder is raised, and the heap is measured three ways. A "
         "SHAPE is a scan, sample:NAME, or NAME.csv with the spheres of a clump (x, y, z, radius a "
         "line). Without --rp a scan of more than 2,000 triangles is taken at the level that choose "
-        "recommends, which is said. The preset paper is the paper's protocol (1197 particles: "
-        "hours); small has 360 particles and softer contacts (its heap scatters more); demo, the "
-        "default, shows a heap in about a minute and no number should be taken from it. It is a "
-        "scene, the template repose of `scree run`: everything can be changed by a YAML file and "
+        "recommends, which is said. The default, the preset heap, has 400 particles in a "
+        "cylinder ten of them wide; lengths, times, speeds and stiffness scale with the particles, "
+        "so that it takes minutes at any size. paper is the paper's protocol (1197 particles of "
+        "about 50 mm: hours); small and demo are smaller heaps, and no number should be taken "
+        "from demo. It is a scene, the template repose of `scree run`: everything can be changed "
+        "by a YAML file and "
         "by options, which have the last word. With -o the run writes checkpoints: after Ctrl-C, "
         "or a crash, --resume goes on with the same bits. The same seed gives the same heap on any "
         "number of threads. \"No heap\" is a result: spheres give it.",

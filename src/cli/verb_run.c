@@ -7,7 +7,7 @@ typedef struct run_arguments {
   const char *template_name;
 } run_arguments;
 
-static const run_arguments defaults = {.scene.rays = 24};
+static const run_arguments defaults = {.scene.rays = 8};
 
 #define ARGUMENTS run_arguments
 static const cli_option options[] = {
@@ -18,11 +18,13 @@ static const cli_option options[] = {
             "Change any field of the file, as inlets.feed.rate=5; may be given several times."),
     CLI_FLAG_ROW("print", scene.print,
                  "Print the scene as it would be run, with units and comments, and stop."),
-    CLI_ROW(CLI_TEXT, "template", template_name, "NAME",
-            "A built-in scene in place of a file: hopper, drum, tilting-box, drawdown, "
-            "hollow-cylinder, conveyor, vibrating-screen, shear-box, drum-lifters, paddle-mixer, "
-            "tumbler, hammer-mill, transfer-chute, belt, auger or hole-screen. Without -o, --set, "
-            "--print and --json it is printed with its comments, to start from."),
+    CLI_EACH_ROW(
+        "template", template_name, "NAME", scree_scene_template_name,
+        "A built-in scene in place of a file: hopper, drum, tilting-box, drawdown, "
+        "hollow-cylinder, conveyor, vibrating-screen, shear-box, drum-lifters, "
+        "paddle-mixer, tumbler, hammer-mill, shredder, transfer-chute, belt, auger or hole-screen. "
+        "Without -o, --set, --print and --json it is printed with its comments, to start "
+        "from."),
     CLI_FLAG_ROW(
         "resume", scene.resume,
         "Go on from the checkpoint in DIR where there is one; without a file, with what is in it."),
@@ -35,7 +37,7 @@ static const cli_option options[] = {
     CLI_FLAG_ROW("json", scene.json, "Print result.json instead of text."),
     CLI_FLAG_ROW("no-picture", scene.no_picture, "Do not render scene.png."),
     CLI_RANGE_ROW(CLI_COUNT, "rays", scene.rays, "N", 1, 65536,
-                  "Rays a pixel of scene.png. Default: 24."),
+                  "Rays a pixel of scene.png. Default: 8."),
 };
 
 static scree_status simulate(cli_scene_run *r, scree_error *error) {
@@ -110,6 +112,7 @@ static scree_status run(const cli_call *call, scree_error *error) {
 
 const cli_verb cli_verb_run = {
     .name = "run",
+    .group = CLI_SIMULATE,
     .summary = "run a scene of your own: shapes, moving geometry, inlets, sensors",
     .inputs = "SCENE.yaml",
     .description =
@@ -132,6 +135,6 @@ const cli_verb cli_verb_run = {
     CLI_OPTIONS(options, defaults),
     .input_minimum = 0,
     .input_maximum = 1,
-    .partners = "rays:output no-picture:output force:output",
+    .partners = "rays:output force:output",
     .run = run,
 };

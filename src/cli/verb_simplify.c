@@ -31,7 +31,7 @@ static const cli_option options[] = {
                   "times the scan's count, rounded down. A closed surface has an even count."),
     {"count", CLI_COUNT, offsetof(simplify_arguments, count), "COUNT",
      "Keep at most this many triangles; recommended: as many as choose recommends.", 1,
-     4294967295.0, "recommended", NULL},
+     4294967295.0, "recommended", NULL, NULL},
     CLI_RANGE_ROW(
         CLI_LENGTH, "error", error, "LENGTH", 1e-12, 1e12,
         "Go as far as no collapse moves the surface by more than this, as in 0.05mm: by the "

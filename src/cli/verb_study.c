@@ -1,6 +1,7 @@
 /* scree study: many runs. */
 #include "base/owned.h"
 #include "base/path.h"
+#include "cli/output.h"
 #include "cli/study.h"
 #include "cli/terminal.h"
 #include "report/program.h"
@@ -8,7 +9,7 @@
 #include <string.h>
 
 #define ARGUMENTS study_arguments
-/* The last is of a study alone. */
+/* The last two are of a study alone. */
 const cli_option study_options[STUDY_OPTIONS] = {
     CLI_ROW(CLI_TEXT, "output", output, "DIR",
             "Folder of all that is made. Default: the file's name without its ending, in the "
@@ -39,6 +40,8 @@ const cli_option study_options[STUDY_OPTIONS] = {
         "Print the results as CSV: a row per point, per sample, or per setting that was tried."),
     CLI_FLAG_ROW("keep-failed", keep_failed,
                  "Leave runs that failed before as they are; else they are tried once more."),
+    CLI_FLAG_ROW("force", overwrite,
+                 "Begin anew: what an earlier study left in the folder is removed."),
 };
 const study_arguments study_defaults = {.lease = 300};
 enum { RUNS_ON_DEVICE = 80 };
@@ -78,12 +81,13 @@ static scree_status report(const cli_call *call, const scree_study *study, const
   const study_arguments *a = call->options;
   SCREE_CLEANUP(scree_study_result_free) scree_study_result result = {0};
   SCREE_TRY(scree_study_analyse(study, &result, error));
+  result.origin.command = call->command_line;
   *failed = result.counts.failed > 0;
   if (files) SCREE_TRY(scree_study_report_write(&result, folder, error));
   if (files) SCREE_TRY(study_write_page(folder, error));
   if (a->json) return scree_study_json_write(&result, "-", true, error);
   if (a->csv) return scree_study_csv_write(&result, "-", true, error);
-  study_print(stdout, &result);
+  study_print(stdout, &result, call->verbose);
   return SCREE_OK;
 }
 
@@ -162,6 +166,25 @@ static scree_status run_study(const cli_call *call, scree_study *study, const ch
   return failed ? CLI_TOLD : status;
 }
 
+/* Removes an earlier study of the folder, unless somebody is at work on it. */
+static scree_status begin_anew(const char *folder, scree_error *error) {
+  static const char *const made[] = {"shapes",           "leases",           "runs",
+                                     "results",          "scene.yaml",       "study.sqlite",
+                                     "study.sqlite-wal", "study.sqlite-shm", "study.yaml"};
+  SCREE_OWNED(scree_study, study);
+  if (!scree_path_exists(SCREE_PATH_IN(folder, "study.yaml"))) return SCREE_OK;
+  if (scree_study_open_folder(folder, &study, NULL) == SCREE_OK) {
+    SCREE_CLEANUP(scree_study_result_free) scree_study_result result = {0};
+    if (scree_study_collect(study, true, NULL) == SCREE_OK &&
+        scree_study_analyse(study, &result, NULL) == SCREE_OK && result.counts.running > 0)
+      return cli_refuse(error, SCREE_EXISTS, folder,
+                        "others are at work on this study; not begun anew");
+  }
+  for (size_t i = 0; i < sizeof made / sizeof *made; i++)
+    cli_remove_tree(SCREE_PATH_IN(folder, made[i]));
+  return SCREE_OK;
+}
+
 static scree_status run(const cli_call *call, scree_error *error) {
   const study_arguments *a = call->options;
   SCREE_OWNED(scree_study, study);
@@ -170,11 +193,14 @@ static scree_status run(const cli_call *call, scree_error *error) {
   if (study_asks_status(call)) return show_status(call, error);
   SCREE_TRY(scree_study_read(call->inputs[0], &study, error));
   if (a->dry_run && !a->slurm) return list_runs(study, error);
-  return run_study(call, study, study_folder(call, "study", folder, sizeof folder), error);
+  const char *output = study_folder(call, "study", folder, sizeof folder);
+  if (a->overwrite && study_rank() == 0) SCREE_TRY(begin_anew(output, error));
+  return run_study(call, study, output, error);
 }
 
 const cli_verb cli_verb_study = {
     .name = "study",
+    .group = CLI_DECIDE,
     .summary = "run an experiment many times: mean, spread, convergence",
     .inputs = "STUDY.yaml | status DIR",
     .description =
@@ -196,6 +222,6 @@ const cli_verb cli_verb_study = {
     .input_minimum = 1,
     .input_maximum = 2,
     .partners = "tasks:slurm",
-    .exclusive = STUDY_EXCLUSIVE,
+    .exclusive = STUDY_EXCLUSIVE " force|worker",
     .run = run,
 };

@@ -1,4 +1,5 @@
 #include "clump/exposed.h"
+#include "base/math.h"
 
 #include <string.h>
 
@@ -10,14 +11,14 @@ void scree_directions_spread(scree_directions *d, size_t count) {
   for (size_t i = 0; i < count; i++) {
     double z = 1 - (2 * (double)i + 1) / (double)count, r = sqrt(1 - z * z),
            angle = golden_angle * (double)i;
-    d->x[i] = (float)(r * cos(angle));
-    d->y[i] = (float)(r * sin(angle));
+    d->x[i] = (float)(r * scree_cos(angle));
+    d->y[i] = (float)(r * scree_sin(angle));
     d->z[i] = (float)z;
   }
 }
 
-/* Of two spheres with the distance between their centres, the first lies within the second. Of two
- * equal ones the later does. */
+/* Whether a lies within b, whose centre is so far from its own; the later of two equal ones does.
+ */
 static bool is_swallowed(const scree_sphere *a, const scree_sphere *b, double distance,
                          bool later) {
   double reach = distance + a->radius;

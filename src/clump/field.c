@@ -1,6 +1,7 @@
 #include "clump/field.h"
 
 #include "base/alloc.h"
+#include "base/math.h"
 #include "base/parallel.h"
 #include "clump/lines.h"
 
@@ -14,15 +15,15 @@ static const double margin = 0.1, /* of the grid around the bounding box */
 enum { MOST_NODES = 4000000, BLOCK = 64 };
 
 static double choose_step(const scree_target *body, size_t most, double thickness) {
-  double area = bricks_per_cell_face * body->area;
-  double bricks = fmax(least_bricks, usual_bricks * pow((double)most / 100, 2. / 3));
+  double area = bricks_per_cell_face * body->area, each = scree_cbrt((double)most / 100);
+  double bricks = fmax(least_bricks, usual_bricks * each * each);
   double usual = sqrt(area / bricks), least = sqrt(area / most_bricks);
   double wanted = fmax(fmin(usual, thickness * SCREE_FINER / walls_cells), least);
   double box = 1;
   const double low[3] = {body->low.x, body->low.y, body->low.z},
                high[3] = {body->high.x, body->high.y, body->high.z};
   for (int k = 0; k < 3; k++) box *= high[k] - low[k] + 2 * margin;
-  return fmax(wanted, cbrt(box / MOST_NODES));
+  return fmax(wanted, scree_cbrt(box / MOST_NODES));
 }
 
 static void lay_grid(const scree_target *body, scree_distance_field *f) {
@@ -60,11 +61,10 @@ static double bound_from(float before, double way) {
   return bound * bound;
 }
 
-static void fill_rows(void *context, size_t begin, size_t end, size_t block, int worker) {
+static void fill_rows(void *context, scree_block block) {
   const job *j = context;
   const scree_distance_field *f = j->field;
-  (void)block, (void)worker;
-  for (size_t row = begin; row < end; row++)
+  for (size_t row = block.begin; row < block.end; row++)
     for (size_t k = 0; k < f->n[2]; k++) {
       size_t at[3] = {row / f->n[1] * SCREE_FINER, row % f->n[1] * SCREE_FINER, k * SCREE_FINER};
       float *value = f->values + row * f->n[2] + k;
@@ -72,11 +72,10 @@ static void fill_rows(void *context, size_t begin, size_t end, size_t block, int
     }
 }
 
-static void fill_bricks(void *context, size_t begin, size_t end, size_t block, int worker) {
+static void fill_bricks(void *context, scree_block block) {
   const job *j = context;
   const scree_distance_field *f = j->field;
-  (void)block, (void)worker;
-  for (size_t b = begin; b < end; b++) {
+  for (size_t b = block.begin; b < block.end; b++) {
     float *value = f->bricks[b];
     size_t cell = j->cells[b],
            origin[3] = {cell / f->n[2] / f->n[1], cell / f->n[2] % f->n[1], cell % f->n[2]};

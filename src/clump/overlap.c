@@ -140,7 +140,7 @@ static void add_stretch(const scree_lines *l, size_t line, double area, scree_sp
   o->common += area * length_inside(l, line, z.low, z.high);
 }
 
-/* Of chords that hang together, the stretches that one of them alone covers. */
+/* Adds the stretches that one alone covers of chords that hang together. */
 static void add_alone(const scree_lines *l, size_t line, const scree_chord *chords, size_t count,
                       scree_alone *alone) {
   double top = -INFINITY, area = l->step * l->step;

@@ -6,6 +6,7 @@
 #include "clump/path.h"
 
 #include "base/alloc.h"
+#include "base/math.h"
 #include "base/rng.h"
 
 #include <string.h>
@@ -134,13 +135,13 @@ static void recall(scree_path *p, scree_trial *t) {
 
 /* From soft to sharp; `softness`: of the first step, for one sphere. */
 static void optimise(scree_path *p, scree_trial *t, int steps, double softness) {
-  double size = 1 / cbrt((double)t->count), ratio = soft_end / softness;
+  double size = 1 / scree_cbrt((double)t->count), ratio = soft_end / softness;
   scree_step step = {.hold = is_strict(p) ? 0 : hold, .held = held_moments(t->count)};
   step.outside = is_strict(p) ? strict_outside : fmax(t->overlap.iou, least_outside);
   for (int k = 0; k < steps; k++) {
     double done = (double)k / (steps - 1);
     if (k == steps / 2) recall(p, t);
-    step.softness = size * softness * pow(ratio, done);
+    step.softness = size * softness * scree_exp(done * scree_log(ratio));
     step.damping = damping * (1 - 0.5 * done);
     scree_mover_step(&p->mover, t->spheres, t->count, &step);
   }

@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/eigen.h"
-#include "clump/step.h"
+#include "base/math.h"
 
 static const double pi = 3.14159265358979323846;
 static const double least_gain = 1e-4; /* IoU below which a sphere is useless */
@@ -47,7 +47,7 @@ static double add_point(scree_judge *j, vec3 p, vec3 normal, double area, surfac
   if (sums->count++ % NORMALS_APART) return fabs(height);
   double distance;
   scree_target_point nearest = scree_target_nearest(j->body, p, &distance);
-  sums->angle += area * acos(fmax(-1, fmin(1, vec3_dot(normal, nearest.normal))));
+  sums->angle += area * scree_acos(fmax(-1, fmin(1, vec3_dot(normal, nearest.normal))));
   sums->angle_area += area;
   return fabs(height);
 }

@@ -1,6 +1,7 @@
-#include "clump/sites.h"
+#include "clump/path.h"
 
 #include "base/alloc.h"
+#include "base/math.h"
 
 #include <stdint.h>
 #include <string.h>
@@ -193,7 +194,8 @@ static void centre(const scree_sphere_sites *p, size_t count, scree_sphere *sphe
   for (size_t s = 0; s < count; s++) {
     if (!(sums[s][3] > 0)) continue;
     for (int k = 0; k < 3; k++) spheres[s].centre[k] = sums[s][k] / sums[s][3];
-    spheres[s].radius = fmax(least_radius, cbrt(0.75 / 3.14159265358979323846 * sums[s][3] / all));
+    spheres[s].radius =
+        fmax(least_radius, scree_cbrt(0.75 / 3.14159265358979323846 * sums[s][3] / all));
   }
 }
 

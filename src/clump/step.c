@@ -14,6 +14,7 @@
 #include "clump/step.h"
 
 #include "base/alloc.h"
+#include "base/math.h"
 
 #include <string.h>
 
@@ -151,7 +152,7 @@ static void solve_sphere(scree_normal_equations *e, bool moments) {
 /* Softer steps do with coarser patches. */
 static size_t direction_count(size_t count, const scree_step *step) {
   double each = fmax(least_directions, directions_in_all / (double)count);
-  double fineness = step->restore ? 1 : sharp / cbrt((double)count) / step->softness;
+  double fineness = step->restore ? 1 : sharp / scree_cbrt((double)count) / step->softness;
   each = fmax(least_soft, each * fmin(1, fineness));
   return (size_t)fmin(SCREE_MOST_DIRECTIONS, each);
 }

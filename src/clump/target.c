@@ -2,9 +2,10 @@
 
 #include "base/alloc.h"
 #include "base/eigen.h"
+#include "base/math.h"
 #include "base/radix.h"
 #include "base/sum.h"
-#include "mesh/measure/measure.h"
+#include "mesh/measure/bounds.h"
 #include "particle/mass.h"
 
 enum { THICKNESS_SAMPLES = 1000, SHRINKINGS = 40 };
@@ -74,7 +75,7 @@ scree_status scree_target_make(const scree_mesh *mesh, scree_target *body, scree
   double second[3];
   b.axes = target_axes(mesh, &solid, second);
   b.centre = solid.centre;
-  b.scale = cbrt(solid.volume);
+  b.scale = scree_cbrt(solid.volume);
   b.moments[0] = 1;
   for (int k = 0; k < 3; k++)
     b.moments[SCREE_FIRST_INERTIA + k] =

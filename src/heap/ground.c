@@ -216,7 +216,8 @@ static double fill_holes(scree_height_field *f, char *mark, size_t *cells, doubl
   return filled ? (double)filled / (double)(filled + covered) : 0;
 }
 
-/* Of what is higher than the floor's noise only the piece of the largest volume is the heap. */
+/* Keeps of what is higher than the floor's noise the piece of the largest volume, which is the
+ * heap. */
 static void keep_heap(scree_height_field *f, char *mark, size_t *cells, double low) {
   size_t n = f->columns * f->rows, best = n;
   double most = 0;

@@ -24,7 +24,7 @@ void scree_outline_free(scree_outline *outline) {
 
 static scree_status make_outline(size_t count, scree_outline *outline, scree_error *error) {
   *outline = (scree_outline){count, scree_alloc(count, sizeof(double)),
-                             scree_alloc(count, sizeof(double))};
+                             scree_alloc(count, sizeof(double)), 0};
   if (outline->x && outline->z) return SCREE_OK;
   scree_outline_free(outline);
   return scree_fail_memory(error, 2 * count * sizeof(double), "an outline");
@@ -37,7 +37,7 @@ scree_status scree_outline_read(const char *path, double unit_m, scree_outline *
   scree_status status = scree_curve_file_convert(&c, 0, "m", unit_m, path, error);
   if (status == SCREE_OK) status = scree_curve_file_convert(&c, 1, "m", unit_m, path, error);
   if (status == SCREE_OK)
-    *outline = (scree_outline){c.count, c.x, c.y};
+    *outline = (scree_outline){c.count, c.x, c.y, 0};
   else
     scree_curve_file_free(&c);
   return status;
@@ -94,7 +94,7 @@ scree_status scree_outline_measure(const scree_outline *outline, double cell,
                                    const scree_repose_options *options, scree_repose *repose,
                                    scree_error *error) {
   scree_repose_options used = options ? *options : scree_default_repose_options();
-  scree_height_field field;
+  SCREE_CLEANUP(scree_height_field_free) scree_height_field field = {0};
   double axis = axis_of(outline),
          half = fmax(axis - outline->x[0], outline->x[outline->count - 1] - axis);
   if (cell == 0) cell = 2 * half / CELLS_ACROSS;
@@ -108,9 +108,7 @@ scree_status scree_outline_measure(const scree_outline *outline, double cell,
     }
   used.sector_count = SIDES;
   used.silhouette_count = 1;
-  scree_status status = scree_repose_measure(&field, &used, repose, error);
-  scree_height_field_free(&field);
-  return status;
+  return scree_repose_measure(&field, &used, repose, error);
 }
 
 /* ---- pictures ---- */
@@ -119,7 +117,8 @@ typedef struct picture {
   size_t width, height;
   char *heap;     /* of every pixel, rows from the top: SCREE_IN or SCREE_OUT */
   double *top;    /* of every column: rows above the heap, NaN where it is not */
-  double *bottom; /* rows above what is below it */
+  double *bottom; /* rows above what is below it; then the height over the ground */
+  double ruler;   /* pixels; 0: none was seen */
 } picture;
 
 /* The threshold that parts greys best (Otsu 1979), and how much of their variance lies between the
@@ -175,18 +174,47 @@ static scree_status find_silhouette(const uint8_t *rgb, picture *p, scree_error 
   return SCREE_OK;
 }
 
-/* Only the largest piece stays: specks and dust go. */
+/* What lies beside a heap is told by these: what is no grain, in shares of the heap; what is
+ * straight, of a box.
+ */
+static const double thing_area = 0.03, thing_height = 0.3, bar_fill = 0.85;
+static const double grain_width = 4; /* of its height, at most */
+/* Heights that are ground, in shares of the peak; how long a bar at the foot is, of the width. */
+static const double flat_share = 0.03, bar_share = 0.03, bar_rows = 3;
+
+/* How long a piece is that fills its box, as a bar does; 0: it does not. */
+static double bar_of(const picture *p, const size_t *pixels, size_t count) {
+  size_t low[2] = {SIZE_MAX, SIZE_MAX}, high[2] = {0};
+  for (size_t k = 0; k < count; k++) {
+    const size_t at[2] = {pixels[k] % p->width, pixels[k] / p->width};
+    for (int a = 0; a < 2; a++) {
+      low[a] = at[a] < low[a] ? at[a] : low[a];
+      high[a] = at[a] > high[a] ? at[a] : high[a];
+    }
+  }
+  double wide = (double)(high[0] - low[0] + 1), tall = (double)(high[1] - low[1] + 1),
+         long_side = fmax(wide, tall);
+  bool bar = fmin(wide, tall) >= bar_rows && long_side >= bar_share * (double)p->width &&
+             (double)count >= bar_fill * wide * tall;
+  return bar ? long_side : 0;
+}
+
+/* Only the largest piece stays: specks and dust go, and a ruler that lies apart. */
 static scree_status find_columns(picture *p, scree_error *error) {
   const size_t width = p->width, n = width * p->height;
   size_t most = 0;
+  double of_most = 0;
   SCREE_SCRATCH(size_t, pixels, n, error);
   for (size_t i = 0; i < n; i++) {
     if (p->heap[i] != SCREE_IN) continue;
     size_t count = scree_flood(p->heap, width, p->height, i, pixels);
+    double bar = bar_of(p, pixels, count);
+    p->ruler = fmax(p->ruler, count > most ? of_most : bar); /* what was the largest is not */
     if (count <= most) continue;
+    of_most = bar;
     most = count;
     for (size_t c = 0; c < width; c++) p->top[c] = p->bottom[c] = NAN;
-    for (size_t k = 0; k < count; k++) {
+    for (size_t k = 0; width > 0 && k < count; k++) {
       size_t column = pixels[k] % width;
       double row = (double)(pixels[k] / width);
       p->top[column] = fmin(p->top[column], row);
@@ -235,6 +263,78 @@ static scree_status find_ground(const picture *p, ground *g, scree_error *error)
   return SCREE_OK;
 }
 
+/* A run of columns that stand out of the ground. */
+typedef struct run {
+  size_t begin, end;
+  double area, peak;
+} run;
+
+static run next_run(const picture *p, size_t from, double flat) {
+  run r = {from, from, 0, 0};
+  while (r.begin < p->width && !(p->bottom[r.begin] > flat)) r.begin++;
+  for (r.end = r.begin; r.end < p->width && p->bottom[r.end] > flat; r.end++) {
+    r.area += p->bottom[r.end];
+    r.peak = fmax(r.peak, p->bottom[r.end]);
+  }
+  return r;
+}
+
+static void flatten(picture *p, const ground *g, size_t begin, size_t end) {
+  for (size_t c = begin; c < end; c++) {
+    p->top[c] = g->at + g->slope * ((double)c + 0.5);
+    p->bottom[c] = 0;
+  }
+}
+
+/* Columns of a level step at an end of the heap: a bar that lies against its foot. */
+static size_t step_at(const picture *p, const run *heap, bool right) {
+  size_t count = 0, all = heap->end - heap->begin;
+  double level = p->bottom[right ? heap->end - 2 : heap->begin + 1];
+  while (count < all) {
+    double h = p->bottom[right ? heap->end - 1 - count : heap->begin + count];
+    if (count > 1 && fabs(h - level) > fmax(1.5, 0.1 * level)) break;
+    count++;
+  }
+  bool bar = level >= bar_rows && level < thing_height * heap->peak && count < all &&
+             (double)count >= bar_share * (double)p->width;
+  return bar ? count : 0;
+}
+
+/* What stands on the ground beside the heap, and is more than a grain: a ruler goes, all else is
+ * told. */
+static scree_status clear_ground(picture *p, const ground *g, scree_error *error) {
+  double peak = 0;
+  run heap = {0};
+  for (size_t c = 0; c < p->width; c++) {
+    p->bottom[c] = isnan(p->top[c]) ? 0 : g->at + g->slope * ((double)c + 0.5) - p->top[c];
+    peak = fmax(peak, p->bottom[c]);
+  }
+  double flat = fmax(1.5, flat_share * peak);
+  for (run r = next_run(p, 0, flat); r.begin < p->width; r = next_run(p, r.end, flat))
+    if (r.area > heap.area) heap = r;
+  for (run r = next_run(p, 0, flat); r.begin < p->width; r = next_run(p, r.end, flat)) {
+    double wide = (double)(r.end - r.begin);
+    if (r.begin == heap.begin || (r.area < thing_area * heap.area &&
+                                  r.peak < thing_height * heap.peak && wide < grain_width * r.peak))
+      continue;
+    if (r.area < bar_fill * wide * r.peak)
+      return scree_fail(
+          error, SCREE_BAD_FILE,
+          "something else lies beside the heap, in columns %zu to %zu of %zu: take it "
+          "away, or cut it off; a ruler must lie or stand straight",
+          r.begin + 1, r.end, p->width);
+    p->ruler = fmax(p->ruler, fmax(wide, r.peak));
+    flatten(p, g, r.begin, r.end);
+  }
+  for (int right = 0; right < 2 && heap.end - heap.begin > 2; right++) {
+    size_t step = step_at(p, &heap, right);
+    if (!step) continue;
+    p->ruler = fmax(p->ruler, (double)step);
+    flatten(p, g, right ? heap.end - step : heap.begin, right ? heap.end : heap.begin + step);
+  }
+  return SCREE_OK;
+}
+
 /* Turned so that the ground is level; of what falls on one pixel the highest counts. */
 static scree_status draw_outline(const picture *p, const ground *g, double pixel,
                                  scree_outline *outline, scree_error *error) {
@@ -272,9 +372,12 @@ scree_status scree_outline_trace(const uint8_t *rgb, size_t width, size_t height
         width, height, pixel);
   SCREE_SCRATCH(char, heap, width *height, error);
   SCREE_SCRATCH(double, top, 2 * width, error);
-  picture p = {width, height, heap, top, top + width};
+  picture p = {width, height, heap, top, top + width, 0};
   SCREE_TRY(find_silhouette(rgb, &p, error));
   SCREE_TRY(find_columns(&p, error));
   SCREE_TRY(find_ground(&p, &g, error));
-  return draw_outline(&p, &g, pixel, outline, error);
+  SCREE_TRY(clear_ground(&p, &g, error));
+  SCREE_TRY(draw_outline(&p, &g, pixel, outline, error));
+  outline->ruler = p.ruler * pixel;
+  return SCREE_OK;
 }

@@ -22,11 +22,10 @@ typedef struct builder {
   scree_adjacency *out;
 } builder;
 
-static void count_half(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void count_half(void *context, scree_block block) {
   const builder *b = context;
-  uint32_t *count = block == 0 ? b->start : b->second;
-  for (size_t c = 3 * begin; c < 3 * end; c += 3) {
+  uint32_t *count = block.index == 0 ? b->start : b->second;
+  for (size_t c = 3 * block.begin; c < 3 * block.end; c += 3) {
     const uint32_t *corner = b->mesh->triangles + c;
     if (scree_names_twice(corner)) continue;
     for (int k = 0; k < 3; k++) {
@@ -37,11 +36,10 @@ static void count_half(void *context, size_t begin, size_t end, size_t block, in
 }
 
 /* From the end of each part of a bucket to its beginning. */
-static void fill_half(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void fill_half(void *context, scree_block block) {
   const builder *b = context;
-  uint32_t *place = block == 0 ? b->start : b->second;
-  for (size_t c = 3 * end; c > 3 * begin;) {
+  uint32_t *place = block.index == 0 ? b->start : b->second;
+  for (size_t c = 3 * block.end; c > 3 * block.begin;) {
     c -= 3;
     const uint32_t *corner = b->mesh->triangles + c;
     bool part = !scree_names_twice(corner);
@@ -73,12 +71,11 @@ static void fill_buckets(builder *b) {
 
 /* Sorts the buckets of a block of vertices, links the rings, and leaves the lowest half-edge of
  * each edge at the front of the block's pairs. */
-static void link_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void link_block(void *context, scree_block block) {
   builder *b = context;
   uint32_t *ring = b->out->ring;
-  size_t write = b->start[begin];
-  for (size_t v = begin; v < end; v++) {
+  size_t write = b->start[block.begin];
+  for (size_t v = block.begin; v < block.end; v++) {
     size_t first = b->start[v], last = b->start[v + 1];
     scree_sort_keys(b->pairs + first, last - first);
     for (size_t i = first; i < last;) {
@@ -93,7 +90,7 @@ static void link_block(void *context, size_t begin, size_t end, size_t block, in
       b->pairs[write++] = lowest;
     }
   }
-  b->block_edges[block] = write - b->start[begin];
+  b->block_edges[block.index] = write - b->start[block.begin];
 }
 
 static scree_status collect_edges(builder *b, size_t block_count, scree_error *error) {

@@ -69,3 +69,15 @@ static inline void scree_join(uint32_t *parent, uint32_t i, uint32_t j) {
  * edges of two facets alone. */
 void scree_join_over_edges(const scree_mesh *mesh, const scree_adjacency *adjacency, bool manifold,
                            uint32_t *parent);
+
+/* ---- scree_mesh_topology (scree/measure.h) for callers that need the adjacency as well ---- */
+
+/* Counts in a verified mesh. They come in parts that may run beside each other, each filling fields
+ * of its own of a topology that is zero before. */
+enum { SCREE_TOPOLOGY_PARTS = 3 };
+scree_status scree_topology_count(const scree_mesh *mesh, const scree_adjacency *adjacency,
+                                  size_t part, scree_topology *topology, scree_error *error);
+/* Once all parts are done: the rest. Where shells are not counted by then the genus means nothing.
+ */
+scree_status scree_topology_finish(const scree_mesh *mesh, const scree_adjacency *adjacency,
+                                   scree_topology *topology, scree_error *error);

@@ -45,20 +45,18 @@ typedef struct verification {
   size_t *fault; /* per block, SIZE_MAX where there is none */
 } verification;
 
-static void find_bad_index(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void find_bad_index(void *context, scree_block block) {
   verification *v = context;
-  size_t i = begin;
-  while (i < end && v->mesh->triangles[i] < v->mesh->vertex_count) i++;
-  v->fault[block] = i < end ? i : SIZE_MAX;
+  size_t i = block.begin;
+  while (i < block.end && v->mesh->triangles[i] < v->mesh->vertex_count) i++;
+  v->fault[block.index] = i < block.end ? i : SIZE_MAX;
 }
 
-static void find_bad_coordinate(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void find_bad_coordinate(void *context, scree_block block) {
   verification *v = context;
-  size_t i = begin;
-  while (i < end && isfinite(v->mesh->positions[i])) i++;
-  v->fault[block] = i < end ? i : SIZE_MAX;
+  size_t i = block.begin;
+  while (i < block.end && isfinite(v->mesh->positions[i])) i++;
+  v->fault[block.index] = i < block.end ? i : SIZE_MAX;
 }
 
 static size_t first_fault(verification *v, size_t count, scree_block_function *find) {

@@ -6,8 +6,8 @@
  * counts only if that holds as well. A facet is flat where its height over its longest edge is not
  * above the rounding of its coordinates: an exact zero would be lost when units are converted. The
  * genus g follows from Euler-Poincare, V - E + F = 2 (shells - g). */
-#include "mesh/topology.h"
 #include "base/array.h"
+#include "mesh/adjacency.h"
 #include "mesh/mesh.h"
 #include "mesh/repair/shells.h"
 

@@ -15,10 +15,7 @@
 #include "mesh/weld.h"
 
 #include "base/parallel.h"
-#include "base/progress.h"
 #include "mesh/mesh.h"
-#include "mesh/weld_near.h"
-#include "mesh/weld_sort.h"
 
 #include <math.h>
 #include <string.h>
@@ -212,11 +209,10 @@ typedef struct keeping {
   bool all;
 } keeping;
 
-static void look_at_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void look_at_block(void *context, scree_block block) {
   keeping *k = context;
   bool degenerate = false;
-  for (size_t t = begin; t < end; t++) {
+  for (size_t t = block.begin; t < block.end; t++) {
     uint32_t v[3];
     load_triangle(k->renumbering, t, v);
     degenerate |= scree_names_twice(v);

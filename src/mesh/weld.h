@@ -26,3 +26,24 @@ typedef struct scree_corner_source {
 scree_status scree_weld_corners(const scree_corner_source *source, double tolerance,
                                 scree_mesh *mesh, size_t *degenerate_count, size_t *bad_corner,
                                 scree_error *error);
+
+/* ---- welding within a tolerance ---- */
+
+/* Unites the vertices of a canonical mesh that are linked by steps of at most tolerance times its
+ * bounding box diagonal, and brings the result into canonical order (see scree_mesh_weld). The mesh
+ * is untouched on failure. */
+scree_status scree_weld_near(scree_mesh *mesh, double tolerance, scree_error *error);
+
+/* ---- the canonical order of a mesh: vertices by position, triangles by index ---- */
+
+/* A mesh whose vertices and triangles stand in any order. All borrowed. */
+typedef struct scree_loose_mesh {
+  const double *positions; /* distinct, finite */
+  const uint8_t *used;     /* vertices with 0 are dropped; NULL: all are used */
+  size_t vertex_count;
+  const uint32_t *triangles; /* three different, used vertices each */
+  size_t triangle_count;
+} scree_loose_mesh;
+
+/* Writes the same mesh in canonical order (see scree_mesh_weld). */
+scree_status scree_weld_sort(const scree_loose_mesh *loose, scree_mesh *mesh, scree_error *error);

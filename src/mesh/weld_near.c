@@ -6,12 +6,11 @@
  * earlier ones in its cell and the 26 around it. Groups are kept by union-find whose root is the
  * smallest index. Crowded cells cost the product of their counts: the work is counted and refused
  * above a limit, rather than left to run for hours. */
-#include "mesh/weld_near.h"
+#include "mesh/weld.h"
 
 #include "base/vec.h"
 #include "mesh/adjacency.h"
 #include "mesh/mesh.h"
-#include "mesh/weld_sort.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,7 @@
  * and each run by itself. A vertex's key is its place between the least and largest x; it is
  * monotone, also after rounding, so that the outcome is the plain lexicographic order. A triangle's
  * is its smallest index. */
-#include "mesh/weld_sort.h"
+#include "mesh/weld.h"
 
 #include "base/parallel.h"
 #include "base/radix.h"
@@ -70,11 +70,10 @@ static size_t run_end(const sorting *s, size_t i) {
 }
 
 /* The runs that begin in a block. */
-static void place_runs(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void place_runs(void *context, scree_block block) {
   const sorting *s = context;
-  end = run_start(s, end);
-  for (size_t first = run_start(s, begin), next; first < end; first = next) {
+  block.end = run_start(s, block.end);
+  for (size_t first = run_start(s, block.begin), next; first < block.end; first = next) {
     next = run_end(s, first);
     s->place(s, first, next);
   }

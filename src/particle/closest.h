@@ -4,11 +4,11 @@
 #include "particle/particle.h"
 
 /* Where on a face the closest point lies. */
-typedef enum scree_region {
+typedef enum scree_closest_region {
   SCREE_REGION_INSIDE,
   SCREE_REGION_EDGE, /* + 0, 1, 2 for the edges 01, 12, 20 */
   SCREE_REGION_CORNER = SCREE_REGION_EDGE + 3,
-} scree_region;
+} scree_closest_region;
 
 /* The closest point when the projection is outside: the nearest of the three edges. */
 vec3 scree_closest_on_border(const scree_face *face, vec3 p, int *region);

@@ -17,14 +17,107 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/rows.h"
+#include "base/unit.h"
 #include "mesh/io/text.h"
 #include "mesh/io/write.h"
 #include "mesh/weld.h"
-#include "particle/columns.h"
 #include "particle/particle.h"
 
 #include <math.h>
 #include <string.h>
+
+/* The columns of a table of spheres, as its first line names them. */
+
+typedef struct scree_columns {
+  size_t count;    /* of columns; 0: no line names them, and they are x, y, z, radius */
+  size_t at[4];    /* which of them is x, y, z and the size */
+  double units[4]; /* that the names say, as "x (mm)", in metres; 0: none */
+  double share;    /* of the size that is the radius: 1, or 0.5 of a diameter */
+  char separator;
+} scree_columns;
+
+typedef enum role { ROLE_X, ROLE_Y, ROLE_Z, ROLE_RADIUS, ROLE_DIAMETER, ROLE_NONE } role;
+
+/* Letters of the name in lower case and its digits. */
+static void simplify(const char *cell, char name[24]) {
+  size_t n = 0;
+  for (; *cell && n < 23; cell++) {
+    char c = *cell;
+    if (c >= 'A' && c <= 'Z') c = (char)(c - 'A' + 'a');
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) name[n++] = c;
+  }
+  name[n] = 0;
+}
+
+static role role_of(const char *name) {
+  static const struct {
+    const char *name;
+    role role;
+  } names[] = {{"r", ROLE_RADIUS},      {"rad", ROLE_RADIUS},       {"radius", ROLE_RADIUS},
+               {"radii", ROLE_RADIUS},  {"d", ROLE_DIAMETER},       {"dia", ROLE_DIAMETER},
+               {"diam", ROLE_DIAMETER}, {"diameter", ROLE_DIAMETER}};
+  static const char *const before[] = {"",       "c",      "p",     "pos",    "position",
+                                       "centre", "center", "coord", "sphere", "pebble"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    size_t length = strlen(name), tail = strlen(names[i].name);
+    if (!strcmp(name, names[i].name) ||
+        (tail > 2 && length > tail && !strcmp(name + length - tail, names[i].name)))
+      return names[i].role;
+  }
+  for (size_t i = 0; i < sizeof before / sizeof *before; i++) {
+    size_t length = strlen(before[i]);
+    if (strlen(name) >= length + 1 && !strncmp(name, before[i], length) && name[length] >= 'x' &&
+        name[length] <= 'z' && (!name[length + 1] || !strcmp(name + length + 1, "coordinate")))
+      return (role)(name[length] - 'x');
+    if (strlen(name) == length + 1 && name[0] >= 'x' && name[0] <= 'z' &&
+        !strcmp(name + 1, before[i]))
+      return (role)(name[0] - 'x');
+  }
+  return ROLE_NONE;
+}
+
+/* Whether the row names x, y, z and radius or diameter. Names that mean nothing here are passed
+ * over. False with the reason where one is missing or stands twice, "" where there is none of
+ * them. */
+static bool columns_name(const scree_text_rows *rows, scree_columns *columns, char reason[160]) {
+  static const char *const words[] = {"x", "y", "z", "radius", "diameter"};
+  size_t found[5], known = 0;
+  double units[5] = {0};
+  for (int i = 0; i < 5; i++) found[i] = SIZE_MAX;
+  *columns = (scree_columns){.count = rows->count, .separator = rows->separator};
+  reason[0] = 0;
+  for (size_t i = 0; i < rows->count; i++) {
+    char name[24];
+    double unit_m = 1;
+    const char *unit = scree_cell_unit(rows->cells[i]);
+    simplify(rows->cells[i], name);
+    role r = role_of(name);
+    if (r == ROLE_NONE) continue;
+    if (found[r] != SIZE_MAX) {
+      snprintf(reason, 160, "columns %zu and %zu both say %s", found[r] + 1, i + 1, words[r]);
+      return false;
+    }
+    found[r] = i;
+    known++;
+    if (*unit && scree_unit_convert(unit, "m", &unit_m) == SCREE_UNIT_FITS) units[r] = unit_m;
+  }
+  if (known == 0) return false;
+  role size = found[ROLE_RADIUS] != SIZE_MAX ? ROLE_RADIUS : ROLE_DIAMETER;
+  columns->share = size == ROLE_RADIUS ? 1 : 0.5;
+  for (int i = 0; i < 4; i++) {
+    role r = i == 3 ? size : (role)i;
+    columns->at[i] = found[r];
+    columns->units[i] = units[r];
+    if (columns->at[i] != SIZE_MAX) continue;
+    snprintf(reason, 160,
+             "no column is named %s; a table of spheres needs x, y, z and radius or "
+             "diameter",
+             i == 3 ? "radius or diameter" : words[i]);
+    return false;
+  }
+  return true;
+}
 
 enum { MOST_SPHERES = 10000 }; /* their union is integrated in seconds */
 
@@ -35,11 +128,19 @@ typedef struct spheres {
   size_t count, centre_capacity, radius_capacity;
   scree_solid body; /* that it stands for */
   unsigned known;   /* what of it was read */
+  double unit_m;    /* metres per unit, so far */
   bool keep_unit;   /* whatever the table says */
+  bool is_own;      /* scree wrote it */
   bool is_begun;    /* a line was read that is no comment */
   double first_id;  /* of lines that begin with their number */
   scree_columns columns;
 } spheres;
+
+static const char *const sphere_columns[] = {"x", "y", "z", "the size"};
+
+static scree_status fail_spheres(const spheres *s, scree_error *error) {
+  return scree_fail_memory(error, s->count * 4 * sizeof(double), "the spheres of a clump");
+}
 
 static void free_spheres(spheres *s) {
   scree_free(s->centres);
@@ -81,149 +182,127 @@ static mat3 second_of(const double inertia[6]) {
   return m;
 }
 
-/* A line that begins with #: false where it begins as one of the body's does and does not go on so.
- */
+/* A comment; false where it begins as one of the body's does and does not go on so, in a table that
+ * scree wrote: others' comments may say anything. */
 static bool read_body(scree_text *t, spheres *s) {
   double values[6];
-  t->p++;
   scree_text_skip_blanks(t);
-  if (scree_text_at_line_end(t)) return true;
-  double unit = s->count || s->known || s->keep_unit ? 0 : scree_provenance_unit(t->p, t->end);
-  if (unit > 0) t->unit_m = unit;
+  double unit = scree_provenance_unit(t->p, t->end);
+  s->is_own = s->is_own || unit > 0;
+  if (unit > 0 && !s->count && !s->known && !s->keep_unit) s->unit_m = t->unit_m = unit;
   scree_token word = scree_text_next(t);
   if (scree_token_is(word, "volume")) {
+    if (!read_values(t, 1, 3, values) || !(*values > 0)) return !s->is_own;
+    s->body.volume = *values;
     s->known |= VOLUME;
-    return read_values(t, 1, 3, &s->body.volume) && s->body.volume > 0;
-  }
-  if (scree_token_is(word, "centroid")) {
-    s->known |= CENTROID;
-    if (!read_values(t, 3, 1, values)) return false;
+  } else if (scree_token_is(word, "centroid")) {
+    if (!read_values(t, 3, 1, values)) return !s->is_own;
     s->body.centre = vec3_load(values);
-  }
-  if (scree_token_is(word, "inertia")) {
-    s->known |= INERTIA;
-    if (!read_values(t, 6, 5, values)) return false;
-    s->body.second = second_of(values);
+    s->known |= CENTROID;
+  } else if (scree_token_is(word, "inertia")) {
+    if (!read_values(t, 6, 5, values)) return !s->is_own;
+    mat3 second = second_of(values);
     for (int k = 0; k < 3; k++)
-      if (!(s->body.second.m[k][k] > 0)) return false;
+      if (!(second.m[k][k] > 0)) return !s->is_own;
+    s->body.second = second;
+    s->known |= INERTIA;
   }
   return true;
 }
 
-static scree_status add_sphere(scree_text *t, const char *line, spheres *s, const double row[4]) {
+static const char *explain_sphere(const spheres *s, const double row[4], char reason[160]) {
   for (int k = 0; k < 4; k++)
-    if (!(fabs(row[k]) <= SCREE_COORDINATE_LIMIT))
-      return scree_text_fail(t, line, "numbers must be finite and at most %g m in size",
-                             SCREE_COORDINATE_LIMIT);
-  if (!(row[3] > 0))
-    return scree_text_fail(t, line, "the radius is %g m; it must be above 0", row[3]);
-  if (s->count == MOST_SPHERES)
-    return scree_text_fail(t, line, "more than %d spheres", MOST_SPHERES);
-  if (!push_sphere(s, row))
-    return scree_fail_memory(t->error, s->count * sizeof *row, "the spheres of a clump");
-  return SCREE_OK;
+    if (!(fabs(row[k]) <= SCREE_COORDINATE_LIMIT)) {
+      snprintf(reason, 160, "numbers must be finite and at most %g m in size",
+               SCREE_COORDINATE_LIMIT);
+      return reason;
+    }
+  if (!(row[3] > 0)) snprintf(reason, 160, "the radius is %g m; it must be above 0", row[3]);
+  if (s->count == MOST_SPHERES) snprintf(reason, 160, "more than %d spheres", MOST_SPHERES);
+  return row[3] > 0 && s->count < MOST_SPHERES ? NULL : reason;
 }
 
 /* A row without names: x, y, z, radius, or the line's number before them. */
-static scree_status read_bare_row(scree_text *t, spheres *s, const scree_token *cells, size_t count,
-                                  double row[4]) {
+static scree_status read_bare_row(const scree_text_rows *rows, spheres *s, double row[4]) {
+  size_t first = rows->count == 5 ? 1 : 0;
   double id = 0;
-  size_t first = count == 5 ? 1 : 0;
-  bool is_row = count == 4 || count == 5;
-  for (size_t i = 0; i < count && is_row; i++) {
-    const char *end = cells[i].begin + cells[i].length;
-    is_row = scree_number_parse(cells[i].begin, end, i < first ? &id : &row[i - first]) == end;
-  }
-  if (is_row && first && s->count == 0) s->first_id = id;
-  if (is_row &&
-      (!first || (id == s->first_id + (double)s->count && (s->first_id == 0 || s->first_id == 1))))
+  if (rows->count != 4 + first)
+    return scree_rows_fail(rows, "must be x, y, z, radius of a sphere; other columns are named in "
+                                 "a first line, as `id,x,y,z,diameter`");
+  if (first) SCREE_TRY(scree_rows_number(rows, 0, "the first of five numbers", &id));
+  for (size_t k = 0; k < 4; k++)
+    SCREE_TRY(scree_rows_number(rows, first + k, sphere_columns[k], &row[k]));
+  if (first && s->count == 0) s->first_id = id;
+  if (!first || (id == s->first_id + (double)s->count && (s->first_id == 0 || s->first_id == 1)))
     return SCREE_OK;
-  return scree_text_fail(t, cells->begin,
-                         "must be x, y, z, radius of a sphere; other columns are named in a first "
-                         "line, as `id,x,y,z,diameter`");
+  return scree_rows_fail(rows, "must be x, y, z, radius of a sphere; other columns are named in a "
+                               "first line, as `id,x,y,z,diameter`");
 }
 
-static scree_status read_named_row(scree_text *t, const spheres *s, const char *line,
-                                   const scree_token *cells, size_t count, double row[4]) {
-  static const char *const names[] = {"x", "y", "z", "the size"};
-  if (count != s->columns.count)
-    return scree_text_fail(t, line, "%zu columns, but the first line names %zu", count,
+static scree_status read_named_row(const scree_text_rows *rows, const spheres *s, double row[4]) {
+  if (rows->count != s->columns.count)
+    return scree_rows_fail(rows, "%zu columns, but the first line names %zu", rows->count,
                            s->columns.count);
-  for (int k = 0; k < 4; k++) {
-    scree_token cell = cells[s->columns.at[k]];
-    const char *end = cell.begin + cell.length;
-    if (cell.length == 0 || scree_number_parse(cell.begin, end, &row[k]) != end)
-      return scree_text_fail(t, line, "%s is '%.*s'; it must be a number with a decimal point",
-                             names[k], cell.length < 40 ? (int)cell.length : 40, cell.begin);
-  }
+  for (size_t k = 0; k < 4; k++)
+    SCREE_TRY(scree_rows_number(rows, s->columns.at[k], sphere_columns[k], &row[k]));
   row[3] *= s->columns.share;
   return SCREE_OK;
 }
 
-/* Whether the line names columns; it may be a comment. */
-static scree_status read_names(scree_text *t, spheres *s, const char *line, const char *end,
-                               bool is_comment) {
-  char reason[160];
+/* Takes the columns that the row names; false, with the reason, where it names none. */
+static bool take_names(const scree_text_rows *rows, spheres *s, char reason[160]) {
   scree_columns columns;
-  if (scree_columns_name(line, end, &columns, reason)) {
-    s->columns = columns;
-    if (columns.unit_m > 0 && !s->keep_unit) t->unit_m = columns.unit_m;
-  } else if (!is_comment) {
-    return scree_text_fail(t, line, "%s",
+  if (!columns_name(rows, &columns, reason)) return false;
+  s->columns = columns;
+  for (int k = 3; k >= 0 && !s->keep_unit; k--)
+    if (columns.units[k] > 0) s->unit_m = columns.units[k];
+  return true;
+}
+
+static scree_status read_row(scree_text_rows *rows, spheres *s) {
+  char reason[160];
+  double row[4] = {0};
+  bool is_first = !s->is_begun;
+  s->is_begun = true;
+  if (is_first && s->columns.count == 0 && !scree_rows_has_number(rows, 0)) {
+    if (take_names(rows, s, reason)) return SCREE_OK;
+    return scree_rows_fail(rows, "%s",
                            *reason ? reason
                                    : "must be x, y, z, radius of a sphere, "
                                      "or name its columns so");
   }
+  SCREE_TRY(s->columns.count ? read_named_row(rows, s, row) : read_bare_row(rows, s, row));
+  for (int k = 0; k < 4; k++)
+    row[k] *= s->columns.units[k] > 0 && !s->keep_unit ? s->columns.units[k] : s->unit_m;
+  if (explain_sphere(s, row, reason)) return scree_rows_fail(rows, "%s", reason);
+  return push_sphere(s, row) ? SCREE_OK : fail_spheres(s, rows->error);
+}
+
+/* Before all rows a comment may name the columns. */
+static scree_status read_comment(scree_text_rows *rows, spheres *s) {
+  char reason[160];
+  scree_text t = {rows->comment, rows->comment, rows->comment + strlen(rows->comment),
+                  rows->name,    s->unit_m,     rows->error};
+  if (!read_body(&t, s))
+    return scree_rows_fail(rows, "must be the volume, centroid or inertia of a body");
+  if (s->is_begun || s->columns.count) return SCREE_OK;
+  scree_text_rows names = {.name = rows->name, .line = rows->line};
+  rows->comment += strspn(rows->comment, "#%/ ");
+  if (scree_rows_split(&names, rows->comment) == SCREE_OK && take_names(&names, s, reason))
+    rows->separator = names.separator;
   return SCREE_OK;
 }
 
-static const char *end_of_line(const scree_text *t) {
-  const char *p = t->p;
-  while (p < t->end && *p != '\n' && *p != '\r') p++;
-  return p;
-}
-
-static const char *comment_in(const char *line, const char *end) {
-  for (const char *p = line; p < end; p++)
-    if (*p == '#' || *p == '%' || (*p == '/' && p + 1 < end && p[1] == '/')) return p;
-  return end;
-}
-
-static scree_status read_line(scree_text *t, spheres *s, const char *line, const char *end) {
-  scree_token cells[SCREE_MOST_COLUMNS];
-  double row[4] = {0}, value;
-  scree_status status;
-  if (!s->is_begun && s->columns.count == 0 && !scree_number_parse(line, end, &value)) {
-    s->is_begun = true;
-    return read_names(t, s, line, end, false);
+static scree_status read_spheres(const char *name, char *bytes, size_t count, spheres *s,
+                                 scree_error *error) {
+  scree_text_rows rows;
+  SCREE_TRY(scree_rows_open(&rows, name, bytes, count, error));
+  for (bool there;;) {
+    SCREE_TRY(scree_rows_next(&rows, &there));
+    if (!there) break;
+    SCREE_TRY(rows.comment ? read_comment(&rows, s) : read_row(&rows, s));
   }
-  s->is_begun = true;
-  size_t count = scree_columns_split(line, end, s->columns.count ? s->columns.separator : 0, cells);
-  if (count > SCREE_MOST_COLUMNS)
-    return scree_text_fail(t, line, "more than %d columns", SCREE_MOST_COLUMNS);
-  status = s->columns.count ? read_named_row(t, s, line, cells, count, row)
-                            : read_bare_row(t, s, cells, count, row);
-  for (int k = 0; k < 4 && status == SCREE_OK; k++) row[k] *= t->unit_m;
-  return status == SCREE_OK ? add_sphere(t, line, s, row) : status;
-}
-
-static scree_status read_spheres(scree_text *t, spheres *s) {
-  while (t->p < t->end) {
-    scree_text_skip_blanks(t);
-    const char *line = t->p, *end = end_of_line(t), *comment = comment_in(line, end);
-    if (comment == line && line < end) {
-      if (*line == '#' && !read_body(t, s))
-        return scree_text_fail(t, line, "must be the volume, centroid or inertia of a body");
-      if (!s->is_begun) SCREE_TRY(read_names(t, s, line + strspn(line, "#%/ "), end, true));
-      t->p = line;
-    } else if (line < end) {
-      SCREE_TRY(read_line(t, s, line, comment));
-    }
-    t->p = end;
-    scree_text_skip_line(t);
-  }
-  if (s->count == 0) return scree_fail(t->error, SCREE_BAD_FILE, "%s: no spheres", t->name);
-  return SCREE_OK;
+  return s->count ? SCREE_OK : scree_fail(error, SCREE_BAD_FILE, "%s: no spheres", name);
 }
 
 /* ---- PFC ---- */
@@ -255,6 +334,7 @@ static bool is_pfc(scree_text text) {
 
 static scree_status read_pebbles(scree_text *t, spheres *s, const char *line) {
   double count, row[4];
+  char reason[160];
   if (!next_number(t, &count) || !(count >= 1 && count <= MOST_SPHERES))
     return scree_text_fail(t, line, "pebbles must be followed by their number, 1 to %d",
                            MOST_SPHERES);
@@ -264,7 +344,8 @@ static scree_status read_pebbles(scree_text *t, spheres *s, const char *line) {
         return scree_text_fail(t, line, "pebble %zu of %.0f must be radius, x, y, z", i + 1, count);
       row[(k + 3) % 4] *= t->unit_m;
     }
-    SCREE_TRY(add_sphere(t, line, s, row));
+    if (explain_sphere(s, row, reason)) return scree_text_fail(t, line, "%s", reason);
+    if (!push_sphere(s, row)) return fail_spheres(s, t->error);
   }
   return SCREE_OK;
 }
@@ -304,11 +385,11 @@ scree_status scree_particle_clump_read(const char *path, const scree_read_option
                                        scree_particle **particle, scree_error *error) {
   const scree_read_options o = options ? *options : scree_default_read_options();
   SCREE_CLEANUP(scree_free_at) char *bytes = NULL;
-  SCREE_CLEANUP(free_spheres) spheres s = {.keep_unit = o.ignore_comment_unit};
+  SCREE_CLEANUP(free_spheres) spheres s = {.unit_m = o.unit_m, .keep_unit = o.ignore_comment_unit};
   size_t count;
   SCREE_TRY(scree_file_read(path, o.max_bytes, &bytes, &count, error));
   scree_text text = {bytes, bytes, bytes + count, path, o.unit_m, error};
-  SCREE_TRY(is_pfc(text) ? read_pfc(&text, &s) : read_spheres(&text, &s));
+  SCREE_TRY(is_pfc(text) ? read_pfc(&text, &s) : read_spheres(path, bytes, count, &s, error));
   bool whole = s.known == (VOLUME | CENTROID | INERTIA);
   return scree_particle_clump_of(s.centres, s.radii, s.count, whole ? &s.body : NULL, particle,
                                  error);

@@ -14,8 +14,9 @@
 #include "particle/particle.h"
 
 #include "base/alloc.h"
+#include "base/radix.h"
 #include "mesh/mesh.h"
-#include "mesh/repair/sharp.h"
+#include "mesh/repair/repair.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -53,7 +54,7 @@ typedef struct extraction {
   bool *visited; /* edges already in a chain */
 } extraction;
 
-/* Of the core, where there is one. */
+/* The position of a vertex: of the core, where there is one. */
 static vec3 position_of(const scree_particle *p, uint32_t v) {
   return vec3_load(&(p->core ? p->core : p->mesh.positions)[3 * (size_t)v]);
 }
@@ -100,12 +101,7 @@ static scree_status make_faces(scree_particle *p, scree_error *error) {
   return SCREE_OK;
 }
 
-static int compare_halves(const void *a, const void *b) {
-  const half_edge *x = a, *y = b;
-  if (x->low != y->low) return x->low < y->low ? -1 : 1;
-  if (x->high != y->high) return x->high < y->high ? -1 : 1;
-  return x->face < y->face ? -1 : x->face > y->face;
-}
+SCREE_ORDER_BY3(compare_halves, half_edge, low, high, face)
 
 static void list_halves(const scree_mesh *mesh, half_edge *halves) {
   for (size_t f = 0; f < mesh->triangle_count; f++)

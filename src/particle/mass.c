@@ -144,7 +144,7 @@ static void rotate_away(mat3 *a, mat3 *v, int p, int q) {
   }
 }
 
-static quat quat_from_mat3(const mat3 *r) {
+quat quat_from_mat3(const mat3 *r) {
   double d[4] = {r->m[0][0] + r->m[1][1] + r->m[2][2], r->m[0][0] - r->m[1][1] - r->m[2][2],
                  r->m[1][1] - r->m[0][0] - r->m[2][2], r->m[2][2] - r->m[0][0] - r->m[1][1]};
   double q01 = r->m[2][1] - r->m[1][2], q02 = r->m[0][2] - r->m[2][0],

@@ -12,7 +12,9 @@ typedef struct scree_solid {
 
 /* Exact for a closed mesh. */
 scree_solid scree_solid_of_mesh(const scree_mesh *mesh);
-/* Of the union of spheres, by exact chords on a square grid of lines. */
+/* The solid of a union of spheres, by exact chords on a square grid of lines. */
 scree_solid scree_solid_of_spheres(const double *centres, const double *radii, size_t count);
+/* A rotation as a quaternion (Shepperd 1978). */
+quat quat_from_mat3(const mat3 *rotation);
 /* Principal moments of inertia, ascending, and the rotation from the principal frame. */
 void scree_solid_principal(const scree_solid *solid, vec3 *moments, quat *orientation);

@@ -7,6 +7,7 @@
 #include "particle/particle.h"
 
 #include "base/owned.h"
+#include "base/radix.h"
 #include "particle/closest.h"
 #include "particle/mass.h"
 
@@ -100,10 +101,7 @@ typedef struct wall_sample {
   double depth, area;
 } wall_sample;
 
-static int compare_walls(const void *a, const void *b) {
-  const wall_sample *x = a, *y = b;
-  return x->depth < y->depth ? -1 : x->depth > y->depth;
-}
+SCREE_ORDER_BY(compare_walls, wall_sample, depth)
 
 static const double least_across = 0.8; /* cosine, of walls that count as facing away */
 

@@ -58,7 +58,7 @@ struct scree_particle {
   bool hollow; /* wound inwards: what lies outside it is solid */
 };
 
-/* Of rims: cosine of contacts from a sheet's own side. */
+/* Cosine of contacts with a rim from the sheet's own side. */
 static const double scree_rim_slack = 0.3;
 /* Where a sheet ends: met from below and from both of its faces, a little more than half around:
  * what lies flat on the sheet and reaches beyond it presses on the rim squarely to either. */

@@ -64,9 +64,12 @@ typedef struct scan {
   double scale;
   scree_checksum checksum;
   bool repaired;
+  size_t part_count;
+  char part_name[64];
   double volume;      /* m3 */
   scree_curve *curve; /* NULL: not yet */
   double recommended; /* Rp; NaN: not yet */
+  int order;          /* of the curve in which that is */
 } scan;
 
 struct scree_shape_store {
@@ -124,15 +127,24 @@ static scree_status read_file(const scree_shape_spec *spec, double unit_m,
   double usual = o.unit_m;
   if (unit_m > 0) o.unit_m = unit_m;
   o.ignore_comment_unit = true;
+  o.part = spec->part;
   SCREE_TRY(scree_scan_read(spec->file, &o, &read, error));
   double unit = spec->unit_m > 0          ? spec->unit_m
                 : read.comment_unit_m > 0 ? read.comment_unit_m
                                           : usual;
   s->scale = read.states_unit ? 1 : unit / usual;
   s->checksum = read.checksum;
+  if (spec->thickness > 0) {
+    double thickness = unit_m > 0 ? spec->thickness : spec->thickness / s->scale;
+    return scree_mesh_thicken(&read.mesh, thickness, &s->mesh, error);
+  }
+  if (spec->part && !read.part_count) repair.keep_body = spec->part;
   SCREE_TRY(scree_mesh_prepare(&read.mesh, spec->no_repair ? NULL : &repair, progress, &read.mesh,
                                &report, error));
   s->repaired = !report.before.usable;
+  s->part_count =
+      read.part_count ? read.part_count : 1 + report.before.defects[SCREE_DEFECT_EXTRA_BODY];
+  memcpy(s->part_name, read.part_name, sizeof s->part_name);
   s->mesh = read.mesh;
   read.mesh = (scree_mesh){0};
   return SCREE_OK;
@@ -190,6 +202,7 @@ static scree_status choose(scan *s, const scree_progress *progress, scree_error 
   if (!isnan(s->recommended)) return SCREE_OK;
   SCREE_TRY(scree_choose(s->curve, &s->mesh, NULL, progress, &choice, error));
   s->recommended = choice.recommended.rp;
+  s->order = choice.order;
   scree_choice_free(&choice);
   return SCREE_OK;
 }
@@ -206,10 +219,12 @@ static scree_status decimate(const scree_shape_spec *spec, scan *s, bool keeps,
   if (target && !keeps) o.stop_count = target;
   if (!s->curve)
     SCREE_TRY(scree_curve_build_scaled(&s->mesh, s->scale, &o, progress, &s->curve, error));
-  if (!target) {
+  const bool chosen = !target; /* else a level is that of the first order, whatever was chosen */
+  if (chosen) {
     SCREE_TRY(choose(s, progress, error));
     target = scree_choice_target(fmin(1, factor * s->recommended), triangles);
   }
+  SCREE_TRY(scree_curve_reorder(s->curve, chosen ? s->order : 0, error));
   return scree_curve_mesh(s->curve, scree_curve_find(s->curve, target), level, error);
 }
 
@@ -260,6 +275,8 @@ static scree_status from_scan(const scree_shape_spec *spec, scan *s, bool keeps,
   made->scan_volume = s->volume;
   made->recommended = s->recommended;
   made->repaired = s->repaired;
+  made->part_count = s->part_count;
+  memcpy(made->part_name, s->part_name, sizeof made->part_name);
   made->checksum = s->checksum;
   return SCREE_OK;
 }
@@ -286,10 +303,11 @@ static char *key_of(const scree_shape_spec *s, bool level) {
   const char *name = s->file ? s->file : s->sample ? s->sample : s->table ? s->table : "";
   size_t size = strlen(name) + sizeof text;
   char *key = scree_alloc(size, 1);
-  snprintf(text, sizeof text, "%d%d%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %llu %d %d",
-           s->file != NULL, s->sample != NULL, s->table != NULL, s->sphere, s->box[0], s->box[1],
-           s->box[2], s->unit_m, s->resolution, s->noise, (unsigned long long)s->sample_seed,
-           s->no_repair, (int)s->method);
+  snprintf(text, sizeof text,
+           "%d%d%d %zu %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %llu %d %d", s->file != NULL,
+           s->sample != NULL, s->table != NULL, s->part, s->thickness, s->sphere, s->box[0],
+           s->box[1], s->box[2], s->unit_m, s->resolution, s->noise,
+           (unsigned long long)s->sample_seed, s->no_repair, (int)s->method);
   if (key && level)
     snprintf(key, size, "%s %s %.200s %zu %zu", name, text, s->level ? s->level : "",
              s->triangle_count, s->spheres);

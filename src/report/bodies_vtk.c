@@ -1,7 +1,6 @@
-/* Bodies of a scene as instances: a point with pose, motion, force and stress for each, 97 bytes,
+/* Bodies of a scene as instances: a point with pose, motion, force and stress for each, 104 bytes,
  * and each shape once, for glyphs. */
 #include "base/alloc.h"
-#include "base/vec.h"
 #include "report/program.h"
 #include "report/shapes.h"
 #include "report/vtk.h"
@@ -13,8 +12,7 @@ enum { SPHERE_LEVEL = 2 };
 
 typedef struct instance {
   float orientation[4], velocity[3], spin[3], force[3], stress[6], size;
-  int32_t body;
-  uint8_t shape;
+  int32_t body, shape, fragment;
 } instance;
 
 static const scree_vtk_member members[] = {
@@ -25,12 +23,14 @@ static const scree_vtk_member members[] = {
     SCREE_VTK_MEMBER(instance, stress, "stress [Pa]", SCREE_VTK_FLOAT32, 6),
     SCREE_VTK_MEMBER(instance, size, "size [m]", SCREE_VTK_FLOAT32, 1),
     SCREE_VTK_MEMBER(instance, body, "body", SCREE_VTK_INT32, 1),
-    SCREE_VTK_MEMBER(instance, shape, "shape", SCREE_VTK_UINT8, 1),
+    SCREE_VTK_MEMBER(instance, shape, "shape", SCREE_VTK_INT32, 1),
+    SCREE_VTK_MEMBER(instance, fragment, "fragment", SCREE_VTK_INT32, 1),
 };
 
 typedef struct instances {
   const scree_world *world;
-  size_t *place; /* of each body of the world among the rows; SIZE_MAX: it was removed */
+  const size_t *fragment; /* of each body */
+  size_t *place;          /* of each body of the world among the rows; SIZE_MAX: it was removed */
   float *points;
   instance *rows;
 } instances;
@@ -55,7 +55,8 @@ static void fill(const instances *s, const scree_scene *scene) {
     put(row->spin, state.angular_velocity, 3);
     row->size = (float)m.size;
     row->body = (int32_t)b;
-    row->shape = (uint8_t)scree_scene_body_shape(scene, b);
+    row->shape = (int32_t)scree_scene_body_shape(scene, b);
+    row->fragment = (int32_t)s->fragment[b];
     s->place[b] = at++;
   }
 }
@@ -101,15 +102,13 @@ static bool feel_contact(void *context, const scree_contact *c) {
 scree_status scree_scene_bodies_vtp_write(const scree_scene *scene, const char *path,
                                           bool overwrite, scree_error *error) {
   const scree_world *world = scree_scene_view(scene);
-  size_t shapes = 0, count = scree_world_live_count(world);
-  while (scree_scene_shape_name(scene, shapes)) shapes++;
-  if (shapes > 256)
-    return scree_fail(error, SCREE_LIMIT, "%s: %zu shapes; a frame of instances has at most 256",
-                      path, shapes);
+  size_t count = scree_world_live_count(world);
+  SCREE_SCRATCH(size_t, fragment, scree_world_body_count(world), error);
   SCREE_SCRATCH(size_t, place, scree_world_body_count(world), error);
   SCREE_SCRATCH(float, points, 3 * count, error);
   SCREE_SCRATCH_ZERO(instance, rows, count + 1, error); /* the last is of bodies that are gone */
-  instances s = {world, place, points, rows};
+  instances s = {world, fragment, place, points, rows};
+  (void)scree_world_fragments(world, fragment);
   fill(&s, scene);
   SCREE_TRY(scree_world_visit_contacts(world, feel_contact, &s, error));
   const scree_vtk_rows table = SCREE_VTK_ROWS(rows, true, members);

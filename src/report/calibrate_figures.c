@@ -170,7 +170,7 @@ static scree_status write_text(const void *result, const char *path, bool overwr
                                scree_error *error) {
   scree_output output;
   SCREE_TRY(scree_output_open(path, overwrite, &output, error));
-  scree_calibration_print(result, output.stream);
+  scree_calibration_print(result, true, output.stream);
   return scree_output_commit(&output, error);
 }
 
@@ -181,13 +181,15 @@ scree_status scree_calibration_report_write(const scree_calibration_result *resu
                                             {"calibration.txt", write_text},
                                             {"history", draw_history}};
   static const scree_product of_fit[] = {{"calibration.json", scree_calibration_json_write},
-                                         {"samples.csv", scree_calibration_csv_write},
                                          {"calibration.txt", write_text},
+                                         {"samples.csv", scree_calibration_csv_write},
                                          {"corner", draw_corner},
                                          {"answers", draw_answers},
                                          {"history", draw_history}};
-  return result->is_search ? scree_products_write(of_search, sizeof of_search / sizeof *of_search,
-                                                  result, folder, true, error)
-                           : scree_products_write(of_fit, sizeof of_fit / sizeof *of_fit, result,
-                                                  folder, true, error);
+  if (result->is_search)
+    return scree_products_write(of_search, sizeof of_search / sizeof *of_search, result, folder,
+                                true, error);
+  /* where nothing is fitted there is nothing to draw but the answers */
+  size_t count = result->agreement == SCREE_AGREEMENT_NO ? 2 : sizeof of_fit / sizeof *of_fit;
+  return scree_products_write(of_fit, count, result, folder, true, error);
 }

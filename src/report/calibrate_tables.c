@@ -1,19 +1,24 @@
 /* A calibration's results as text, JSON and CSV. */
 #include "base/file.h"
+#include "base/platform.h"
+#include "base/quote.h"
 #include "report/csv.h"
 #include "report/json.h"
 #include "report/program.h"
+#include "report/provenance.h"
 
 #include <math.h>
 #include <string.h>
 
 /* ---- text ---- */
 
+static const double usual_half = 1.645; /* of a normal value, 90 % */
+
 static const char *plural(size_t count) {
   return count == 1 ? "" : "s";
 }
 
-static void print_head(const scree_calibration_result *r, FILE *s) {
+static void print_counts(const scree_calibration_result *r, FILE *s) {
   const scree_calibration_progress *p = &r->progress;
   char title[300];
   snprintf(title, sizeof title, "%.290s", r->title);
@@ -25,6 +30,10 @@ static void print_head(const scree_calibration_result *r, FILE *s) {
           r->stopped                           ? r->stopped
           : p->done + p->failed < p->run_count ? "not ended yet"
                                                : "the next are to be planned");
+}
+
+static void print_head(const scree_calibration_result *r, FILE *s) {
+  print_counts(r, s);
   for (size_t i = 0; i < r->failure_count && i < 5; i++) fprintf(s, "failed: %s\n", r->failures[i]);
 }
 
@@ -107,7 +116,7 @@ static void print_check(const scree_calibration_result *r, FILE *s) {
     if (!begun) {
       fputs("\nchecked by runs at", s);
       for (size_t k = 0; k < r->parameter_count; k++)
-        fprintf(s, "%s %s %.4g", k ? "," : "", r->parameters[k].name, r->parameters[k].mean);
+        fprintf(s, "%s %s %.4g", k ? "," : "", r->parameters[k].name, r->parameters[k].nearest);
       fprintf(s, "; all together expected with %g %%\n", 100 * r->confidence);
       begun = true;
     }
@@ -117,18 +126,25 @@ static void print_check(const scree_calibration_result *r, FILE *s) {
   }
 }
 
-static void print_advice(const scree_calibration_result *r, FILE *s) {
-  bool all = true;
-  for (size_t k = 0; k < r->parameter_count; k++) all = all && r->parameters[k].identified;
-  if (r->advice_count == 0) return;
-  const scree_advice *best = &r->advice[0];
-  fprintf(s, "\n%s %s, measured %zu time%s more, would tell most: ",
-          all ? "all parameters are identified;" : "of the tests in the file,", best->name,
-          best->repeat_count, plural(best->repeat_count));
-  for (size_t k = 0; k < r->parameter_count; k++)
-    fprintf(s, "%s%s to %.0f %% of its range", k ? ", " : "", r->parameters[k].name,
-            100 * best->narrowed[k]);
-  fputs("\n", s);
+/* Each measurement left out in turn. */
+static void print_refits(const scree_calibration_result *r, FILE *s) {
+  char hint[200];
+  for (size_t i = 0; i < r->refit_count; i++) {
+    const scree_refit *f = &r->refits[i];
+    fprintf(s, "\nwithout %s the others %s:", f->without, f->fits ? "agree" : "do not agree");
+    for (size_t k = 0; f->fits && k < r->parameter_count; k++)
+      fprintf(s, "%s %s %.4g (%.4g to %.4g)", k ? "," : "", r->parameters[k].name, f->nearest[k],
+              f->low[k], f->high[k]);
+    if (!isnan(f->value_low)) fprintf(s, "; it would be %.5g to %.5g", f->value_low, f->value_high);
+    for (size_t q = 0; !f->fits && q < r->answer_count; q++)
+      if (r->answers[q].measured && !isnan(f->answers[q]) &&
+          strcmp(r->answers[q].name, f->without) != 0)
+        fprintf(s, " %s %.5g for %.5g", r->answers[q].name, f->answers[q], r->answers[q].value);
+    putc('\n', s);
+  }
+  fputs("\nusually missing:\n", s);
+  for (size_t i = 0; i < scree_calibration_hints(r, i, hint, sizeof hint); i++)
+    fprintf(s, "  %s\n", hint);
 }
 
 static void print_search(const scree_calibration_result *r, FILE *s) {
@@ -141,37 +157,114 @@ static void print_search(const scree_calibration_result *r, FILE *s) {
     fprintf(s, "%12.5g  [%12.5g, %12.5g] %6.0f %% %5zu%s\n", c->mean, c->low, c->high,
             100 * c->allowed, c->run_count, i == 0 ? "  best" : "");
   }
-  fprintf(s, "intervals of %g %% of the mean; allowed: probability that all limits hold\n",
-          100 * r->confidence);
-  if (r->setting_count && r->settings[0].allowed < 0.5)
+  fprintf(
+      s,
+      "intervals of %g %% of the mean, by runs at the best; allowed: probability that all limits "
+      "hold\n",
+      100 * r->confidence);
+  if (r->setting_count && r->settings[0].allowed < r->confidence)
     fputs("no setting that was tried likely keeps the limits; the first comes nearest\n", s);
 }
 
-void scree_calibration_print(const scree_calibration_result *result, FILE *stream) {
-  print_head(result, stream);
+/* ---- the answer ---- */
+
+enum { MOST_TARGETS = 3, LINE = 110 };
+
+/* Broken at blanks. */
+static void print_wrapped(const char *text, FILE *s) {
+  while (*text) {
+    size_t length = strlen(text), end = length;
+    if (length > LINE)
+      for (end = LINE; end > 0 && text[end] != ' ';) end--;
+    if (end == 0) end = length;
+    fprintf(s, "%.*s\n", (int)end, text);
+    text += end + strspn(text + end, " ");
+  }
+}
+
+/* What was measured beside what runs at the nearest setting gave. */
+static void print_targets(const scree_calibration_result *r, FILE *s) {
+  size_t shown = 0, left = 0;
+  for (size_t i = 0; i < r->answer_count; i++) {
+    const scree_answer_result *a = &r->answers[i];
+    char name[40];
+    int digits = scree_words_decimals(a->gap_sd);
+    if (!a->measured || isnan(a->gap)) continue;
+    if (shown == MOST_TARGETS) {
+      left++;
+      continue;
+    }
+    if (shown++ == 0) fprintf(s, "%-24s %12s %12s  off by (90 %%)\n", "", "measured", "simulated");
+    scree_words_name(a->name, name, sizeof name);
+    fprintf(s, "%-24s %12.*f %12.*f  %+.*f +- %.*f%s%s%s\n", name, digits, a->value, digits,
+            a->value + a->gap, digits, a->gap, digits, usual_half * a->gap_sd, *a->unit ? " " : "",
+            a->unit, a->met ? "" : "  missed");
+  }
+  if (left) fprintf(s, "and %zu more\n", left);
+}
+
+static void print_nearest(const scree_calibration_result *r, FILE *s) {
+  char hint[200];
+  fputs("nearest, not fitted:", s);
+  for (size_t k = 0; k < r->parameter_count; k++)
+    fprintf(s, "%s %s %.4g", k ? "," : "", r->parameters[k].name, r->parameters[k].nearest);
+  scree_calibration_hints(r, 0, hint, sizeof hint);
+  fprintf(s, "\nusually missing: %s\n", hint);
+}
+
+static void print_answer(const scree_calibration_result *r, FILE *s) {
+  scree_words words;
+  scree_calibration_words(r, &words);
+  fprintf(s, "%s.\n", words.state);
+  print_wrapped(words.answer, s);
+  print_wrapped(words.but, s);
+  if (!r->is_search) print_targets(r, s);
+  if (r->agreement == SCREE_AGREEMENT_NO) print_nearest(r, s);
+  if (*words.next) {
+    char next[600];
+    snprintf(next, sizeof next, "Next: %s", words.next);
+    print_wrapped(next, s);
+  }
+}
+
+void scree_calibration_print(const scree_calibration_result *result, bool all, FILE *stream) {
+  if (all) print_head(result, stream);
+  print_answer(result, stream);
+  if (!all) {
+    print_counts(result, stream);
+    return;
+  }
   if (result->is_search) {
     print_search(result, stream);
+    return;
+  }
+  if (result->agreement == SCREE_AGREEMENT_NO) {
+    print_refits(result, stream);
     return;
   }
   print_parameters(result, stream);
   print_trades(result, stream);
   print_answers(result, stream);
   print_check(result, stream);
-  print_advice(result, stream);
 }
 
 /* ---- JSON ---- */
 
 static void put_parameters(scree_json *json, const scree_calibration_result *r) {
+  char finding[200];
   SCREE_JSON_LIST (json, "parameters", k, r->parameter_count) {
     const scree_parameter_result *p = &r->parameters[k];
     scree_json_object(json, NULL);
     scree_json_text(json, "name", p->name);
+    scree_json_text(json, "unit", p->unit);
     scree_json_text(json, "scale", p->logarithmic ? "log" : "linear");
     SCREE_JSON_MEMBERS(json, p, from, to);
-    if (!r->is_search) {
+    if (!r->is_search) scree_json_number(json, "nearest", p->nearest);
+    if (!r->is_search && r->agreement != SCREE_AGREEMENT_NO) {
       SCREE_JSON_MEMBERS(json, p, mean, sd, median, low, high, narrowed, identified, at_least,
                          at_most);
+      scree_calibration_parameter_finding(p, finding, sizeof finding);
+      scree_json_text(json, "finding", finding);
     }
     scree_json_end(json);
   }
@@ -190,21 +283,28 @@ static void put_trades(scree_json *json, const scree_calibration_result *r) {
   }
 }
 
-static void put_answer(scree_json *json, const scree_answer_result *a) {
+static void put_answer(scree_json *json, const scree_calibration_result *r,
+                       const scree_answer_result *a) {
+  bool fits = r->agreement != SCREE_AGREEMENT_NO;
+  char finding[200];
+  scree_calibration_answer_finding(r, a, finding, sizeof finding);
   scree_json_object(json, NULL);
-  SCREE_JSON_MEMBERS(json, a, name, experiment, answer, measured, predicted, value, uncertainty,
-                     scatter);
+  scree_json_text(json, "finding", finding);
+  SCREE_JSON_MEMBERS(json, a, name, experiment, answer, unit, measured, predicted, value,
+                     uncertainty, scatter);
   scree_json_number(json, "repeats", a->repeat_count);
-  SCREE_JSON_MEMBERS(json, a, mean, low, high, single_low, single_high, noise);
+  if (fits) SCREE_JSON_MEMBERS(json, a, mean, low, high, single_low, single_high, inside);
+  SCREE_JSON_MEMBERS(json, a, noise, lowest, highest, gap, gap_sd, met);
+  if (!isnan(a->counted_low)) SCREE_JSON_MEMBERS(json, a, counted_low, counted_high);
   scree_json_count(json, "runs", a->run_count);
-  SCREE_JSON_MEMBERS(json, a, missing, inside);
+  scree_json_count(json, "missing", a->missing);
   scree_json_row_object(json, "check");
   scree_json_count(json, "runs", a->check_count);
   scree_json_number(json, "mean", a->check_mean);
   scree_json_number(json, "low", a->check_low);
   scree_json_number(json, "high", a->check_high);
   scree_json_end(json);
-  if (a->point_count) {
+  if (a->point_count && fits) {
     scree_json_numbers(json, "x", a->x, a->point_count);
     scree_json_numbers(json, "y", a->y, a->point_count);
     scree_json_numbers(json, "curve_mean", a->curve_mean, a->point_count);
@@ -247,28 +347,75 @@ static void put_settings(scree_json *json, const scree_calibration_result *r) {
   }
 }
 
+/* Whether a setting gives what was measured; null: not checked yet. */
+static void put_fit(scree_json *json, const scree_calibration_result *r) {
+  scree_words words;
+  char hint[200];
+  scree_calibration_words(r, &words);
+  scree_json_words(json, &words);
+  if (r->is_search) return;
+  if (r->agreement == SCREE_AGREEMENT_OPEN)
+    scree_json_text(json, "fits", NULL);
+  else
+    scree_json_bool(json, "fits", r->agreement == SCREE_AGREEMENT_YES);
+  SCREE_JSON_MEMBERS(json, r, misfit, misfit_limit);
+  if (r->agreement != SCREE_AGREEMENT_NO) return;
+  SCREE_JSON_LIST (json, "hints", i, scree_calibration_hints(r, SIZE_MAX, hint, sizeof hint)) {
+    scree_calibration_hints(r, i, hint, sizeof hint);
+    scree_json_text(json, NULL, hint);
+  }
+  SCREE_JSON_LIST (json, "refits", i, r->refit_count) {
+    const scree_refit *f = &r->refits[i];
+    scree_json_object(json, NULL);
+    SCREE_JSON_MEMBERS(json, f, without, fits);
+    scree_json_numbers(json, "nearest", f->nearest, r->parameter_count);
+    scree_json_numbers(json, "low", f->low, r->parameter_count);
+    scree_json_numbers(json, "high", f->high, r->parameter_count);
+    scree_json_numbers(json, "answers", f->answers, r->answer_count);
+    SCREE_JSON_MEMBERS(json, f, value_low, value_high);
+    scree_json_end(json);
+  }
+}
+
+static void put_runs(scree_json *json, const scree_calibration_result *r) {
+  SCREE_JSON_LIST (json, "all_runs", i, r->run_count) {
+    const scree_calibration_run *run = &r->runs[i];
+    scree_json_row_object(json, NULL);
+    SCREE_JSON_MEMBERS(json, run, experiment, seed, check);
+    scree_json_numbers(json, "values", run->values, r->parameter_count);
+    scree_json_numbers(json, "answers", run->answers, r->answer_count);
+    scree_json_end(json);
+  }
+}
+
 scree_status scree_calibration_json_write(const void *result, const char *path, bool overwrite,
                                           scree_error *error) {
   const scree_calibration_result *r = result;
   scree_json file, *json = &file;
   SCREE_TRY(scree_json_open(json, path, overwrite, error));
   size_t width = r->is_search ? 2 : 1 + r->parameter_count;
+  char finding[200];
   scree_json_object(json, NULL);
   SCREE_JSON_MEMBERS(json, r, title, version, seed, confidence, stopped);
+  put_fit(json, r);
+  scree_json_origin(json, &r->origin);
   scree_json_count(json, "rounds", r->progress.rounds);
   scree_json_count(json, "runs", r->progress.run_count);
   SCREE_JSON_MEMBERS(json, &r->progress, done, failed, budget, seconds, planning_seconds);
   put_parameters(json, r);
   if (!r->is_search) put_trades(json, r);
-  SCREE_JSON_LIST (json, "answers", i, r->answer_count) put_answer(json, &r->answers[i]);
+  SCREE_JSON_LIST (json, "answers", i, r->answer_count) put_answer(json, r, &r->answers[i]);
   if (r->is_search) {
     put_settings(json, r);
   } else {
     put_advice(json, r);
     put_samples(json, r);
   }
+  if (r->history_count) scree_calibration_history_finding(r, finding, sizeof finding);
+  scree_json_text(json, "history_finding", r->history_count ? finding : NULL);
   SCREE_JSON_LIST (json, "history", i, r->history_count)
     scree_json_numbers(json, NULL, r->history + i * width, width);
+  put_runs(json, r);
   SCREE_JSON_LIST (json, "failures", i, r->failure_count)
     scree_json_text(json, NULL, r->failures[i]);
   scree_json_end(json);
@@ -290,7 +437,7 @@ scree_status scree_calibration_csv_write(const void *what, const char *path, boo
   FILE *s = output.stream;
   for (size_t k = 0; k < r->parameter_count; k++) {
     if (k) putc(',', s);
-    scree_csv_text(s, r->parameters[k].name);
+    scree_quote(s, SCREE_QUOTE_CSV, r->parameters[k].name);
   }
   fputs(r->is_search ? ",mean,low,high,allowed,runs\n" : "\n", s);
   for (size_t i = 0; !r->is_search && i < r->sample_count; i++) {

@@ -1,5 +1,4 @@
 /* Checks and repairs as JSON. */
-#include "base/file.h"
 #include "report/json.h"
 #include "report/program.h"
 
@@ -28,7 +27,10 @@ static void json_repair(scree_json *json, const scree_repair_report *repair) {
     scree_json_count(json, scree_repair_action_name((scree_repair_action)i), repair->done[i]);
   scree_json_end(json);
   SCREE_JSON_MEMBERS(json, repair, seam_distance, area_before, area_after, volume_before,
-                     volume_after, filled_volume);
+                     volume_after, guessed_area, filled_volume, handle_length, moved_mean,
+                     moved_most);
+  scree_json_numbers(json, "handle_place", repair->handle_place, 3);
+  scree_json_numbers(json, "moved_place", repair->moved_place, 3);
   json_check(json, "after", &repair->after);
 }
 

@@ -6,9 +6,6 @@
 
 #include <math.h>
 
-/* choice_text.c: the one Rp of a set: the rule's, and the paper's beside a recommended count. */
-const scree_set_pick *scree_report_set_pick(const scree_choice_report *report);
-
 /* The grid's Rp, or the level's own where the grid's was not reached. */
 static inline double scree_report_pick_rp(const scree_choice *choice, const scree_pick *pick) {
   return fmax(pick->rp, (double)pick->triangle_count / (double)choice->triangle_count);

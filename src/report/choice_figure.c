@@ -54,22 +54,20 @@ static void add_robust_line(scree_drawing *d, const scree_choice *choice, bool c
   }
 }
 
-/* What each rule chooses: every figure marks them all. */
+/* What every figure marks. */
 static const struct {
-  scree_choice_rule rule;
+  size_t pick; /* where in scree_choice */
   const char *label;
   scree_marker marker;
-} picks[] = {{SCREE_RULE_PAPER, "paper's choice (grid minimum)", SCREE_MARKER_RING},
-             {SCREE_RULE_ROBUST, "robust choice", SCREE_MARKER_FRAME},
-             {SCREE_RULE_RECOMMENDED, "recommended", SCREE_MARKER_STAR}};
+} picks[] = {
+    {offsetof(scree_choice, paper), "paper's choice (grid minimum)", SCREE_MARKER_RING},
+    {offsetof(scree_choice, robust), "robust choice", SCREE_MARKER_FRAME},
+    {offsetof(scree_choice, recommended), "recommended", SCREE_MARKER_STAR},
+};
 enum { PICKS = sizeof picks / sizeof *picks };
 
-/* A robust choice's error is the worst at finer levels: the level's own is drawn. */
-static double pick_value(const scree_choice_report *report, const scree_choice *choice,
-                         const scree_pick *pick, bool criterion) {
-  double penalty =
-      report->options->weight * (double)pick->triangle_count / (double)choice->triangle_count;
-  return pick->level_eps_s + (criterion ? penalty : 0);
+static const scree_pick *pick_of(const scree_choice *choice, size_t which) {
+  return (const scree_pick *)(const void *)((const char *)choice + picks[which].pick);
 }
 
 static void add_picks(scree_drawing *d, const scree_choice_report *report, size_t which,
@@ -82,10 +80,10 @@ static void add_picks(scree_drawing *d, const scree_choice_report *report, size_
                                        .marker = picks[which].marker});
   for (size_t e = 0; at.x && e < report->entry_count; e++) {
     const scree_choice *choice = report->entries[e].choice;
-    const scree_pick *pick = scree_choice_pick(choice, picks[which].rule);
-    bool known = picks[which].rule != SCREE_RULE_RECOMMENDED || choice->fidelity;
+    const scree_pick *pick = pick_of(choice, which);
+    bool known = pick != &choice->recommended || choice->fidelity;
     at.x[e] = scree_report_pick_rp(choice, pick);
-    at.y[e] = known ? pick_value(report, choice, pick, criterion) : NAN;
+    at.y[e] = !known ? NAN : criterion ? pick->ip : pick->eps_s;
   }
 }
 
@@ -95,7 +93,7 @@ static double largest_rp(const scree_choice_report *report) {
   for (size_t e = 0; e < report->entry_count; e++) {
     const scree_choice *choice = report->entries[e].choice;
     for (size_t k = 0; k < PICKS; k++)
-      rp = fmax(rp, scree_report_pick_rp(choice, scree_choice_pick(choice, picks[k].rule)));
+      rp = fmax(rp, scree_report_pick_rp(choice, pick_of(choice, k)));
   }
   return rp / 0.75;
 }
@@ -121,8 +119,8 @@ static void fit_errors(const scree_choice_report *report, bool criterion, scree_
     find_range(choice->trace, choice->trace_count, rp_max, criterion, report->entry_count == 1,
                drawn);
     for (size_t k = 0; k < PICKS; k++) {
-      double value =
-          pick_value(report, choice, scree_choice_pick(choice, picks[k].rule), criterion);
+      const scree_pick *pick = pick_of(choice, k);
+      double value = criterion ? pick->ip : pick->eps_s;
       if (value > 0) drawn[0] = fmin(drawn[0], value);
       drawn[1] = fmax(drawn[1], value);
     }
@@ -153,10 +151,9 @@ static void add_panel(scree_drawing *d, const scree_choice_report *report, bool 
 static size_t set_guide(const scree_choice_report *report, char *text, size_t size,
                         scree_guide *guide) {
   if (report->entry_count < 2 || !report->set) return 0;
-  double rp = scree_report_set_pick(report)->rp;
+  double rp = report->set->paper.rp;
   char number[SCREE_NUMBER_SIZE];
-  snprintf(text, size, "%s for the set: %s",
-           report->rule == SCREE_RULE_ROBUST ? "robust" : "paper's", scree_rp_text(rp, number));
+  snprintf(text, size, "paper's for the set: %s", scree_rp_text(rp, number));
   *guide = (scree_guide){text, rp, false};
   return 1;
 }

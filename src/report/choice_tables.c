@@ -1,6 +1,7 @@
 /* A choice as JSON and CSV. Every object carries its provenance: version, command, options, input
  * checksum, unit, and for samples how they were made. */
 #include "base/file.h"
+#include "base/quote.h"
 #include "report/csv.h"
 #include "report/json.h"
 #include "report/program.h"
@@ -13,7 +14,8 @@ static const char *reference_name(scree_reference reference) {
 
 static void json_pick(scree_json *json, const char *key, const scree_pick *pick) {
   scree_json_row_object(json, key);
-  SCREE_JSON_MEMBERS(json, pick, rp, triangle_count, eps_s, ip, level_eps_s, area, volume);
+  SCREE_JSON_MEMBERS(json, pick, rp, triangle_count, eps_s, ip, worst_eps_s, robust_ip, area,
+                     volume);
   scree_json_count(json, "similar_fewest", pick->fewest);
   scree_json_count(json, "similar_most", pick->most);
   scree_json_end(json);
@@ -56,7 +58,7 @@ static void recommended_errors(const scree_choice *c, double errors[SCREE_SHAPE_
     errors[e] = scree_fidelity_error(c->fidelity, c->recommended_row, (scree_shape_error)e);
 }
 
-/* Of a choice without the errors of levels there is none. */
+/* Writes the recommended level; a choice without the errors of levels has none. */
 static void json_recommended(scree_json *json, const scree_choice_report *report, size_t entry) {
   const scree_choice *c = report->entries[entry].choice;
   const scree_fidelity *f = c->fidelity;
@@ -65,15 +67,15 @@ static void json_recommended(scree_json *json, const scree_choice_report *report
   recommended_errors(c, errors);
   scree_fidelity_farthest(f, c->recommended_row, at);
   scree_json_object(json, "recommended");
-  SCREE_JSON_MEMBERS(json, &c->recommended, rp, triangle_count, area, volume, level_eps_s);
+  SCREE_JSON_MEMBERS(json, &c->recommended, rp, triangle_count, area, volume, eps_s, ip);
   json_errors(json, "errors", errors);
   json_changes(json, f, c->recommended_row);
   scree_json_numbers(json, "farthest", at, 3);
   scree_json_text(json, "limited_by", scree_shape_error_name(c->limited_by));
-  scree_json_number(json, "largest_over_tolerance", c->recommended.ip);
+  scree_json_number(json, "limit_beyond", c->limit_beyond);
+  scree_json_number(json, "largest_over_tolerance", c->largest_over_tolerance);
   json_sentences(json, "warnings", report, entry, scree_choice_warnings);
   scree_json_end(json);
-  json_pick(json, "cost", &c->cost);
   scree_json_row_object(json, "scan");
   scree_json_number(json, "size", scree_fidelity_scan(f, SCREE_SCAN_LENGTH));
   scree_json_number(json, "noise", scree_fidelity_scan(f, SCREE_SCAN_NOISE));
@@ -107,7 +109,7 @@ static void json_best(scree_json *json, const scree_choice *choice, double weigh
     scree_json_row_object(json, scree_shape_error_name((scree_shape_error)e));
     SCREE_JSON_MEMBERS(json, level, rp, triangle_count);
     scree_json_number(json, "error", level->errors[e]);
-    scree_json_number(json, "ip", level->errors[e] + weight * level->rp_reached);
+    scree_json_number(json, "sum", level->errors[e] + weight * level->rp_reached);
     scree_json_end(json);
   }
   scree_json_end(json);
@@ -162,16 +164,11 @@ static void json_entry(scree_json *json, const scree_choice_report *report, size
   json_pick(json, "robust", &choice->robust);
   scree_json_bool(json, "paper_is_accident", choice->paper_is_accident);
   scree_json_text(json, "default", scree_choice_rule_name(report->rule));
-  json_pick(json, "plain", &choice->plain);
-  scree_json_bool(json, "plain_is_accident", choice->plain_is_accident);
-  json_pick(json, "smooth", &choice->smooth);
   json_noise(json, choice);
   json_best(json, choice, report->options->weight);
   scree_json_number(json, "reference_area", choice->reference_area);
   scree_json_count(json, "floor_triangle_count", choice->floor_count);
-  scree_json_count(json, "triangle_count_if_scanned_twice_as_fine",
-                   report->rule == SCREE_RULE_PAPER ? choice->paper_finer_count
-                                                    : choice->finer_count);
+  scree_json_count(json, "triangle_count_if_scanned_twice_as_fine", choice->paper_finer_count);
   json_source(json, entry);
   scree_json_maker(json, report->command_line);
   json_options(json, report);
@@ -205,11 +202,8 @@ static void json_set(scree_json *json, const scree_choice_report *report) {
     if (report->entries[i].choice->fidelity)
       scree_json_count(json, NULL, report->entries[i].choice->recommended.triangle_count);
   json_set_pick(json, "paper", &set->paper);
-  json_set_pick(json, "robust", &set->robust);
-  json_set_pick(json, "smooth", &set->smooth);
-  SCREE_JSON_MEMBERS(json, set, paper_spread, robust_spread);
-  scree_json_number(json, "triangle_ratio_if_scanned_twice_as_fine",
-                    report->rule == SCREE_RULE_PAPER ? set->paper_growth : set->robust_growth);
+  scree_json_number(json, "paper_spread", set->paper_spread);
+  scree_json_number(json, "triangle_ratio_if_scanned_twice_as_fine", set->paper_growth);
   scree_json_maker(json, report->command_line);
   json_options(json, report);
   scree_json_end(json);
@@ -230,8 +224,8 @@ scree_status scree_choice_json_write(const void *what, const char *path, bool ov
 /* ---- CSV ---- */
 
 static void csv_level(FILE *stream, const scree_choice_level *level) {
-  const double values[] = {level->area,        level->volume,    level->eps_s,    level->ip,
-                           level->worst_eps_s, level->robust_ip, level->smooth_ip};
+  const double values[] = {level->area, level->volume,      level->eps_s,
+                           level->ip,   level->worst_eps_s, level->robust_ip};
   scree_csv_number(stream, level->rp);
   putc(',', stream);
   if (level->triangle_count) fprintf(stream, "%zu", level->triangle_count);
@@ -239,10 +233,10 @@ static void csv_level(FILE *stream, const scree_choice_level *level) {
 }
 
 static const char LEVEL_HEADER[] =
-    "rp,triangle_count,area_m2,volume_m3,eps_s,ip,worst_eps_s,robust_ip,smooth_ip";
+    "rp,triangle_count,area_m2,volume_m3,eps_s,ip,worst_eps_s,robust_ip";
 
 static void csv_start(FILE *stream, const char *file, size_t triangle_count) {
-  scree_csv_text(stream, file);
+  scree_quote(stream, SCREE_QUOTE_CSV, file);
   putc(',', stream);
   if (triangle_count) fprintf(stream, "%zu", triangle_count);
   putc(',', stream);
@@ -263,11 +257,10 @@ static scree_choice_level csv_pick(const scree_pick *pick) {
                               .triangle_count = pick->triangle_count,
                               .area = pick->area,
                               .volume = pick->volume,
-                              .eps_s = pick->level_eps_s,
-                              .ip = NAN,
-                              .worst_eps_s = NAN,
-                              .robust_ip = NAN,
-                              .smooth_ip = NAN};
+                              .eps_s = pick->eps_s,
+                              .ip = pick->ip,
+                              .worst_eps_s = pick->worst_eps_s,
+                              .robust_ip = pick->robust_ip};
 }
 
 static void no_errors(double errors[SCREE_SHAPE_ERROR_COUNT]) {
@@ -279,9 +272,6 @@ static void csv_robust(FILE *stream, const scree_choice_entry *entry) {
   const scree_pick *pick = &choice->robust;
   scree_choice_level level = csv_pick(pick);
   double errors[SCREE_SHAPE_ERROR_COUNT];
-  level.ip = pick->level_eps_s + (pick->ip - pick->eps_s);
-  level.worst_eps_s = pick->eps_s;
-  level.robust_ip = pick->ip;
   no_errors(errors);
   errors[SCREE_ERROR_VOLUME] = fabs(pick->volume - choice->volume) / fabs(choice->volume);
   csv_start(stream, entry->file, choice->triangle_count);
@@ -301,15 +291,14 @@ static void csv_recommended(FILE *stream, const scree_choice_entry *entry) {
 }
 
 /* The set's choice is an Rp and a mean: of no file, of no one count. */
-static void csv_set(FILE *stream, const scree_set_pick *pick, bool robust) {
+static void csv_set(FILE *stream, const scree_set_pick *pick) {
   scree_choice_level level =
-      csv_pick(&(scree_pick){.rp = pick->rp, .area = NAN, .volume = NAN, .level_eps_s = NAN});
+      csv_pick(&(scree_pick){pick->rp, 0, 0, NAN, NAN, NAN, pick->ip, NAN, NAN, 0, 0});
   double errors[SCREE_SHAPE_ERROR_COUNT];
-  *(robust ? &level.robust_ip : &level.ip) = pick->ip;
   no_errors(errors);
   csv_start(stream, "", 0);
   csv_level(stream, &level);
-  csv_finish(stream, robust ? "set robust" : "set paper", errors);
+  csv_finish(stream, "set paper", errors);
 }
 
 static void csv_entry(FILE *stream, const scree_choice_entry *entry) {
@@ -334,10 +323,7 @@ scree_status scree_choice_csv_write(const void *what, const char *path, bool ove
     fprintf(output.stream, ",error_%s", scree_shape_error_name((scree_shape_error)e));
   putc('\n', output.stream);
   for (size_t k = 0; k < report->entry_count; k++) csv_entry(output.stream, &report->entries[k]);
-  if (report->set && report->entry_count > 1) {
-    csv_set(output.stream, &report->set->paper, false);
-    csv_set(output.stream, &report->set->robust, true);
-  }
+  if (report->set && report->entry_count > 1) csv_set(output.stream, &report->set->paper);
   return scree_output_commit(&output, error);
 }
 

@@ -75,10 +75,6 @@ static bool is_recommended(const scree_choice_report *report, const scree_choice
   return report->rule == SCREE_RULE_RECOMMENDED && choice->fidelity;
 }
 
-const scree_set_pick *scree_report_set_pick(const scree_choice_report *report) {
-  return report->rule == SCREE_RULE_ROBUST ? &report->set->robust : &report->set->paper;
-}
-
 /* ---- The answer ---- */
 
 static const char *error_words(scree_shape_error which) {
@@ -112,24 +108,25 @@ static bool is_distance(scree_shape_error which) {
   return which == SCREE_ERROR_MEAN || which == SCREE_ERROR_HAUSDORFF;
 }
 
-/* What decides, and how much of it is allowed: a distance in mm. */
+/* What the next coarser level is refused for, and how much of it is allowed: a distance in mm. */
 static void say_limit(sentences *s, const scree_choice_report *report, const scree_choice *c) {
   double error = scree_fidelity_error(c->fidelity, c->recommended_row, c->limited_by),
          most = scree_choice_tolerance(c, report->options, c->limited_by);
-  const char *how = error > most / 2
-                        ? "Limited by"
-                        : "No coarser level keeps all tolerances; nearest to its own is";
+  const bool last = isnan(c->limit_beyond);
+  const char *how = last ? "There is no coarser level; nearest to its tolerance is" : "Limited by",
+             *where = last ? "" : " at the next coarser level";
   char share[NUMBER_BYTES], limit[NUMBER_BYTES];
-  if (error < ROUNDING)
-    say(s, "The surface is the scan's; no coarser level keeps all tolerances.");
-  else if (is_distance(c->limited_by))
-    say(s, "%s %s, %s mm of %s mm allowed, which is %s of the body's size of %s mm.", how,
-        error_words(c->limited_by), LENGTH(c, error), LENGTH(c, most),
+  if (error < ROUNDING) say(s, "The surface is the scan's; no coarser level keeps all tolerances.");
+  if (!last) error = c->limit_beyond;
+  if (error < ROUNDING) return;
+  if (is_distance(c->limited_by))
+    say(s, "%s %s, %s mm%s of %s mm allowed, which is %s of the body's size of %s mm.", how,
+        error_words(c->limited_by), LENGTH(c, error), where, LENGTH(c, most),
         scree_percent_text(most, limit),
         NUMBER(1e3 * scree_fidelity_scan(c->fidelity, SCREE_SCAN_LENGTH), 3));
   else
-    say(s, "%s %s, %s of %s allowed.", how, error_words(c->limited_by),
-        scree_percent_text(error, share), scree_percent_text(most, limit));
+    say(s, "%s %s, %s%s of %s allowed.", how, error_words(c->limited_by),
+        scree_percent_text(error, share), where, scree_percent_text(most, limit));
 }
 
 /* The power of ten, in m, that a place on a body of that size is told to: a thousandth or so. */
@@ -177,8 +174,7 @@ static void say_recommended(sentences *s, const scree_choice_report *report,
   double at[3], foil = foil_thickness(c), mean = scree_fidelity_error(f, row, SCREE_ERROR_MEAN),
                 thinnest = scree_fidelity_change(f, row, SCREE_CHANGE_THINNEST),
                 step = place_step(scree_fidelity_scan(f, SCREE_SCAN_LENGTH));
-  char count[NUMBER_BYTES], rp[NUMBER_BYTES], other[NUMBER_BYTES], share[NUMBER_BYTES],
-      walls[96] = "";
+  char count[NUMBER_BYTES], rp[NUMBER_BYTES], share[NUMBER_BYTES], walls[96] = "";
   scree_fidelity_farthest(f, row, at);
   if (foil > 0)
     snprintf(walls, sizeof walls, "in the mean %s of this foil's thickness of about %s mm; ",
@@ -191,73 +187,68 @@ static void say_recommended(sentences *s, const scree_choice_report *report,
     snprintf(walls, sizeof walls, "thinnest walls %s mm, %s %%; ",
              NUMBER(1e3 * (1 + thinnest) * scree_fidelity_scan(f, SCREE_SCAN_THINNEST), 2),
              CHANGE(thinnest));
-  say(s,
-      "Use %s triangles (Rp = %s): surface %s mm off in the mean, %s mm at worst (at %s, %s, %s "
-      "mm); %sinertia %s %%, area %s %%.",
+  say(s, "Use %s triangles (Rp = %s): surface %s mm off in the mean, %s mm at worst.",
       scree_count_text(pick->triangle_count, count), scree_rp_text(pick->rp, rp), LENGTH(c, mean),
-      LENGTH(c, scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF)), PLACE(at[0], step),
+      LENGTH(c, scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF)));
+  say(s, "Worst at %s, %s, %s mm; %sinertia %s %%, area %s %%.", PLACE(at[0], step),
       PLACE(at[1], step), PLACE(at[2], step), walls,
       CHANGE(scree_fidelity_change(f, row, SCREE_CHANGE_INERTIA)),
       CHANGE(pick->area / c->area - 1));
   say_widths(s, "", c);
   say_limit(s, report, c);
-  double slower = cost_of(pick->triangle_count) / cost_of(c->paper.triangle_count);
-  if (slower >= 1.05)
-    say(s,
-        "In a flowing heap it takes about %s times as long to simulate as the paper's %s "
-        "triangles.",
-        NUMBER(slower, 2), scree_count_text(c->paper.triangle_count, other));
+}
+
+bool scree_choice_cost(const scree_choice *c, char text[SCREE_CHOICE_SENTENCE_BYTES]) {
+  double slower = cost_of(c->recommended.triangle_count) / cost_of(c->paper.triangle_count);
+  char other[NUMBER_BYTES];
+  snprintf(text, SCREE_CHOICE_SENTENCE_BYTES,
+           "In a flowing heap it takes about %s times as long to simulate as the paper's %s "
+           "triangles.",
+           NUMBER(slower, 2), scree_count_text(c->paper.triangle_count, other));
+  return slower >= 1.05;
 }
 
 static void say_by_area(sentences *s, const scree_choice_report *report, const scree_choice *c) {
   const scree_pick *pick = scree_choice_pick(c, report->rule);
-  bool paper = report->rule == SCREE_RULE_PAPER;
   char count[NUMBER_BYTES], rp[NUMBER_BYTES], percent[NUMBER_BYTES], low[NUMBER_BYTES],
       high[NUMBER_BYTES];
   say(s, "Use %s triangles (Rp = %s): area within %s of the scan's.",
       scree_count_text(pick->triangle_count, count),
-      scree_rp_text(scree_report_pick_rp(c, pick), rp),
-      scree_percent_text(paper ? pick->level_eps_s : pick->eps_s, percent));
+      scree_rp_text(scree_report_pick_rp(c, pick), rp), scree_percent_text(pick->eps_s, percent));
   if (pick->most > pick->fewest)
     say(s, "From %s up to %s triangles there are levels with an Ip within a tenth of it.",
         scree_count_text(pick->fewest, low), scree_count_text(pick->most, high));
 }
 
-/* The level of an object at the set's Rp, which lies on the grid by the paper's rule and on the
- * trace by the robust one. */
-static const scree_choice_level *level_at(const scree_choice_report *report, size_t index,
-                                          double rp) {
-  const scree_choice *c = report->entries[index].choice;
-  bool grid = report->rule != SCREE_RULE_ROBUST;
-  const scree_choice_level *levels = grid ? c->levels : c->trace;
-  size_t count = grid ? c->level_count : c->trace_count, k = 0;
-  while (k + 1 < count && levels[k].rp < rp * (1 - 1e-9)) k++;
-  return &levels[k];
+/* The level of an object at the set's Rp, which lies on the grid. */
+static const scree_choice_level *level_at(const scree_choice *c, double rp) {
+  size_t k = 0;
+  while (k + 1 < c->level_count && c->levels[k].rp < rp * (1 - 1e-9)) k++;
+  return &c->levels[k];
 }
 
 /* Counts and errors at the set's Rp. */
-static void say_common_rp(sentences *s, const scree_choice_report *report, const char *begin,
-                          const char *end) {
+static void say_common_rp(sentences *s, const scree_choice_report *report) {
   size_t least = SIZE_MAX, most = 0;
-  double worst = 0, rp = scree_report_set_pick(report)->rp;
+  double worst = 0, rp = report->set->paper.rp;
   for (size_t i = 0; i < report->entry_count; i++) {
-    const scree_choice_level *level = level_at(report, i, rp);
+    const scree_choice_level *level = level_at(report->entries[i].choice, rp);
     if (level->triangle_count < least) least = level->triangle_count;
     if (level->triangle_count > most) most = level->triangle_count;
-    worst = fmax(worst, report->rule == SCREE_RULE_ROBUST ? level->worst_eps_s : level->eps_s);
+    worst = fmax(worst, level->eps_s);
   }
   char rp_buffer[NUMBER_BYTES], low[NUMBER_BYTES], high[NUMBER_BYTES], percent[NUMBER_BYTES];
-  say(s, "%s Rp = %s for the set: %s%s%s triangles%s, area within %s%s.", begin,
+  say(s, "Use Rp = %s for the set: %s%s%s triangles%s, area within %s.",
       scree_rp_text(rp, rp_buffer), scree_count_text(least, low), least < most ? " to " : "",
       least < most ? scree_count_text(most, high) : "", least < most ? "" : " each",
-      scree_percent_text(worst, percent), end);
+      scree_percent_text(worst, percent));
 }
 
 static void say_set(sentences *s, const scree_choice_report *report) {
-  const scree_set_pick *pick = scree_report_set_pick(report);
+  const scree_set_pick *pick = &report->set->paper;
   char low[NUMBER_BYTES], high[NUMBER_BYTES];
   if (!is_recommended(report, report->entries[0].choice)) {
-    say_common_rp(s, report, "Use", "");
+    say_common_rp(s, report);
     if (pick->rp_high > pick->rp_low)
       say(s, "From Rp = %s up to %s there are levels with an Ip within a tenth of the least.",
           scree_rp_text(pick->rp_low, low), scree_rp_text(pick->rp_high, high));
@@ -277,7 +268,6 @@ static void say_set(sentences *s, const scree_choice_report *report) {
     snprintf(name, sizeof name, "%.60s: ", report->entries[i].name);
     say_widths(s, name, report->entries[i].choice);
   }
-  say_common_rp(s, report, "The paper's criterion gives one", ", but fidelities that differ");
 }
 
 size_t scree_choice_answer(const scree_choice_report *report, size_t entry,
@@ -293,6 +283,19 @@ size_t scree_choice_answer(const scree_choice_report *report, size_t entry,
   else
     say_by_area(&s, report, c);
   return s.count;
+}
+
+void scree_choice_sentence(const scree_choice *choice, const scree_choice_options *options,
+                           char text[SCREE_CHOICE_SENTENCE_BYTES]) {
+  char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES];
+  scree_choice_entry entry = {.choice = choice};
+  scree_choice_report report = {.entries = &entry,
+                                .entry_count = 1,
+                                .options = options,
+                                .rule =
+                                    options->area_only ? SCREE_RULE_PAPER : SCREE_RULE_RECOMMENDED};
+  scree_choice_answer(&report, 0, texts);
+  memcpy(text, texts[0], SCREE_CHOICE_SENTENCE_BYTES);
 }
 
 /* ---- Warnings ---- */
@@ -333,38 +336,26 @@ static void warn_of_accidents(sentences *s, const scree_choice *c) {
     say(s, "The paper's and the robust choice differ %s times.", NUMBER(differ, 2));
 }
 
-/* Said where the choice would be another: the object's, or the set's. */
+/* Said of an object, or of the set, where noise is more of the area than the error chosen by. */
 static void warn_of_noise(sentences *s, const scree_choice_report *report, size_t entry) {
   bool set = entry == report->entry_count;
-  double most = 0, rp, factor;
+  double most = 0;
+  char percent[NUMBER_BYTES];
   for (size_t i = set ? 0 : entry; i < (set ? entry : entry + 1); i++) {
-    const scree_noise *noise = &report->entries[i].choice->noise;
-    if (noise->found) most = fmax(most, noise->fraction);
+    const scree_choice *c = report->entries[i].choice;
+    if (c->noise.found && c->noise.fraction > scree_choice_pick(c, report->rule)->eps_s)
+      most = fmax(most, c->noise.fraction);
   }
-  if (set) {
-    rp = report->set->smooth.rp;
-    factor = ratio(rp, report->set->robust.rp);
-  } else {
-    const scree_choice *c = report->entries[entry].choice;
-    rp = c->smooth.rp;
-    factor = ratio((double)c->smooth.triangle_count, (double)c->robust.triangle_count);
-  }
-  char percent[NUMBER_BYTES], text[NUMBER_BYTES];
-  if (factor > NOTABLE_RATIO && most > 0 && report->options->reference == SCREE_REFERENCE_SCAN)
-    say(s,
-        "Scan noise adds up to %s of area and misleads eps_s: --area smooth takes it out and gives "
-        "Rp = %s.",
-        scree_percent_text(most, percent), scree_rp_text(rp, text));
+  if (most > 0 && report->options->reference == SCREE_REFERENCE_SCAN)
+    say(s, "Scan noise adds up to %s of area and misleads eps_s: --area smooth takes it out.",
+        scree_percent_text(most, percent));
 }
 
-/* How many times the triangles at half the spacing, by the rule that is told. */
+/* How many times the triangles at half the spacing, by the paper's criterion. */
 static double growth_of(const scree_choice_report *report, size_t entry) {
-  bool paper = report->rule == SCREE_RULE_PAPER;
-  if (entry == report->entry_count)
-    return paper ? report->set->paper_growth : report->set->robust_growth;
+  if (entry == report->entry_count) return report->set->paper_growth;
   const scree_choice *c = report->entries[entry].choice;
-  return (double)(paper ? c->paper_finer_count : c->finer_count) /
-         (double)scree_choice_pick(c, report->rule)->triangle_count;
+  return (double)c->paper_finer_count / (double)c->paper.triangle_count;
 }
 
 static void warn_of_resolution(sentences *s, const scree_choice_report *report, size_t entry) {

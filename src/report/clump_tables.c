@@ -1,5 +1,6 @@
 /* Clumps as JSON and CSV. */
 #include "base/file.h"
+#include "base/quote.h"
 #include "report/csv.h"
 #include "report/json.h"
 #include "report/program.h"
@@ -127,7 +128,7 @@ scree_status scree_clump_csv_write(const void *what, const char *path, bool over
     const scree_clumps *clumps = entry->clumps;
     for (size_t i = 0; i < clumps->clump_count; i++) {
       const scree_clump *c = &clumps->clumps[i];
-      scree_csv_text(f, entry->name);
+      scree_quote(f, SCREE_QUOTE_CSV, entry->name);
       fprintf(f, ",%zu", c->sphere_count);
       for (int k = 0; k < COLUMN_COUNT; k++) scree_csv_numbers(f, value_of(c, k), 1);
       fprintf(f, ",%zu,%d,%d\n", c->useless_count, i == clumps->recommended, c == entry->chosen);

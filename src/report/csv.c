@@ -3,20 +3,6 @@
 #include "base/number.h"
 
 #include <math.h>
-#include <string.h>
-
-void scree_csv_text(FILE *stream, const char *text) {
-  if (!text[strcspn(text, ",\"\r\n")]) {
-    fputs(text, stream);
-    return;
-  }
-  putc('"', stream);
-  for (; *text; text++) {
-    if (*text == '"') putc('"', stream);
-    putc(*text, stream);
-  }
-  putc('"', stream);
-}
 
 void scree_csv_number(FILE *stream, double value) {
   if (!isfinite(value)) return;

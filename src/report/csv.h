@@ -1,10 +1,8 @@
 /* Comma-separated values by RFC 4180, with '\n' line ends. */
 #pragma once
 
-#include "base/error.h"
+#include "base/quote.h"
 
-/* A text field, quoted where it needs to be. */
-void scree_csv_text(FILE *stream, const char *text);
 /* The shortest form that reads back the same; nothing for NaN and infinities. */
 void scree_csv_number(FILE *stream, double value);
 /* A comma before each. */

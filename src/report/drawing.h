@@ -35,5 +35,5 @@ void scree_drawing_put(scree_drawing *drawing, scree_series series);
 /* All panels, as `figure` has it besides, by scree_figure_write. Frees the drawing. */
 scree_status scree_drawing_write(scree_drawing *drawing, scree_figure figure, const char *path,
                                  bool overwrite, scree_error *error);
-/* Of one that is not written after all. */
+/* Frees one that is not written after all. */
 void scree_drawing_free(scree_drawing *drawing);

@@ -1,5 +1,4 @@
 /* Heaps as JSON: those of scenes, and those that were measured (docs/reference/formats.md). */
-#include "base/file.h"
 #include "report/json.h"
 #include "report/program.h"
 

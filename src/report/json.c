@@ -2,29 +2,10 @@
 
 #include "base/file.h"
 #include "base/number.h"
-#include "report/utf8.h"
+#include "base/quote.h"
 
 #include <math.h>
 #include <string.h>
-
-static void write_text(FILE *stream, const char *text) {
-  putc('"', stream);
-  while (*text) {
-    size_t length = scree_utf8_length(text);
-    if (length == 0)
-      fputs("\\ufffd", stream);
-    else if (length > 1)
-      fwrite(text, 1, length, stream);
-    else if (*text == '"' || *text == '\\')
-      fprintf(stream, "\\%c", *text);
-    else if (*text < 0x20 || *text == 0x7f || strchr("<>&", *text))
-      fprintf(stream, "\\u%04x", (unsigned)*text); /* also safe inside an HTML script element */
-    else
-      putc(*text, stream);
-    text += length ? length : 1;
-  }
-  putc('"', stream);
-}
 
 scree_json scree_json_start(FILE *stream) {
   return (scree_json){.stream = stream};
@@ -43,7 +24,7 @@ static void lead(scree_json *json, const char *key) {
     json->open[json->depth - 1].filled = true;
   }
   if (!key) return;
-  write_text(json->stream, key);
+  scree_quote(json->stream, SCREE_QUOTE_JSON, key);
   fputs(": ", json->stream);
 }
 
@@ -83,7 +64,7 @@ void scree_json_end(scree_json *json) {
 void scree_json_text(scree_json *json, const char *key, const char *text) {
   lead(json, key);
   if (text)
-    write_text(json->stream, text);
+    scree_quote(json->stream, SCREE_QUOTE_JSON, text);
   else
     fputs("null", json->stream);
 }

@@ -11,6 +11,7 @@
  * (ferror). */
 #pragma once
 
+#include "base/error.h"
 #include "base/file.h"
 
 enum { SCREE_JSON_DEPTH = 32 };
@@ -91,5 +92,14 @@ void scree_json_source(scree_json *json, const char *format, scree_checksum chec
                        double unit_m);
 /* By what: version and command. */
 void scree_json_maker(scree_json *json, const char *command_line);
+/* words.c: verdict, state, sentence, but, next. */
+struct scree_words;
+void scree_json_words(scree_json *json, const struct scree_words *words);
 /* heap_json.c: a heap's angles and lengths. */
 void scree_json_repose(scree_json *json, const scree_repose *repose);
+
+/* Whether bytes are one JSON text (RFC 8259), nothing more: what goes into a page must not break
+ * it. Nested to SCREE_JSON_DEPTH at most. Strings are not checked for UTF-8.
+ * bytes[byte_count] must be 0 (as scree_file_read leaves it). name goes into the sentence. */
+scree_status scree_json_check(const char *bytes, size_t byte_count, const char *name,
+                              scree_error *error);

@@ -1,7 +1,5 @@
 /* Recursive descent. A function gets where a part begins and answers where it ends, or NULL with
  * `at` where it went wrong. The 0 behind the bytes stops every loop. */
-#include "report/json_check.h"
-
 #include "report/json.h"
 
 #include <string.h>

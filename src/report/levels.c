@@ -6,14 +6,13 @@
  *
  * What fits is found by trying: the levels get their share first, the scan what is left of
  * byte_limit, and where the scan needs more, the first level of the curve that does not. */
-#include "report/levels.h"
+#include "report/page_parts.h"
 #include "report/program.h"
 
 #include "base/owned.h"
 #include "base/seal.h"
 #include "report/pack.h"
 
-#include <math.h>
 #include <string.h>
 
 static const scree_seal seal = {"screeLVL", "file of scree's levels", "levels", 3};
@@ -138,11 +137,9 @@ static void put_trace(levels *l, const scree_choice *choice) {
   }
 }
 
-/* Measures of the scan and of the choices, in the order paper, robust, smooth, plain, recommended,
- * cost. */
+/* Measures of the scan and of the choices, in the order paper, robust, recommended. */
 static scree_status put_measures(levels *l, const scree_mesh *scan, const scree_choice *choice) {
-  const scree_pick *picks[] = {&choice->paper, &choice->robust,      &choice->smooth,
-                               &choice->plain, &choice->recommended, &choice->cost};
+  const scree_pick *picks[] = {&choice->paper, &choice->robust, &choice->recommended};
   enum { PICKS = sizeof picks / sizeof *picks };
   scree_pack_u32(&l->pack, PICKS + 1);
   for (int i = -1; i < PICKS; i++) {

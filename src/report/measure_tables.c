@@ -1,6 +1,7 @@
 /* Measures, topology and distances as JSON and CSV. One table of fields serves both; all values are
  * SI, and every object carries what is needed to run it again. */
 #include "base/file.h"
+#include "base/quote.h"
 #include "report/csv.h"
 #include "report/json.h"
 #include "report/program.h"
@@ -272,7 +273,7 @@ scree_status scree_measure_csv_write(const scree_measure_entry *entries, size_t 
   csv_header(output.stream, shape_fields, SHAPE_FIELDS, "shape_");
   putc('\n', output.stream);
   for (size_t i = 0; i < entry_count; i++) {
-    scree_csv_text(output.stream, entries[i].file);
+    scree_quote(output.stream, SCREE_QUOTE_CSV, entries[i].file);
     putc(',', output.stream);
     scree_csv_number(output.stream, entries[i].unit_m);
     csv_fields(output.stream, &entries[i], measure_fields, MEASURE_FIELDS);

@@ -19,7 +19,7 @@ typedef struct scree_grid_point {
 
 /* Makes the box from low to high (start with infinity, -infinity) hold p. */
 void scree_pack_stretch(const double *p, double low[3], double high[3]);
-/* Of a mesh. */
+/* The box of a mesh. */
 void scree_pack_box(const scree_mesh *mesh, double low[3], double high[3]);
 /* The grid over a box. */
 void scree_pack_grid(scree_packing *p, const double low[3], const double high[3]);

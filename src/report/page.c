@@ -7,13 +7,12 @@
  * web/build.mjs makes of them.
  */
 #include "base/array.h"
-#include "base/ending.h"
 #include "base/file.h"
 #include "base/owned.h"
 #include "base/path.h"
 #include "base/platform.h"
+#include "base/quote.h"
 #include "report/json.h"
-#include "report/json_check.h"
 #include "report/page_parts.h"
 #include "report/program.h"
 #include "report/shapes.h"
@@ -37,7 +36,7 @@ enum { CHOICE, STUDY, CLUMP, SCENE, CALIBRATION, RESULT_COUNT };
 static const struct {
   const char *file, *key, *text, *picture;
 } results[RESULT_COUNT] = {{"choice.json", "choice", "choice.txt", NULL},
-                           {"study.json", "study", NULL, NULL},
+                           {"study.json", "study", NULL, "angle.png"},
                            {"clump.json", "clump", "clump.txt", NULL},
                            {"result.json", "scene", "result.txt", "scene.png"},
                            {"calibration.json", "calibration", "calibration.txt", "corner.png"}};
@@ -59,15 +58,6 @@ static size_t length_of(const char *const *texts) {
   size_t length = 0;
   for (; *texts; texts++) length += strlen(*texts);
   return length;
-}
-
-static void put_html(FILE *stream, const char *text) {
-  for (; *text; text++) {
-    if (strchr("<>&\"'", *text))
-      fprintf(stream, "&#%d;", *text);
-    else
-      putc(*text, stream);
-  }
 }
 
 static void put_json(FILE *stream, const char *text) {
@@ -259,8 +249,8 @@ static scree_status put_folder(page *p, const char *folder) {
   SCREE_TRY(put_member(p, folder, "provenance.json", "provenance", &found[RESULT_COUNT]));
   if (found[CHOICE]) SCREE_TRY(put_levels(p, folder, found[CHOICE]));
   if (found[STUDY] || found[SCENE]) SCREE_TRY(put_piles(p, folder, found));
-  for (int i = SCENE; i < RESULT_COUNT; i++)
-    if (found[i]) SCREE_TRY(put_picture(p, folder, i));
+  for (int i = 0; i < RESULT_COUNT; i++)
+    if (found[i] && results[i].picture) SCREE_TRY(put_picture(p, folder, i));
   fputs("}", p->stream);
   return SCREE_OK;
 }
@@ -294,15 +284,46 @@ static scree_status find_results(const char *folder, name_list *found, scree_err
                     folder);
 }
 
+/* The value of the first member of that name, without its escapes; "" where there is none. */
+static void find_text(const char *json, const char *name, char *to, size_t size) {
+  char key[32];
+  size_t used = 0;
+  snprintf(key, sizeof key, "\"%s\": \"", name);
+  const char *at = json ? strstr(json, key) : NULL;
+  if (at) at += strlen(key);
+  for (; at && *at && *at != '"' && used + 1 < size; at++) {
+    if (*at == '\\') at++;
+    to[used++] = *at;
+  }
+  to[used] = 0;
+}
+
+/* The answer, before all else. */
+static scree_status put_answer(page *p, const char *folder, size_t result) {
+  static const char *const names[] = {"state", "sentence", "but", "next"};
+  SCREE_CLEANUP(scree_free_at) char *json = NULL;
+  size_t size;
+  char text[1100];
+  SCREE_TRY(read_part(p, folder, results[result].file, &json, &size));
+  for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+    find_text(json, names[k], text, sizeof text);
+    scree_quote(p->stream, SCREE_QUOTE_HTML, text);
+    if (*text) putc('\n', p->stream);
+  }
+  return SCREE_OK;
+}
+
 /* What a reader without JavaScript sees. */
 static scree_status put_summaries(page *p, const name_list *folders) {
   for (size_t i = 0; i < RESULT_COUNT * folders->count; i++) {
     const char *name = results[i % RESULT_COUNT].text, *folder = folders->items[i / RESULT_COUNT];
     SCREE_CLEANUP(scree_free_at) char *text = NULL;
     size_t size;
-    if (!name || !is_there(folder, i % RESULT_COUNT)) continue;
+    if (!is_there(folder, i % RESULT_COUNT)) continue;
+    SCREE_TRY(put_answer(p, folder, i % RESULT_COUNT));
+    if (!name) continue;
     SCREE_TRY(read_part(p, folder, name, &text, &size));
-    if (text) put_html(p->stream, text);
+    if (text) scree_quote(p->stream, SCREE_QUOTE_HTML, text);
   }
   return SCREE_OK;
 }

@@ -5,8 +5,6 @@
 #include "base/file.h"
 #include "base/path.h"
 #include "base/platform.h"
-#include "report/levels.h"
-#include "report/pile_pack.h"
 
 enum {
   MOST_PART_BYTES = 64 << 20,

@@ -37,3 +37,21 @@ void scree_page_parts_free(scree_page_parts *parts);
 
 /* The page's script in pieces, NULL behind the last. */
 extern const char *const scree_page_script[];
+
+/* Whether the bytes are a file of levels (docs/reference/formats.md), whole: scree_levels_write
+ * writes it, the page takes it as it is, and web/src/levels.js reads it; name goes into the
+ * sentence where not. */
+scree_status scree_levels_check(const char *bytes, size_t byte_count, const char *name,
+                                scree_error *error);
+
+/* Takes the scan out of such a file, so that the fine level stands in for it: in place. Answers the
+ * bytes that are left; all of them where the file is not as scree_levels_write makes it. */
+size_t scree_levels_drop_scan(char *bytes, size_t byte_count);
+
+/* Packs the last frame of a run, or the world (.world) that a pour left, and what motion.scree
+ * beside it tells of it (docs/reference/formats.md) into at most byte_limit bytes, where the shapes
+ * and one frame fit, leaving out frames; *bytes is NULL where path does not exist. Free it with
+ * scree_free.
+ */
+scree_status scree_pile_pack(const char *path, size_t byte_limit, unsigned char **bytes,
+                             size_t *byte_count, scree_error *error);

@@ -1,6 +1,6 @@
 /* A build without pictures (SCREE_PICTURES=OFF): the data behind them are written all the same. */
 #include "report/image.h"
-#include "report/plot_draw.h"
+#include "report/plot.h"
 
 static scree_status refuse(scree_error *error) {
   return scree_fail(error, SCREE_UNSUPPORTED,

@@ -2,7 +2,7 @@
  * costs next to nothing; a motion that does not fit loses every second frame until it does. A
  * browser draws all bodies many times a second: shapes are decimated until all together have as
  * many triangles as it can take. */
-#include "report/pile_pack.h"
+#include "report/page_parts.h"
 
 #include "base/owned.h"
 #include "base/platform.h"
@@ -239,6 +239,13 @@ static scree_status put_bodies(pile *p) {
   SCREE_SCRATCH(uint32_t, shape, bodies, p->pack.error);
   for (size_t b = 0; b < bodies; b++) shape[b] = (uint32_t)scree_scene_body_shape(p->scene, b);
   scree_pack_u32(&p->pack, bodies);
+  SCREE_TRY(scree_pack_vertices(&p->pack, shape, bodies, sizeof *shape));
+  bool joined = scree_world_joint_count(p->world) > 0 && scree_world_body_count(p->world) == bodies;
+  scree_pack_u32(&p->pack, joined);
+  if (!joined) return SCREE_OK;
+  SCREE_SCRATCH(size_t, fragment, bodies, p->pack.error);
+  (void)scree_world_fragments(p->world, fragment);
+  for (size_t b = 0; b < bodies; b++) shape[b] = (uint32_t)fragment[b];
   return scree_pack_vertices(&p->pack, shape, bodies, sizeof *shape);
 }
 

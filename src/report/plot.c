@@ -5,9 +5,7 @@
  * Colours: the nine of Paul Tol's "muted" scheme, told apart by all common kinds of colour vision,
  * ordered so that neighbours differ in lightness too; each has its own marker as well, so that
  * black-and-white print works. */
-#include "report/plot_draw.h"
-
-#include "report/text.h"
+#include "report/plot.h"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>

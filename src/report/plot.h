@@ -7,6 +7,8 @@
 
 #include "base/error.h"
 
+#include <stddef.h>
+
 typedef enum scree_scale { SCREE_SCALE_LINEAR, SCREE_SCALE_LOG } scree_scale;
 
 typedef struct scree_axis {
@@ -99,3 +101,21 @@ typedef struct scree_ticks {
  * (labels thin out beyond eight decades; below two decades 2 and 5 are labelled too); on a linear
  * axis majors lie at steps of 1, 2 or 5. */
 void scree_ticks_make(scree_scale scale, double low, double high, scree_ticks *ticks);
+
+/* Between the plot's drawing and its files. */
+typedef enum scree_paint { SCREE_PAINT_PNG, SCREE_PAINT_SVG, SCREE_PAINT_PDF } scree_paint;
+/* The figure as a picture; path is for messages. SCREE_UNSUPPORTED in a build without pictures. */
+scree_status scree_figure_paint(const scree_figure *figure, scree_paint paint, FILE *stream,
+                                const char *path, scree_error *error);
+
+/* Text with _{below} and ^{above}, in runs. */
+enum { SCREE_RUN_BYTES = 256 };
+typedef struct scree_text_run {
+  char text[SCREE_RUN_BYTES];
+  char kind; /* 0, '_' or '^' */
+} scree_text_run;
+/* The first run of the text; returns what comes after it. */
+const char *scree_text_run_next(const char *text, scree_text_run *run);
+
+/* The text without its marks, for files that know none, into buffer of size bytes. */
+void scree_text_plain(const char *text, char *buffer, size_t size);

@@ -1,12 +1,11 @@
 /* One description, five files. */
-#include "report/plot_draw.h"
+#include "report/plot.h"
 
-#include "base/ending.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "base/path.h"
+#include "base/quote.h"
 #include "report/csv.h"
-#include "report/text.h"
 
 #include <string.h>
 
@@ -26,7 +25,7 @@ static void write_csv(const scree_figure *figure, FILE *stream) {
       for (size_t i = 0; i < series->count; i++) {
         const double *values[4] = {series->x, series->y, series->low, series->high};
         fprintf(stream, "%zu,%zu,", p + 1, s + 1);
-        scree_csv_text(stream, label);
+        scree_quote(stream, SCREE_QUOTE_CSV, label);
         for (int v = 0; v < 4; v++) {
           putc(',', stream);
           if (values[v]) scree_csv_number(stream, values[v][i]);
@@ -36,25 +35,22 @@ static void write_csv(const scree_figure *figure, FILE *stream) {
     }
 }
 
-/* A gnuplot string in double quotes; its enhanced text knows our marks, and its own signs are made
- * harmless. */
-static void write_quoted(FILE *stream, const char *text) {
-  putc('"', stream);
-  for (; *text; text++) {
-    bool mark = (*text == '_' || *text == '^') && text[1] == '{';
-    if (*text == '"' || *text == '\\')
-      fprintf(stream, "\\%c", *text);
-    else if (!mark && strchr("_^@&~", *text))
-      fprintf(stream, "\\\\%c", *text);
-    else
-      putc((unsigned char)*text < 0x20 ? ' ' : *text, stream);
+/* A text of the figure: gnuplot's enhanced text has the same marks. */
+static void write_label(FILE *stream, const char *text) {
+  scree_text_run r;
+  putc('\'', stream);
+  while (text && *text) {
+    text = scree_text_run_next(text, &r);
+    if (r.kind) fprintf(stream, "%c{", r.kind);
+    scree_quote(stream, SCREE_QUOTE_GNUPLOT_LABEL, r.text);
+    if (r.kind) putc('}', stream);
   }
-  putc('"', stream);
+  putc('\'', stream);
 }
 
 static void write_script_axis(FILE *stream, char name, const scree_axis *axis) {
   fprintf(stream, "set %clabel ", name);
-  write_quoted(stream, axis->label ? axis->label : "");
+  write_label(stream, axis->label);
   fprintf(stream, "\n%s logscale %c\n", axis->scale == SCREE_SCALE_LOG ? "set" : "unset", name);
   if (axis->scale == SCREE_SCALE_LOG) fprintf(stream, "set format %c \"10^{%%L}\"\n", name);
   char low[SCREE_NUMBER_SIZE] = "*", high[SCREE_NUMBER_SIZE] = "*";
@@ -71,14 +67,14 @@ static void write_script_series(FILE *stream, const char *data, size_t panel, si
                      : series->draw & SCREE_DRAW_MARKERS ? "linespoints"
                                                          : "lines";
   fputs("  ", stream);
-  write_quoted(stream, data);
+  scree_quote(stream, SCREE_QUOTE_GNUPLOT, data);
   fprintf(stream, " using ($1==%zu&&$2==%zu?$4:NaN):5 with %s lc %d dt %d title ", panel, index,
           kind, series->style < 0 ? 0 : series->style + 1,
           series->draw & SCREE_DRAW_DASHED ? 2 : 1);
-  write_quoted(stream, series->label ? series->label : "");
+  write_label(stream, series->label);
   if ((series->draw & (SCREE_DRAW_BARS | SCREE_DRAW_BAND)) && series->low && series->high) {
     fputs(", \\\n  ", stream);
-    write_quoted(stream, data);
+    scree_quote(stream, SCREE_QUOTE_GNUPLOT, data);
     fprintf(stream, " using ($1==%zu&&$2==%zu?$4:NaN):5:6:7 with yerrorbars lc %d notitle", panel,
             index, series->style < 0 ? 0 : series->style + 1);
   }
@@ -90,13 +86,17 @@ static void write_script(const scree_figure *figure, const char *data, FILE *str
   fputs("# gnuplot -p FILE draws the figure from the .csv beside it (run it in the same folder)\n"
         "set datafile separator comma\nset key below maxrows 4\nset grid\n",
         stream);
-  if (figure->note) fprintf(stream, "# %s\n", figure->note);
+  if (figure->note) {
+    fputs("# ", stream);
+    scree_quote(stream, SCREE_QUOTE_COMMENT, figure->note);
+    putc('\n', stream);
+  }
   fprintf(stream, "set multiplot layout %zu,%zu\n", (figure->panel_count + columns - 1) / columns,
           columns);
   for (size_t p = 0; p < figure->panel_count; p++) {
     const scree_panel *panel = &figure->panels[p];
     fputs("set title ", stream);
-    write_quoted(stream, panel->title ? panel->title : "");
+    write_label(stream, panel->title);
     putc('\n', stream);
     write_script_axis(stream, 'x', &panel->x);
     write_script_axis(stream, 'y', &panel->y);
@@ -110,13 +110,15 @@ static void write_script(const scree_figure *figure, const char *data, FILE *str
   fputs("unset multiplot\n", stream);
 }
 
-/* The name without folders and with .csv in place of .gnuplot. */
+/* Its data: the name without folders and with .csv in place of .gnuplot; in this folder, for
+ * gnuplot runs what begins with `<`. */
 static scree_status write_script_for(const scree_figure *figure, const char *path, FILE *stream,
                                      scree_error *error) {
-  const char *slash = strrchr(path, '/');
-  SCREE_CLEANUP(scree_free_at) char *data = scree_strdup(slash ? slash + 1 : path);
-  if (!data) return scree_fail_memory(error, strlen(path), "a file name");
-  memcpy(data + strlen(data) - strlen(".gnuplot"), ".csv", sizeof ".csv");
+  const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+  char data[SCREE_PATH_BYTES];
+  int length = (int)(strlen(name) - strlen(".gnuplot"));
+  if (snprintf(data, sizeof data, "./%.*s.csv", length, name) >= (int)sizeof data)
+    return scree_fail(error, SCREE_LIMIT, "%.200s: the path is too long", path);
   write_script(figure, data, stream);
   return SCREE_OK;
 }

@@ -1,6 +1,5 @@
 #include "report/program.h"
 
-#include "base/ending.h"
 #include "base/path.h"
 
 bool scree_product_is_made(const scree_product *product) {

@@ -44,11 +44,10 @@ scree_status scree_check_json_write(const scree_check_entry *entries, size_t ent
 scree_status scree_scene_walls_vtp_write(const scree_scene *scene, const char *path, bool overwrite,
                                          scree_error *error);
 
-/* The bodies of a scene as instances: a point a body at its centre of mass, in single precision, 97
- * bytes. Per point: orientation (w x y z), velocity, angular velocity, contact force (N, the sum of
- * all), stress (Pa, its mean in the body by its contacts, pressure positive: xx, yy, zz, xy, yz,
- * xz), size (m), body, shape; names carry units. SCREE_LIMIT above 256 shapes, else as
- * scree_world_vtp_write. */
+/* The bodies of a scene as instances: a point a body at its centre of mass, in single precision,
+ * 104 bytes. Per point: orientation (w x y z), velocity, angular velocity, contact force (N, the
+ * sum of all), stress (Pa, its mean in the body by its contacts, pressure positive: xx, yy, zz, xy,
+ * yz, xz), size (m), body, shape, fragment; names carry units. Errors as scree_world_vtp_write. */
 scree_status scree_scene_bodies_vtp_write(const scree_scene *scene, const char *path,
                                           bool overwrite, scree_error *error);
 /* The triangles of one of its shapes in the particle's frame, for glyphs; spheres as 320 each. */
@@ -86,11 +85,13 @@ typedef struct scree_choice_report {
 /* The answer and the warnings in sentences, lengths in mm: the same in the text for people, in the
  * JSON and in the page. `entry` is an entry's index, or entry_count: the set as a whole. Answer how
  * many sentences there are, the first of them in texts. */
-enum { SCREE_CHOICE_SENTENCES = 16, SCREE_CHOICE_SENTENCE_BYTES = 512 };
+enum { SCREE_CHOICE_SENTENCES = 16 };
 size_t scree_choice_answer(const scree_choice_report *report, size_t entry,
                            char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES]);
 size_t scree_choice_warnings(const scree_choice_report *report, size_t entry,
                              char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES]);
+/* What the recommended level costs more than the paper's; false: nothing worth a word. */
+bool scree_choice_cost(const scree_choice *choice, char text[SCREE_CHOICE_SENTENCE_BYTES]);
 
 /* The paper's Fig. 4, by the path's ending (.png, .svg, .pdf; .csv and .gnuplot for its data and a
  * script): eps_s and Ip against Rp, all objects, the choices marked. */
@@ -146,42 +147,6 @@ typedef struct scree_curve_entry {
  * unknown. "-" is stdout. */
 scree_status scree_curve_json_write(const scree_curve_entry *entry, const char *command_line,
                                     const char *path, bool overwrite, scree_error *error);
-
-/* ---- Clumps in other DEM codes ---- */
-
-typedef enum scree_dem_code {
-  SCREE_DEM_LAMMPS,   /* NAME.mol for `molecule`, in.NAME with `fix rigid/small` */
-  SCREE_DEM_LIGGGHTS, /* NAME.txt for `fix particletemplate/multisphere`, in.NAME */
-  SCREE_DEM_YADE,     /* NAME.py with appendClumped */
-  SCREE_DEM_PFC,      /* NAME.dat with `clump template create` */
-  SCREE_DEM_CHRONO,   /* NAME.csv and NAME.py for DEM-Engine's LoadClumpType */
-  SCREE_DEM_EDEM,     /* NAME.tsv to be pasted as the spheres of a multi-sphere particle */
-  SCREE_DEM_MFIX,     /* NAME-gsp_config.csv of glued spheres */
-  SCREE_DEM_CODE_COUNT
-} scree_dem_code;
-
-/* lammps, liggghts, yade, pfc, chrono, edem, mfix. NULL for no code. */
-const char *scree_dem_code_name(scree_dem_code code);
-
-typedef struct scree_code_options {
-  const char *name; /* of the files; default clump. Borrowed */
-  double density;   /* kg/m3, default 2000 */
-  size_t count;     /* of clumps that the scripts let fall; default 27 */
-  bool overwrite;
-  /* Pa, of the scripts; default 0: so soft that a body that falls from the script's height presses
-   * itself a tenth of its radius into the floor, at least 1e6. */
-  double young;
-} scree_code_options;
-scree_code_options scree_default_code_options(void);
-
-/* Writes a clump (or sphere) into an existing folder as the code reads it, in SI units: its spheres
- * about the centre of mass along the principal axes, the particle's mass and inertia (EDEM and MFiX
- * work these out for themselves), and for LAMMPS, LIGGGHTS and YADE a script that lets some fall
- * into a box, with made-up materials, and ends with an error where a sphere is missing. In file
- * names, characters other than letters, digits, points, - and _ become _. */
-scree_status scree_clump_code_write(const scree_particle *particle, scree_dem_code code,
-                                    const scree_code_options *options, const char *folder,
-                                    scree_error *error);
 
 /* ---- Clumps: figure, tables, JSON ---- */
 
@@ -256,7 +221,7 @@ scree_status scree_distance_json_write(const scree_distance_entry *entry, const 
 
 /* ---- The report: one page for a browser ---- */
 
-/* Of all objects of one page together, so that it stays below 6 MB. */
+/* Bytes for all objects of one page together, so that it stays below 6 MB. */
 enum { SCREE_LEVELS_BYTES = 3750000 };
 
 /* What the report shows of one object in 3D, in at most byte_limit bytes (but at least a level of
@@ -299,7 +264,42 @@ scree_status scree_scene_pile_picture(const scree_scene *scene, const scree_rend
                                       const scree_progress *progress, scree_image *image,
                                       scree_error *error);
 
+/* ---- Answers in words ---- */
+
+/* What it says: whether it answers, its state in a few words, one sentence that does, what would
+ * mislead, and what to do next at what cost ("": nothing). */
+typedef struct scree_words {
+  enum { SCREE_ANSWERED, SCREE_NOT_REACHED, SCREE_NOT_ENOUGH } verdict;
+  const char *state;
+  char answer[700], but[1000], next[500];
+} scree_words;
+/* "heap_angle" is a heap angle. Decimals of a number that is known to within the spread. */
+void scree_words_name(const char *name, char *to, size_t size);
+int scree_words_decimals(double spread);
+
+/* Says a scene, or its first heap where it has one. stopped: why it ended early, or NULL. */
+void scree_scene_words(const scree_scene *scene, const scree_pile *pile, const char *stopped,
+                       scree_words *words);
+/* What its methods read beside each other; "" without a heap. */
+void scree_pile_finding(const scree_repose *repose, char *to, size_t size);
+
 /* ---- Reports of a study ---- */
+
+/* What a factor, or two of them besides (`other`), does to an answer from its first level to its
+ * last; half: of the interval, infinite where no point has repeats. */
+typedef struct scree_effect {
+  const char *factor, *other, *from, *to; /* other: NULL of one factor */
+  double size, half;
+} scree_effect;
+enum { SCREE_MOST_EFFECTS = 16 };
+/* Finds the effects on a grid's answer, the strongest first, those of two factors behind. */
+size_t scree_study_effects(const scree_study_result *result, size_t answer,
+                           scree_effect effects[SCREE_MOST_EFFECTS]);
+/* The scatter of one run, over all points, and half of a point's interval; NaN without repeats. */
+void scree_study_scatter(const scree_study_result *result, size_t answer, double *sd, double *half);
+/* Says one of a study's answers; the finding is what its effects show, in a title. */
+void scree_study_words(const scree_study_result *result, size_t answer, scree_words *words);
+void scree_study_finding(const scree_study_result *result, size_t answer, char *to, size_t size);
 
 /* docs/reference/formats.md has every field. "-" is stdout. */
 scree_writer scree_study_json_write;
@@ -319,8 +319,20 @@ scree_status scree_study_report_write(const scree_study_result *result, const ch
 
 /* ---- Reports ---- */
 
-/* For people, on one screen. */
-void scree_calibration_print(const scree_calibration_result *result, FILE *stream);
+void scree_calibration_words(const scree_calibration_result *result, scree_words *words);
+/* Titles: what is seen of an answer, of a parameter, of the course of the runs. */
+void scree_calibration_answer_finding(const scree_calibration_result *result,
+                                      const scree_answer_result *answer, char *to, size_t size);
+void scree_calibration_parameter_finding(const scree_parameter_result *parameter, char *to,
+                                         size_t size);
+void scree_calibration_history_finding(const scree_calibration_result *result, char *to,
+                                       size_t size);
+/* What is usually missing where the model does not give what was measured; answers how many hints
+ * there are. */
+size_t scree_calibration_hints(const scree_calibration_result *result, size_t index, char *to,
+                               size_t size);
+/* For people: the answer, at most twelve lines; or all tables. */
+void scree_calibration_print(const scree_calibration_result *result, bool all, FILE *stream);
 /* docs/reference/formats.md has every field. "-" is stdout. */
 scree_writer scree_calibration_json_write;
 /* The samples, a row each. */

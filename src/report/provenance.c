@@ -1,6 +1,5 @@
 /* Where and when some work was done: what changes from run to run, apart from the results. */
 #include "report/provenance.h"
-#include "base/file.h"
 #include "base/platform.h"
 #include "report/json.h"
 
@@ -27,4 +26,20 @@ scree_status scree_provenance_write(const scree_work_start *start, const char *c
   scree_json_count(&json, "processors", (uint64_t)scree_processor_count());
   scree_json_end(&json);
   return scree_json_commit(&json, error);
+}
+
+void scree_json_origin(scree_json *json, const scree_origin *origin) {
+  char text[SCREE_CHECKSUM_TEXT], time[32];
+  scree_json_text(json, "command", origin->command);
+  scree_format_time(origin->started, time);
+  scree_json_text(json, "started", origin->started > 0 ? time : NULL);
+  scree_format_time(origin->ended, time);
+  scree_json_text(json, "ended", origin->ended > 0 ? time : NULL);
+  scree_json_text(json, "machine", origin->machine);
+  SCREE_JSON_LIST (json, "inputs", i, origin->input_count) {
+    scree_json_row_object(json, NULL);
+    scree_json_text(json, "path", origin->inputs[i].path);
+    scree_json_text(json, "checksum", scree_checksum_text(origin->inputs[i].checksum, text));
+    scree_json_end(json);
+  }
 }

@@ -1,7 +1,8 @@
 /* Pictures of meshes by ray tracing: one jittered primary ray a sample, and at each hit one shadow
  * ray to a large round lamp (soft shadows) and one cosine-weighted ray to a uniform sky (ambient
- * occlusion), both Lambertian. Samples come from a counter-based generator keyed by pixel and
- * sample, so the picture does not depend on threads. Everything is moved into a box about the
+ * occlusion), both Lambertian. The samples of a pixel are points of the sequence R6 (Roberts 2018),
+ * shifted by random numbers of that pixel, so the picture does not depend on threads; where the
+ * first few agree there are no more. Everything is moved into a box about the
  * origin of half-size about 1 before it goes to single precision: coordinates far from the origin
  * are no trouble. */
 #include "base/alloc.h"
@@ -26,7 +27,8 @@ static const double edge_width_px = 0.9;  /* full width of a drawn edge */
 static const double full_edge_px = 14;    /* triangles this long get edges in full */
 static const double edge_darkness = 0.75; /* how much of the colour an edge takes away */
 static const size_t most_cells = 10000;
-enum { ROWS_PER_BLOCK = 4, BAND_ROWS = 32, CAPTION_PX = 34, GAP_PX = 6 };
+static const double agreement = 0.004; /* of samples, as a share of white: half a step of 8 bits */
+enum { FIRST_SAMPLES = 4, ROWS_PER_BLOCK = 4, BAND_ROWS = 32, CAPTION_PX = 34, GAP_PX = 6 };
 
 typedef struct camera {
   vec3 eye, right, up, forward; /* right and up scaled to half the image at distance 1 */
@@ -54,7 +56,7 @@ scree_render_options scree_default_render_options(void) {
                                 .height = 900,
                                 .azimuth_deg = 35,
                                 .elevation_deg = 25,
-                                .samples = 24,
+                                .samples = 8,
                                 .ground = true,
                                 .value_maximum = 1,
                                 .value_scale = 1};
@@ -170,6 +172,8 @@ static void place_camera(view *v) {
 
 /* ---- shading ---- */
 
+static const vec3 white = {1, 1, 1};
+
 static vec3 surface_color(const view *v, const scree_ray_hit *hit) {
   const scree_render_item *item = &v->cell->items[hit->item];
   if (!item->vertex_values) return (vec3){item->color[0], item->color[1], item->color[2]};
@@ -201,8 +205,13 @@ static double edge_ink(const view *v, const scree_ray_hit *hit) {
   return fmin(1, fmax(0, longest / (full_edge_px * pixel) - 0.25));
 }
 
-static vec3 disc_sample(scree_rng *rng, double radius) {
-  double r = radius * sqrt(scree_rng_uniform(rng)), a = 6.283185307179586 * scree_rng_uniform(rng);
+/* Numbers in [0, 1) that one sample takes. */
+typedef struct sample {
+  double pixel[2], lamp[2], sky[2];
+} sample;
+
+static vec3 disc_sample(const double at[2], double radius) {
+  double r = radius * sqrt(at[0]), a = 6.283185307179586 * at[1];
   return (vec3){r * cos(a), r * sin(a), 0};
 }
 
@@ -213,13 +222,14 @@ static bool blocked(const view *v, vec3 from, vec3 direction) {
 }
 
 /* Light from the lamp and the sky that reaches a surface point. */
-static double irradiance(const view *v, vec3 point, vec3 normal, scree_rng *rng) {
-  vec3 a, b, start = vec3_mad(point, normal, self_offset), d = disc_sample(rng, lamp_radius);
+static double irradiance(const view *v, vec3 point, vec3 normal, const sample *at) {
+  vec3 a, b, start = vec3_mad(point, normal, self_offset), d = disc_sample(at->lamp, lamp_radius);
   vec3_frame(v->lamp, &a, &b);
   vec3 to_lamp = vec3_unit(vec3_add(v->lamp, vec3_add(vec3_scale(a, d.x), vec3_scale(b, d.y))));
-  double cosine = vec3_dot(normal, to_lamp), light = 0;
-  if (cosine > 0 && !blocked(v, start, to_lamp)) light += lamp_power * cosine;
-  d = disc_sample(rng, 1);
+  double cosine = vec3_dot(normal, v->lamp), light = 0; /* to its middle: there samples agree */
+  if (cosine > 0 && vec3_dot(normal, to_lamp) > 0 && !blocked(v, start, to_lamp))
+    light += lamp_power * cosine;
+  d = disc_sample(at->sky, 1);
   double lift = sqrt(fmax(0, 1 - d.x * d.x - d.y * d.y));
   vec3_frame(normal, &a, &b);
   vec3 to_sky =
@@ -228,30 +238,29 @@ static double irradiance(const view *v, vec3 point, vec3 normal, scree_rng *rng)
   return light;
 }
 
-static const vec3 white = {1, 1, 1};
-
-static vec3 shade_ground(const view *v, vec3 point, scree_rng *rng) {
+static vec3 shade_ground(const view *v, vec3 point, const sample *at) {
   vec3 normal = {0, 0, 1};
-  double open = lamp_power * vec3_dot(normal, v->lamp) + sky_power;
-  double light = fmin(1, irradiance(v, point, normal, rng) / open);
   double far = hypot(point.x, point.y) / ground_fade, fade = exp(-far * far);
+  if (fade < agreement) return white;
+  double open = lamp_power * vec3_dot(normal, v->lamp) + sky_power;
+  double light = fmin(1, irradiance(v, point, normal, at) / open);
   double level = 1 - 0.75 * fade * (1 - light);
   return (vec3){level, level, level};
 }
 
-static vec3 trace(const view *v, vec3 direction, scree_rng *rng) {
+static vec3 trace(const view *v, vec3 direction, const sample *at) {
   float origin[3] = {(float)v->camera.eye.x, (float)v->camera.eye.y, (float)v->camera.eye.z};
   float ray[3] = {(float)direction.x, (float)direction.y, (float)direction.z};
   scree_ray_hit hit = scree_ray_first(v->scene, origin, ray);
   if (isinf(hit.t)) return white;
   vec3 point = vec3_mad(v->camera.eye, direction, (double)hit.t);
-  if (hit.item == v->ground_item) return shade_ground(v, point, rng);
+  if (hit.item == v->ground_item) return shade_ground(v, point, at);
   vec3 normal =
       vec3_unit((vec3){(double)hit.normal[0], (double)hit.normal[1], (double)hit.normal[2]});
   if (vec3_dot(normal, direction) > 0) normal = vec3_neg(normal);
   vec3 color = surface_color(v, &hit);
   double kept = v->options->edges ? 1 - edge_darkness * edge_ink(v, &hit) : 1;
-  return vec3_scale(color, kept * irradiance(v, point, normal, rng));
+  return vec3_scale(color, kept * irradiance(v, point, normal, at));
 }
 
 /* Only edges: goes through the triangles until one is hit near an edge; a few layers are enough. */
@@ -275,28 +284,56 @@ static vec3 trace_wire(const view *v, vec3 direction) {
   return white;
 }
 
-static void render_pixel(const view *v, size_t column, size_t row) {
-  vec3 sum = {0, 0, 0};
-  size_t pixel = (v->y + row) * v->image->width + v->x + column;
-  for (size_t sample = 0; sample < v->options->samples; sample++) {
-    scree_rng rng = {.seed = v->seed, .stream = pixel, .counter = sample << 8};
-    double sx = 2 * ((double)column + scree_rng_uniform(&rng)) / (double)v->width - 1;
-    double sy = 1 - 2 * ((double)row + scree_rng_uniform(&rng)) / (double)v->height;
-    vec3 direction = vec3_unit(vec3_add(v->camera.forward, vec3_add(vec3_scale(v->camera.right, sx),
-                                                                    vec3_scale(v->camera.up, sy))));
-    sum = vec3_add(sum, v->options->wire ? trace_wire(v, direction) : trace(v, direction, &rng));
+/* Sample `index` of a pixel: what the sixth root-like number of x^7 = x + 1 makes of it (Roberts
+ * 2018, "The unreasonable effectiveness of quasirandom sequences"), from where the pixel begins. */
+static sample sample_at(const double start[6], size_t index) {
+  static const double root = 1.1127756842787055;
+  double at[6], step = 1;
+  for (int i = 0; i < 6; i++) {
+    step /= root;
+    double x = start[i] + step * (double)index;
+    at[i] = x - floor(x);
   }
-  sum = vec3_scale(sum, 1 / (double)v->options->samples);
+  return (sample){{at[0], at[1]}, {at[2], at[3]}, {at[4], at[5]}};
+}
+
+static vec3 trace_sample(const view *v, size_t column, size_t row, const sample *at) {
+  double sx = 2 * ((double)column + at->pixel[0]) / (double)v->width - 1;
+  double sy = 1 - 2 * ((double)row + at->pixel[1]) / (double)v->height;
+  vec3 direction = vec3_unit(vec3_add(
+      v->camera.forward, vec3_add(vec3_scale(v->camera.right, sx), vec3_scale(v->camera.up, sy))));
+  return v->options->wire ? trace_wire(v, direction) : trace(v, direction, at);
+}
+
+static void render_pixel(const view *v, size_t column, size_t row) {
+  vec3 sum = {0, 0, 0}, low = white, high = {0, 0, 0};
+  size_t pixel = (v->y + row) * v->image->width + v->x + column, count = 0;
+  scree_rng rng = {.seed = v->seed, .stream = pixel};
+  double start[6];
+  for (int i = 0; i < 6; i += 2) {
+    uint64_t bits = scree_rng_next(&rng);
+    start[i] = (double)(uint32_t)bits * 0x1p-32;
+    start[i + 1] = (double)(bits >> 32) * 0x1p-32;
+  }
+  while (count < v->options->samples) {
+    const sample at = sample_at(start, count++);
+    vec3 color = trace_sample(v, column, row, &at);
+    sum = vec3_add(sum, color);
+    low = vec3_min(low, color);
+    high = vec3_max(high, color);
+    vec3 spread = vec3_sub(high, low);
+    if (count == FIRST_SAMPLES && fmax(spread.x, fmax(spread.y, spread.z)) < agreement) break;
+  }
+  sum = vec3_scale(sum, 1 / (double)count);
   uint8_t *out = v->image->pixels + 3 * pixel;
   out[0] = scree_to_srgb(sum.x);
   out[1] = scree_to_srgb(sum.y);
   out[2] = scree_to_srgb(sum.z);
 }
 
-static void render_rows(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void render_rows(void *context, scree_block block) {
   const view *v = context;
-  for (size_t row = begin; row < end; row++)
+  for (size_t row = block.begin; row < block.end; row++)
     for (size_t column = 0; column < v->width; column++)
       render_pixel(v, column, v->first_row + row);
 }

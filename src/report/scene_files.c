@@ -1,6 +1,7 @@
 /* A scene as JSON: result.json of `scree run` (docs/reference/formats.md). */
 #include "base/alloc.h"
 #include "base/file.h"
+#include "base/quote.h"
 #include "report/csv.h"
 #include "report/json.h"
 #include "report/program.h"
@@ -18,6 +19,14 @@ static void json_book(scree_json *json, const scree_scene *scene) {
   scree_json_end(json);
 }
 
+static void json_hardened(scree_json *json, const scree_scene *scene) {
+  scree_scene_hardening h;
+  scree_json_array(json, "hardened");
+  for (size_t i = 0; scree_scene_get_hardening(scene, i, &h); i++)
+    SCREE_JSON_ROW(json, NULL, &h, material, other, count, deepest, stiffness_missing);
+  scree_json_end(json);
+}
+
 static void json_changes(scree_json *json, const scree_scene *scene) {
   size_t count = scree_scene_change_count(scene);
   SCREE_JSON_LIST (json, "changes", i, count) {
@@ -30,6 +39,9 @@ static void json_pile(scree_json *json, const char *name, const scree_pile_setti
                       const scree_pile *pile) {
   scree_json_object(json, NULL);
   scree_json_text(json, "name", name);
+  char finding[200];
+  scree_pile_finding(&pile->repose, finding, sizeof finding);
+  scree_json_text(json, "finding", finding);
   scree_json_repose(json, &pile->repose);
   SCREE_JSON_MEMBERS(json, pile, packing_fraction, body_count);
   scree_json_number(json, "particle_size", pile->size);
@@ -49,29 +61,33 @@ static void json_piles(scree_json *json, const scree_scene_entry *entry, const s
   scree_json_end(json);
 }
 
-static scree_status json_residences(scree_json *json, const scree_scene *scene,
-                                    scree_error *error) {
-  scree_status status = SCREE_OK;
-  scree_json_array(json, "residence");
-  for (size_t i = 0; status == SCREE_OK && scree_scene_residence_name(scene, i); i++) {
-    scree_residence r;
-    status = scree_scene_measure_residence(scene, i, &r, error);
-    if (status != SCREE_OK) break;
+/* What sensors have besides columns, but tables of single bodies. */
+static scree_status json_tables(scree_json *json, const scree_scene *scene, scree_error *error) {
+  const char *name;
+  scree_json_array(json, "tables");
+  for (size_t i = 0; (name = scree_scene_table_name(scene, i)); i++) {
+    SCREE_CLEANUP(scree_scene_table_free) scree_scene_table t = {0};
+    SCREE_TRY(scree_scene_make_table(scene, i, &t, error));
+    if (t.is_long) continue;
     scree_json_object(json, NULL);
-    scree_json_text(json, "name", scree_scene_residence_name(scene, i));
-    SCREE_JSON_MEMBERS(json, &r, from, until);
-    SCREE_JSON_LIST (json, "classes", c, r.class_count) {
+    scree_json_text(json, "name", name);
+    SCREE_JSON_LIST (json, "columns", k, t.column_count) {
       scree_json_row_object(json, NULL);
-      scree_json_text(json, "name", scree_scene_residence_class(scene, i, c));
-      SCREE_JSON_ROW_LIST (json, "counts", b, r.bin_count)
-        scree_json_number(json, NULL, r.counts[c * r.bin_count + b]);
+      scree_json_text(json, "name", t.names[k]);
+      scree_json_text(json, "unit", t.units[k]);
+      SCREE_JSON_ROW_LIST (json, "values", row, t.row_count) {
+        const size_t at = row * t.column_count + k;
+        if (t.texts[at])
+          scree_json_text(json, NULL, t.texts[at]);
+        else
+          scree_json_number(json, NULL, t.values[at]);
+      }
       scree_json_end(json);
     }
     scree_json_end(json);
-    scree_residence_free(&r);
   }
   scree_json_end(json);
-  return status;
+  return SCREE_OK;
 }
 
 static void json_costs(scree_json *json, const scree_scene *scene) {
@@ -156,16 +172,21 @@ static scree_status write_scene(FILE *stream, const scree_scene_entry *entry, co
   scree_json_text(&json, "ended_because",
                   entry->stopped_because ? entry->stopped_because : scree_scene_end(scene));
   scree_json_bool(&json, "whole", !entry->stopped_because);
+  scree_words words;
+  scree_scene_words(scene, scree_scene_pile_name(scene, 0) ? piles : NULL, entry->stopped_because,
+                    &words);
+  scree_json_words(&json, &words);
   scree_json_number(&json, "time", scree_world_time(world));
   scree_json_number(&json, "time_step", scree_world_time_step(world, NULL));
   scree_json_count(&json, "step_count", scree_world_step_count(world));
   scree_json_number(&json, "wall_seconds", entry->seconds);
   json_costs(&json, scene);
   json_book(&json, scene);
+  json_hardened(&json, scene);
   json_changes(&json, scene);
   json_piles(&json, entry, piles);
   json_parts(&json, scene);
-  scree_status status = json_residences(&json, scene, error);
+  scree_status status = json_tables(&json, scene, error);
   json_columns(&json, scene, last);
   scree_json_end(&json);
   return status;
@@ -198,8 +219,11 @@ scree_status scree_scene_csv_write(const scree_scene *scene, const char *path, b
   SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   for (size_t k = 0; k < columns; k++) {
     const char *unit = scree_scene_column_unit(scene, k);
-    fprintf(output.stream, "%s%s%s%s%s", k ? "," : "", scree_scene_column_name(scene, k),
-            *unit ? " [" : "", unit, *unit ? "]" : "");
+    char title[160];
+    snprintf(title, sizeof title, *unit ? "%s [%s]" : "%s", scree_scene_column_name(scene, k),
+             unit);
+    if (k) putc(',', output.stream);
+    scree_quote(output.stream, SCREE_QUOTE_CSV, title);
   }
   for (size_t i = 0; i < rows; i++)
     for (size_t k = 0; k < columns; k++) {

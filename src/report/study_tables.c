@@ -1,9 +1,11 @@
 /* What a study says as JSON and CSV. */
 #include "base/file.h"
 #include "base/number.h"
+#include "base/quote.h"
 #include "report/csv.h"
 #include "report/json.h"
 #include "report/program.h"
+#include "report/provenance.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,22 +18,41 @@ static void put_counts(scree_json *json, const scree_study_counts *c) {
   SCREE_JSON_ROW(json, "runs", c, done, failed, running, leased, waiting);
 }
 
-/* What is summarised of a point's runs. */
-static const struct {
-  const char *name;
-  size_t offset;
-} summaries[] = {{"angle_deg", offsetof(scree_point_result, angle_deg)},
-                 {"seconds", offsetof(scree_point_result, seconds)},
-                 {"height", offsetof(scree_point_result, height)},
-                 {"run_out", offsetof(scree_point_result, run_out)},
-                 {"coordination", offsetof(scree_point_result, coordination)},
-                 {"packing_fraction", offsetof(scree_point_result, packing)},
-                 {"left", offsetof(scree_point_result, left)},
-                 {"peak_rotation", offsetof(scree_point_result, peak_rotation)}};
-enum { SUMMARY_COUNT = sizeof summaries / sizeof *summaries };
-
+/* What is summarised of a point's runs: the angle, the time, and the numbers of heaps. */
+static size_t summary_count(const scree_study_result *r) {
+  return 2 + r->number_count;
+}
+static const char *summary_name(const scree_study_result *r, size_t which) {
+  return which == 0 ? "angle_deg" : which == 1 ? "seconds" : r->numbers[which - 2];
+}
 static const scree_summary *summary_of(const scree_point_result *p, size_t which) {
-  return (const scree_summary *)(const void *)((const char *)p + summaries[which].offset);
+  return which == 0 ? &p->angle_deg : which == 1 ? &p->seconds : &p->numbers[which - 2];
+}
+
+/* The answer in words, and of each answer what the factors do. */
+static void put_words(scree_json *json, const scree_study_result *r) {
+  scree_words words;
+  scree_study_words(r, 0, &words);
+  scree_json_words(json, &words);
+  SCREE_JSON_LIST (json, "told", k, r->answer_count ? r->answer_count : 1) {
+    scree_effect effects[SCREE_MOST_EFFECTS];
+    char finding[300];
+    double sd, half;
+    size_t count = scree_study_effects(r, k, effects);
+    scree_study_words(r, k, &words);
+    scree_study_finding(r, k, finding, sizeof finding);
+    scree_study_scatter(r, k, &sd, &half);
+    scree_json_object(json, NULL);
+    scree_json_text(json, "name", r->answer_count ? r->answers[k] : "angle_deg");
+    scree_json_text(json, "unit", r->answer_count ? r->units[k] : "deg");
+    scree_json_text(json, "sentence", words.answer);
+    scree_json_text(json, "finding", finding);
+    scree_json_number(json, "scatter", sd);
+    scree_json_number(json, "half", half);
+    SCREE_JSON_LIST (json, "effects", i, count)
+      SCREE_JSON_ROW(json, NULL, &effects[i], factor, other, from, to, size, half);
+    scree_json_end(json);
+  }
 }
 
 static void put_point(scree_json *json, const scree_study_result *r, const scree_point_result *p) {
@@ -48,7 +69,8 @@ static void put_point(scree_json *json, const scree_study_result *r, const scree
   scree_json_end(json);
   put_counts(json, &p->counts);
   SCREE_JSON_MEMBERS(json, p, heap_count, triangle_count);
-  for (size_t k = 0; k < SUMMARY_COUNT; k++) put_summary(json, summaries[k].name, summary_of(p, k));
+  for (size_t k = 0; k < summary_count(r); k++)
+    put_summary(json, summary_name(r, k), summary_of(p, k));
   scree_json_object(json, "answers");
   for (size_t k = 0; k < r->answer_count; k++) put_summary(json, r->answers[k], &p->answers[k]);
   scree_json_end(json);
@@ -115,8 +137,10 @@ scree_status scree_study_json_write(const void *result, const char *path, bool o
   SCREE_TRY(scree_json_open(json, path, overwrite, error));
   scree_json_object(json, NULL);
   SCREE_JSON_MEMBERS(json, r, version, name, design, method, angle, seed);
+  scree_json_origin(json, &r->origin);
   scree_json_count(json, "replicates", r->replicate_count);
   SCREE_JSON_MEMBERS(json, r, margin_deg, confidence);
+  put_words(json, r);
   put_counts(json, &r->counts);
   scree_json_count(json, "workers", r->worker_count);
   SCREE_JSON_MEMBERS(json, r, seconds_spent, seconds_left, mixed_versions);
@@ -161,11 +185,11 @@ scree_status scree_study_csv_write(const void *what, const char *path, bool over
   for (size_t k = 0; k < result->factor_count; k++) {
     if (has_column(result->factors[k])) continue;
     putc(',', stream);
-    scree_csv_text(stream, result->factors[k]);
+    scree_quote(stream, SCREE_QUOTE_CSV, result->factors[k]);
   }
   fputs(",done,failed,waiting,heap_count,triangle_count", stream);
-  for (size_t i = 0; i < SUMMARY_COUNT; i++) {
-    const char *name = summaries[i].name;
+  for (size_t i = 0; i < summary_count(result); i++) {
+    const char *name = summary_name(result, i);
     if (any_has(result, i))
       fprintf(stream, ",%s,%s_low,%s_high,%s_sd,%s_sd_low,%s_sd_high,%s_cv", name, name, name, name,
               name, name, name);
@@ -176,26 +200,26 @@ scree_status scree_study_csv_write(const void *what, const char *path, bool over
       char name[256];
       snprintf(name, sizeof name, "%.200s%s", result->answers[k], parts[i]);
       putc(',', stream);
-      scree_csv_text(stream, name);
+      scree_quote(stream, SCREE_QUOTE_CSV, name);
     }
   }
   putc('\n', stream);
   for (size_t i = 0; i < result->point_count; i++) {
     const scree_point_result *p = &result->points[i];
-    scree_csv_text(stream, p->label);
+    scree_quote(stream, SCREE_QUOTE_CSV, p->label);
     putc(',', stream);
-    scree_csv_text(stream, p->rp);
+    scree_quote(stream, SCREE_QUOTE_CSV, p->rp);
     putc(',', stream);
-    scree_csv_text(stream, p->shapes);
+    scree_quote(stream, SCREE_QUOTE_CSV, p->shapes);
     for (size_t k = 0; k < result->factor_count; k++) {
       if (has_column(result->factors[k])) continue;
       putc(',', stream);
-      scree_csv_text(stream, p->values[k]);
+      scree_quote(stream, SCREE_QUOTE_CSV, p->values[k]);
     }
     fprintf(stream, ",%zu,%zu,%zu,%zu,", p->counts.done, p->counts.failed,
             p->counts.waiting + p->counts.leased + p->counts.running, p->heap_count);
     scree_csv_number(stream, p->triangle_count);
-    for (size_t k = 0; k < SUMMARY_COUNT; k++)
+    for (size_t k = 0; k < summary_count(result); k++)
       if (any_has(result, k)) csv_summary(stream, summary_of(p, k));
     for (size_t k = 0; k < result->answer_count; k++) csv_summary(stream, &p->answers[k]);
     putc('\n', stream);

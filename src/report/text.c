@@ -1,7 +1,7 @@
 /* Text is cut into runs at the marks _{ and ^{ and }. Marks do not nest. */
-#include "report/text.h"
+#include "report/plot.h"
 
-#include "report/utf8.h"
+#include "base/quote.h"
 
 #include <stdbool.h>
 #include <string.h>

@@ -3,6 +3,7 @@
 #include "report/vtk.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/quote.h"
 #include "report/json.h"
 
 #include <math.h>
@@ -21,22 +22,10 @@ typedef struct writer {
   uint64_t offset; /* of the next array in the appended data */
 } writer;
 
-static void write_escaped(FILE *stream, const char *text) {
-  static const char *const entities[] = {
-      ['&'] = "&amp;", ['<'] = "&lt;", ['>'] = "&gt;", ['"'] = "&quot;"};
-  for (; *text; text++) {
-    size_t c = (unsigned char)*text;
-    if (c < sizeof entities / sizeof *entities && entities[c])
-      fputs(entities[c], stream);
-    else if (c >= 32)
-      fputc(*text, stream);
-  }
-}
-
 static void declare(writer *w, const char *name, scree_vtk_type type, size_t components,
                     size_t count) {
   fprintf(w->stream, "        <DataArray type=\"%s\" Name=\"", types[type].name);
-  write_escaped(w->stream, name);
+  scree_quote(w->stream, SCREE_QUOTE_XML, name);
   fprintf(w->stream, "\" NumberOfComponents=\"%zu\" format=\"appended\" offset=\"%llu\"/>\n",
           components, (unsigned long long)w->offset);
   w->offset += 8 + (uint64_t)types[type].size * components * count;
@@ -195,7 +184,7 @@ static void write_collection(FILE *stream, const char *const *files, const doubl
     char time[SCREE_NUMBER_SIZE];
     scree_number_format(times[i], time);
     fprintf(stream, "    <DataSet timestep=\"%s\" file=\"", time);
-    write_escaped(stream, files[i]);
+    scree_quote(stream, SCREE_QUOTE_XML, files[i]);
     fputs("\"/>\n", stream);
   }
   fputs("  </Collection>\n</VTKFile>\n", stream);

@@ -30,27 +30,26 @@ static vec3 corner_position(const scree_lattice *lattice, double i, double j, do
 
 /* ---- Which blocks ---- */
 
-static void classify(void *context, size_t begin, size_t end, size_t block, int worker) {
+static void classify(void *context, scree_block block) {
   scree_lattice *lattice = context;
-  (void)block, (void)worker;
   scree_shape_list list;
   scree_points centres;
   double d[SCREE_SHAPE_BATCH];
   scree_shape_list_all(lattice->shape, &list);
-  for (size_t s = begin; s < end; s++) {
+  for (size_t s = block.begin; s < block.end; s++) {
     size_t nx = (size_t)lattice->size[0], ny = (size_t)lattice->size[1];
     vec3 c = corner_position(lattice, 8.0 * (double)(s % nx) + 4, 8.0 * (double)(s / nx % ny) + 4,
                              8.0 * (double)(s / nx / ny) + 4);
-    centres.x[s - begin] = c.x;
-    centres.y[s - begin] = c.y;
-    centres.z[s - begin] = c.z;
+    centres.x[s - block.begin] = c.x;
+    centres.y[s - block.begin] = c.y;
+    centres.z[s - block.begin] = c.z;
   }
-  scree_shape_distance(lattice->shape, &list, &centres, end - begin, d);
+  scree_shape_distance(lattice->shape, &list, &centres, block.end - block.begin, d);
   double reach = (half_diagonal + margin) * lattice->step;
-  for (size_t s = begin; s < end; s++)
-    lattice->slots[s] = d[s - begin] > reach    ? SCREE_SLOT_OUTSIDE
-                        : d[s - begin] < -reach ? SCREE_SLOT_INSIDE
-                                                : 0;
+  for (size_t s = block.begin; s < block.end; s++)
+    lattice->slots[s] = d[s - block.begin] > reach    ? SCREE_SLOT_OUTSIDE
+                        : d[s - block.begin] < -reach ? SCREE_SLOT_INSIDE
+                                                      : 0;
 }
 
 static scree_status make_blocks(scree_lattice *lattice, scree_error *error) {
@@ -83,13 +82,12 @@ void scree_lattice_list(const scree_lattice *lattice, const scree_lattice_block 
                     list);
 }
 
-static void sample_blocks(void *context, size_t begin, size_t end, size_t task, int worker) {
+static void sample_blocks(void *context, scree_block range) {
   scree_lattice *lattice = context;
-  (void)task, (void)worker;
   scree_shape_list list;
   scree_points points;
   double d[SCREE_BLOCK_CELLS];
-  for (size_t b = begin; b < end; b++) {
+  for (size_t b = range.begin; b < range.end; b++) {
     scree_lattice_block *block = &lattice->blocks[b];
     scree_lattice_list(lattice, block, &list);
     for (int c = 0; c < SCREE_BLOCK_CELLS; c++) {
@@ -170,11 +168,10 @@ typedef struct composing {
   uint8_t *flagged;        /* per block */
 } composing;
 
-static void flag_blocks(void *context, size_t begin, size_t end, size_t task, int worker) {
+static void flag_blocks(void *context, scree_block block) {
   composing *c = context;
-  (void)task, (void)worker;
   float pad[SCREE_PAD_CORNERS];
-  for (size_t b = begin; b < end; b++) {
+  for (size_t b = block.begin; b < block.end; b++) {
     scree_lattice_gather(c->lattice, &c->lattice->blocks[b], pad);
     c->flagged[b] = 0;
     for (int cell = 0; cell < SCREE_BLOCK_CELLS; cell++)

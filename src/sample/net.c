@@ -44,11 +44,10 @@ typedef struct net {
 
 /* ---- Vertices ---- */
 
-static void count_block(void *context, size_t begin, size_t end, size_t task, int worker) {
+static void count_block(void *context, scree_block range) {
   net *n = context;
-  (void)task, (void)worker;
   float pad[SCREE_PAD_CORNERS];
-  for (size_t b = begin; b < end; b++) {
+  for (size_t b = range.begin; b < range.end; b++) {
     scree_lattice_block *block = &n->lattice.blocks[b];
     scree_lattice_gather(&n->lattice, block, pad);
     uint32_t vertex_count = 0;
@@ -132,11 +131,10 @@ static void link_cell(const net *n, const scree_lattice_block *block, int cell, 
   }
 }
 
-static void place_vertices(void *context, size_t begin, size_t end, size_t task, int worker) {
+static void place_vertices(void *context, scree_block range) {
   net *n = context;
-  (void)task, (void)worker;
   float pad[SCREE_PAD_CORNERS];
-  for (size_t b = begin; b < end; b++) {
+  for (size_t b = range.begin; b < range.end; b++) {
     const scree_lattice_block *block = &n->lattice.blocks[b];
     if (block->vertex_count == 0) continue;
     scree_lattice_gather(&n->lattice, block, pad);
@@ -204,21 +202,19 @@ static void settle_block(net *n, const scree_lattice_block *block, const scree_s
   }
 }
 
-static void settle(void *context, size_t begin, size_t end, size_t task, int worker) {
+static void settle(void *context, scree_block block) {
   net *n = context;
-  (void)task, (void)worker;
   scree_shape_list list;
-  for (size_t b = begin; b < end; b++) {
+  for (size_t b = block.begin; b < block.end; b++) {
     if (n->lattice.blocks[b].vertex_count == 0) continue;
     scree_lattice_list(&n->lattice, &n->lattice.blocks[b], &list);
     settle_block(n, &n->lattice.blocks[b], &list);
   }
 }
 
-static void relax(void *context, size_t begin, size_t end, size_t task, int worker) {
+static void relax(void *context, scree_block block) {
   net *n = context;
-  (void)task, (void)worker;
-  for (size_t v = begin; v < end; v++) {
+  for (size_t v = block.begin; v < block.end; v++) {
     vec3 sum = {0, 0, 0}, p = n->position[v], normal = n->normal[v];
     int count = 0;
     for (int f = 0; f < 6; f++) {
@@ -278,11 +274,10 @@ static void cut_quad(const net *n, const uint32_t quad[4], uint32_t *triangles) 
   }
 }
 
-static void make_quads(void *context, size_t begin, size_t end, size_t task, int worker) {
+static void make_quads(void *context, scree_block range) {
   net *n = context;
-  (void)task, (void)worker;
   float pad[SCREE_PAD_CORNERS];
-  for (size_t b = begin; b < end; b++) {
+  for (size_t b = range.begin; b < range.end; b++) {
     if (n->first_quad[b] == n->first_quad[b + 1]) continue;
     const scree_lattice_block *block = &n->lattice.blocks[b];
     uint32_t *triangles = n->mesh.triangles + 6 * n->first_quad[b];
@@ -315,10 +310,9 @@ static void make_quads(void *context, size_t begin, size_t end, size_t task, int
  * Triangles that fall over or are too flat hold their vertices at the mean of their cells'
  * crossings, where Gibson puts them; after each pass the net is looked at again. At a resolution
  * that suits the shape there are none. */
-static void find_fallen(void *context, size_t begin, size_t end, size_t task, int worker) {
+static void find_fallen(void *context, scree_block block) {
   net *n = context;
-  (void)task, (void)worker;
-  for (size_t t = begin; t < end; t++) {
+  for (size_t t = block.begin; t < block.end; t++) {
     const uint32_t *corner = n->mesh.triangles + 3 * t;
     vec3 p[3], normal;
     double longest = 0, worst = 1;
@@ -335,11 +329,10 @@ static void find_fallen(void *context, size_t begin, size_t end, size_t task, in
   }
 }
 
-static void hold_vertices(void *context, size_t begin, size_t end, size_t task, int worker) {
+static void hold_vertices(void *context, scree_block range) {
   net *n = context;
-  (void)task, (void)worker;
   float pad[SCREE_PAD_CORNERS];
-  for (size_t b = begin; b < end; b++) {
+  for (size_t b = range.begin; b < range.end; b++) {
     const scree_lattice_block *block = &n->lattice.blocks[b];
     if (block->vertex_count == 0 || !memchr(n->held + block->first_vertex, 1, block->vertex_count))
       continue;

@@ -2,7 +2,6 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/progress.h"
-#include "base/vec.h"
 #include "sample/device.h"
 #include "sample/net.h"
 #include "sample/scanner.h"
@@ -56,14 +55,12 @@ scree_sample_options scree_default_sample_options(void) {
 
 static scree_status make_shape(const scree_piece_mm *lines, size_t line_count, double resolution,
                                scree_ticker *ticker, scree_mesh *mesh, scree_error *error) {
-  scree_shape *shape = scree_alloc(1, sizeof *shape);
+  SCREE_CLEANUP(scree_free_at) scree_shape *shape = scree_alloc(1, sizeof *shape);
   if (!shape) return scree_fail_memory(error, sizeof *shape, "a sample's shape");
   bool built = scree_shape_build(lines, line_count, shape);
   SCREE_ASSERT(built);
   (void)built;
-  scree_status status = scree_net_mesh(shape, resolution, ticker, mesh, error);
-  scree_free(shape);
-  return status;
+  return scree_net_mesh(shape, resolution, ticker, mesh, error);
 }
 
 static scree_status make_device(const scree_device *device, const scree_sample_options *options,

@@ -164,10 +164,9 @@ static void survey(scan *s) {
   }
 }
 
-static void displace(void *context, size_t begin, size_t end, size_t block, int worker) {
+static void displace(void *context, scree_block block) {
   scan *s = context;
-  (void)block, (void)worker;
-  for (size_t v = begin; v < end; v++) {
+  for (size_t v = block.begin; v < block.end; v++) {
     vec3 normal = s->normals[v], p = vec3_load(s->mesh->positions + 3 * v);
     double edge = s->edge[v] < edge_full ? s->edge[v] / edge_full : 1;
     double size = vec3_norm2(normal) > 0 ? s->scanner->sigma * coverage(s->views, normal) : 0;

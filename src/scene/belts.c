@@ -52,7 +52,7 @@ static scree_status refuse(const scree_mesh *mesh, size_t facet, const char *why
                     p.z, why);
 }
 
-/* Of one piece. */
+/* Winds one piece outwards. */
 static scree_status wind(scree_pieces *pieces, size_t index, bool solid, const strip *strips,
                          scree_error *error) {
   const scree_piece *piece = &pieces->items[index];

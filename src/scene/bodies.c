@@ -1,8 +1,10 @@
 /* Bodies from a table, and into one: a line of names, then a line for each body, between commas.
  * Names are x, y, z; qw, qx, qy, qz, which turn the particle's axes into space; vx, vy, vz; wx, wy,
  * wz in space; size; shape. Behind a name its unit may stand: `x [mm]`. */
+#include "base/arena.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/quote.h"
 #include "scene/named_table.h"
 #include "scene/scene.h"
 
@@ -15,15 +17,14 @@ static const scree_named_column known[COLUMNS] = {
     {"qy", ""},      {"qz", ""},      {"vx", "m/s"},   {"vy", "m/s"}, {"vz", "m/s"},
     {"wx", "rad/s"}, {"wy", "rad/s"}, {"wz", "rad/s"}, {"size", "m"}, {"shape", NULL}};
 
-static scree_status check_names(const scree_named_table *t, const scree_scene *scene,
-                                scree_error *error) {
+static scree_status check_names(const scree_named_table *t, const scree_scene *scene) {
   if (!t->there[0] || !t->there[1] || !t->there[2])
-    return scree_named_fail(t, error, "needs columns x, y and z");
+    return scree_rows_fail(&t->rows, "needs columns x, y and z");
   bool turned = t->there[3] || t->there[4] || t->there[5] || t->there[6];
   if (turned && !(t->there[3] && t->there[4] && t->there[5] && t->there[6]))
-    return scree_named_fail(t, error, "an orientation needs qw, qx, qy and qz");
+    return scree_rows_fail(&t->rows, "an orientation needs qw, qx, qy and qz");
   if (!t->there[SHAPE] && scene->plan.families.count > 1)
-    return scree_named_fail(t, error, "needs a column shape: there are several");
+    return scree_rows_fail(&t->rows, "needs a column shape: there are several");
   return SCREE_OK;
 }
 
@@ -44,7 +45,7 @@ static scree_status admit(const scree_named_table *t, const double v[REALS], con
                           scree_scene *scene, scree_error *error) {
   size_t index = find_shape(scene, shape, v[13]);
   if (index == SCREE_SCENE_SHAPES(scene))
-    return scree_named_fail(t, error, "no shape '%.40s' of that name and size", shape ? shape : "");
+    return scree_rows_fail(&t->rows, "no shape '%.40s' of that name and size", shape ? shape : "");
   scree_body body = scree_default_body();
   memcpy(body.position, v, sizeof body.position);
   for (int k = 0; k < 3; k++) {
@@ -58,28 +59,58 @@ static scree_status admit(const scree_named_table *t, const double v[REALS], con
   scree_status status = scree_scene_admit(scene, index, &body, &why);
   double length2 = 0;
   for (int k = 3; k < 7; k++) length2 += v[k] * v[k];
-  if (status == SCREE_OK && fabs(length2 - 1) <= 4 * DBL_EPSILON) /* as a world wrote it */
+  if (status == SCREE_OK && !scene->shapes[index].piece_count &&
+      fabs(length2 - 1) <= 4 * DBL_EPSILON) /* as a world wrote it */
     scree_body_keep_orientation(scene->world, scene->shape_of.count - 1, v + 3);
-  return status == SCREE_BAD_ARGUMENT ? scree_named_fail(t, error, "%s", why.message)
+  return status == SCREE_BAD_ARGUMENT ? scree_rows_fail(&t->rows, "%s", why.message)
          : status == SCREE_OK         ? status
                                       : scree_fail(error, status, "%s", why.message);
 }
 
-static scree_status read_table(const char *name, char *text, scree_scene *scene,
+static scree_status read_table(const char *name, char *text, size_t size, scree_scene *scene,
                                scree_error *error) {
   scree_named_table t;
-  SCREE_TRY(scree_named_open(&t, name, text, known, COLUMNS, error));
-  SCREE_TRY(check_names(&t, scene, error));
+  SCREE_TRY(scree_named_open(&t, name, text, size, known, COLUMNS, error));
+  SCREE_TRY(check_names(&t, scene));
   for (bool there = true; there;) {
     double v[COLUMNS] = {0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, NAN};
     const char *words[COLUMNS] = {NULL};
-    SCREE_TRY(scree_named_row(&t, v, words, &there, error));
+    SCREE_TRY(scree_named_row(&t, v, words, &there));
     if (there) SCREE_TRY(admit(&t, v, words[SHAPE], scene, error));
   }
   return SCREE_OK;
 }
 
-scree_status scree_scene_read_bodies(scree_scene *scene, const char *folder, scree_error *error) {
+/* Reads the places of a table; of many every second, fourth, ... is kept. */
+static scree_status read_places(const char *name, char *text, size_t size, scree_scene *scene,
+                                scree_error *error) {
+  enum { MOST_PLACES = 512 };
+  scree_named_table t;
+  SCREE_TRY(scree_named_open(&t, name, text, size, known, COLUMNS, error));
+  SCREE_TRY(check_names(&t, scene));
+  SCREE_TRY_TAKE(scene->table_places, &scene->arena, MOST_PLACES, error);
+  size_t every = 1;
+  for (size_t row = 0;; row++) {
+    double v[COLUMNS] = {0};
+    const char *words[COLUMNS] = {NULL};
+    bool there;
+    SCREE_TRY(scree_named_row(&t, v, words, &there));
+    if (!there) return SCREE_OK;
+    if (row % every) continue;
+    if (scene->table_place_count == MOST_PLACES) {
+      for (size_t i = 0; i < MOST_PLACES / 2; i++)
+        memcpy(scene->table_places[i], scene->table_places[2 * i], sizeof *scene->table_places);
+      scene->table_place_count = MOST_PLACES / 2;
+      every *= 2;
+    }
+    memcpy(scene->table_places[scene->table_place_count++], v, sizeof *scene->table_places);
+  }
+}
+
+static scree_status read_file(scree_scene *scene, const char *folder,
+                              scree_status (*read)(const char *name, char *text, size_t size,
+                                                   scree_scene *scene, scree_error *error),
+                              scree_error *error) {
   const scree_plan_bodies *plan = scene->plan.bodies;
   char *bytes;
   size_t count;
@@ -89,11 +120,20 @@ scree_status scree_scene_read_bodies(scree_scene *scene, const char *folder, scr
   scree_error why;
   scree_status status = scree_file_read(path, MOST_BYTES, &bytes, &count, &why);
   if (status == SCREE_OK) {
-    status = read_table(path, bytes, scene, &why);
+    status = read(path, bytes, count, scene, &why);
     scree_free(bytes);
   }
   scree_free(path);
   return scree_scene_blame(scene, &plan->place, status, &why, error);
+}
+
+scree_status scree_scene_read_places(scree_scene *scene, const char *folder, scree_error *error) {
+  return read_file(scene, folder, read_places, error);
+}
+
+scree_status scree_scene_read_bodies(scree_scene *scene, const char *folder, scree_error *error) {
+  SCREE_TRY(read_file(scene, folder, read_table, error));
+  return scree_scene_check_pierced(scene, error);
 }
 
 static void put_reals(FILE *stream, const double *values, int count) {
@@ -116,7 +156,7 @@ scree_status scree_scene_bodies_write(const scree_scene *scene, const char *path
   scree_body body;
   for (size_t b = 0; scree_scene_next_body(scene, &b, &body); b++) {
     size_t shape = scene->shape_of.items[b];
-    fputs(scree_scene_shape_name(scene, shape), out);
+    scree_quote(out, SCREE_QUOTE_CSV, scree_scene_shape_name(scene, shape));
     put_reals(out, body.position, 3);
     put_reals(out, body.orientation, 4);
     put_reals(out, body.velocity, 3);

@@ -2,13 +2,14 @@
  * each field that differs must be one that may. A scene of the new file then takes over shapes,
  * world and books of the old one, and by name what its inlets, outlets and sensors have counted;
  * what the world itself must know is set in it. */
+#include "scene/geometry.h"
+#include "scene/motions.h"
 #include "scene/scene.h"
-#include "world/backend.h"
+#include "world/state/remote.h"
 
 #include "base/alloc.h"
 #include "base/array.h"
 #include "base/codec.h"
-#include "base/file.h"
 #include "base/platform.h"
 
 #include <stdlib.h>
@@ -96,7 +97,7 @@ static void print_node(FILE *stream, const scree_yaml *node) {
   putc(ends[1], stream);
 }
 
-/* In the scene's arena. */
+/* Keeps a text in the scene's arena. */
 static scree_status keep_text(const comparison *c, const char *text, const char **kept) {
   char *copy;
   if (!text) return SCREE_OK;
@@ -226,16 +227,24 @@ static scree_status refuse_others(const comparison *c, scree_error *error) {
 /* ---- what is taken over ---- */
 
 static scree_status take_shapes(const scree_scene *was, scree_scene *is, scree_error *error) {
+  size_t pieces = SCREE_SCENE_SHAPES(was) - was->named_count;
+  SCREE_SCRATCH(scree_scene_piece, of, pieces, error);
+  for (size_t i = 0; i < pieces; i++) {
+    const scree_scene_shape *s = &was->shapes[was->named_count + i];
+    of[i] = (scree_scene_piece){(uint32_t)s->assembly, s->group, s->part};
+  }
+  SCREE_TRY(scree_scene_append_pieces(is, of, pieces, error));
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(is); i++) {
     scree_scene_shape *from = &was->shapes[i], *to = &is->shapes[i];
-    *to = (scree_scene_shape){.particle = from->particle, .source = scree_strdup(from->source)};
-    if (!to->source) return scree_fail_memory(error, strlen(from->source), "a shape");
+    const char *part = to->part;
+    *to = *from;
+    to->part = part;
+    to->source = scree_strdup(from->source);
     scree_particle_retain(to->particle);
+    if (!to->source) return scree_fail_memory(error, strlen(from->source), "a shape");
     scree_scene_measure_shape(is, i);
     to->density = from->density;
     to->mass = from->mass;
-    to->entered = from->entered;
-    to->left = from->left;
   }
   return SCREE_OK;
 }
@@ -246,8 +255,6 @@ static void take_books(const scree_scene *was, scree_scene *is) {
   is->time_step = was->time_step;
   is->tick_steps = was->tick_steps;
   is->next_tick = was->next_tick;
-  is->next_map = was->next_map;
-  is->next_hits = was->next_hits;
   is->still_ticks = was->still_ticks;
   is->entered_mass = was->entered_mass;
   is->left_mass = was->left_mass;
@@ -303,28 +310,31 @@ static void take_inlets(const comparison *c, scree_scene *is) {
   }
 }
 
-/* What a sensor that stays as it was has gathered, by way of a checkpoint's bytes. */
-static scree_status take_sensor(scree_scene *was, size_t k, scree_scene *is, size_t i,
-                                scree_error *error) {
+/* What a sensor has gathered, by way of a checkpoint's bytes. */
+static scree_status take_coded(void (*code)(scree_codec *, scree_scene *, scree_scene_sensor *),
+                               scree_scene *was, scree_scene_sensor *from, scree_scene *is,
+                               scree_scene_sensor *to, scree_error *error) {
   SCREE_CLEANUP(scree_codec_free) scree_codec out = {0};
-  scree_scene_code_sensor(&out, was, &was->sensors[k]);
+  code(&out, was, from);
   scree_codec in = {.source = out.bytes, .count = out.count, .loading = true};
-  if (scree_codec_good(&out)) scree_scene_code_sensor(&in, is, &is->sensors[i]);
+  if (scree_codec_good(&out)) code(&in, is, to);
   bool good = scree_codec_good(&out) && scree_codec_good(&in);
   return good ? SCREE_OK : scree_fail_memory(error, out.count, "a sensor");
 }
 
+/* What sensors that stay as they were have gathered, and those of a kind together. */
 static scree_status take_sensors(const comparison *c, scree_scene *is, scree_error *error) {
   scree_scene *was = c->scene;
   for (size_t i = 0; i < is->plan.sensors.count; i++) {
-    const char *name = is->sensors[i].plan->place.name;
-    size_t k = SCREE_PLAN_FIND(was->plan.sensors, name);
+    scree_scene_sensor *to = &is->sensors[i];
+    const char *name = to->plan->place.name;
+    size_t k = SCREE_PLAN_FIND(was->plan.sensors, name), first = 0;
     if (k < was->plan.sensors.count && !has_changed(c, "sensors", name))
-      SCREE_TRY(take_sensor(was, k, is, i, error));
+      SCREE_TRY(take_coded(scree_sensor_code, was, &was->sensors[k], is, to, error));
+    while (first < was->plan.sensors.count && was->sensors[first].kind != to->kind) first++;
+    if (to->leads && first < was->plan.sensors.count)
+      SCREE_TRY(take_coded(scree_sensor_code_shared, was, &was->sensors[first], is, to, error));
   }
-  uint64_t now = scree_world_step_count(was->world);
-  if (is->hit_steps && !was->hit_steps) is->next_hits = now;
-  if (is->map_steps && !was->map_steps) is->next_map = now;
   return SCREE_OK;
 }
 
@@ -344,8 +354,8 @@ static scree_status take_series(const scree_scene *was, scree_scene *is, scree_e
   return SCREE_OK;
 }
 
-/* By which inlets and outlets bodies came and went: their places now, by their names; UINT32_MAX:
- * there is none any more. */
+/* The inlets and outlets by which bodies came and went: their places now, by their names;
+ * UINT32_MAX: there is none any more. */
 static void take_stays(const scree_scene *was, scree_scene *is) {
   const scree_plan *from = &was->plan, *to = &is->plan;
   is->stays = was->stays;
@@ -364,16 +374,14 @@ static void take_stays(const scree_scene *was, scree_scene *is) {
   }
 }
 
-/* The lists of bodies and of contacts that impacts follow change hands. */
+/* The lists of bodies change hands. */
 static void take_lists(scree_scene *was, scree_scene *is) {
   is->shape_of = was->shape_of;
   is->entered_at = was->entered_at;
   take_stays(was, is);
   was->stays.items = NULL;
-  if (is->hit_steps) is->hits = was->hits;
   was->shape_of.items = NULL;
   was->entered_at.items = NULL;
-  if (is->hit_steps) was->hits.items = NULL;
 }
 
 /* ---- what the world must know ---- */
@@ -399,11 +407,11 @@ static scree_status set_geometry(const comparison *c, scree_scene *scene, scree_
     if (!has_changed(c, "geometry", g->place.name)) continue;
     const double *surface = isnan(g->surface_velocity[0]) ? still : g->surface_velocity;
     double loop[3];
-    scree_scene_belt_loop(g, loop);
+    scree_geometry_belt_loop(g, loop);
     for (size_t w = made->first_wall; w < made->first_wall + made->wall_count; w++)
       SCREE_TRY(scree_world_set_wall_surface(scene->world, w, surface, still, loop, error));
-    SCREE_TRY(scree_scene_read_paths(scene, i, c->folder, error));
-    SCREE_TRY(scree_scene_set_motions(scene, i, scene->world, error));
+    SCREE_TRY(scree_motions_read(scene, i, c->folder, error));
+    SCREE_TRY(scree_motions_set(scene, i, scene->world, error));
   }
   return scree_scene_lead_by_phase(scene, error);
 }
@@ -444,7 +452,7 @@ static scree_status take_over(comparison *c, scree_scene *is, scree_error *error
   scree_scene_reopen(was, &is->plan);
   take_books(was, is);
   SCREE_TRY(scree_scene_complete_plan(is, error));
-  SCREE_TRY(scree_scene_plan_maps(is, error));
+  SCREE_TRY(scree_sensors_begin(is, error));
   SCREE_TRY(take_sensors(c, is, error));
   SCREE_TRY(take_series(was, is, error));
   take_inlets(c, is);

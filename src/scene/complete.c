@@ -2,12 +2,13 @@
  * checkpoints and the watcher. Frames fall on the first step at or past their time, whatever the
  * chunks, so an interrupted scene writes the same frames as an uninterrupted one. */
 #include "scene/scene.h"
-#include "world/checkpoint.h"
+#include "world/step/checkpoint.h"
 
 #include "base/alloc.h"
 #include "base/file.h"
 #include "base/path.h"
 #include "base/platform.h"
+#include "base/quote.h"
 
 #include <errno.h>
 #include <string.h>
@@ -27,7 +28,7 @@ typedef struct work {
   FILE *series;
   size_t rows_written, frame_count, chunk;
   double last_checkpoint, last_watch; /* on the clock */
-  double speed_since, speed, speed_at_fraction, fraction_speed;
+  double speed_since, speed;
   uint64_t speed_steps;
 } work;
 
@@ -61,17 +62,20 @@ static scree_status write_rows(work *w, scree_error *error) {
   return fflush(w->series) == 0 && !ferror(w->series) ? SCREE_OK : fail_series(error);
 }
 
-/* Anew, with all rows so far: what was written after a checkpoint is written again. */
+/* The series anew, with all rows so far: what was written after a checkpoint is written again. */
 static scree_status open_series(work *w, scree_error *error) {
   const scree_scene *scene = w->scene;
   w->series = scree_open_stream(SCREE_PATH_IN(w->job->folder, "series.csv"), "wb");
   if (!w->series) return fail_series(error);
-  fprintf(w->series, "# scree %s, %s\n", scree_version(),
-          scene->plan.title ? scene->plan.title : "");
+  fprintf(w->series, "# scree %s, ", scree_version());
+  scree_quote(w->series, SCREE_QUOTE_COMMENT, scene->plan.title ? scene->plan.title : "");
+  putc('\n', w->series);
   for (size_t k = 0; k < scene->columns.count; k++) {
     const scree_scene_column *c = &scene->columns.items[k];
-    fprintf(w->series, "%s%s%s%s%s", k ? "," : "", c->name, *c->unit ? " [" : "", c->unit,
-            *c->unit ? "]" : "");
+    char title[160];
+    snprintf(title, sizeof title, *c->unit ? "%s [%s]" : "%s", c->name, c->unit);
+    if (k) putc(',', w->series);
+    scree_quote(w->series, SCREE_QUOTE_CSV, title);
   }
   putc('\n', w->series);
   return write_rows(w, error);
@@ -115,7 +119,7 @@ static scree_status put_motion(work *w, bool last, scree_error *error) {
   return scree_motion_put(&w->motion, w->scene->world, error);
 }
 
-/* As many steps as stay before the next frame of either kind, or one. */
+/* Steps that stay before the next frame of either kind, or one. */
 static size_t steps_to_frame(const work *w) {
   double next = fmin(next_frame(w), scree_motion_next(&w->motion));
   double until = floor((next - now_of(w)) / w->scene->time_step) - 1;
@@ -127,13 +131,20 @@ static size_t steps_to_frame(const work *w) {
 
 static void measure_speed(work *w, double now) {
   uint64_t steps = scree_world_step_count(w->scene->world);
-  double span = now - w->speed_since, fraction = scree_scene_fraction(w->scene);
+  double span = now - w->speed_since;
   if (span < (isnan(w->speed) ? 1 : speed_seconds)) return;
   w->speed = (double)(steps - w->speed_steps) / span;
-  w->fraction_speed = (fraction - w->speed_at_fraction) / span;
   w->speed_since = now;
   w->speed_steps = steps;
-  w->speed_at_fraction = fraction;
+}
+
+/* On the clock, by what the steps so far have cost; NAN: these are too few to say. */
+static double seconds_left(const work *w) {
+  scree_scene_costs c = scree_scene_get_costs(w->scene);
+  scree_scene_forecast f;
+  if (isnan(w->speed) || !(c.processor_seconds > 0)) return NAN;
+  scree_scene_foretell(w->scene, &f);
+  return f.seconds * c.wall_seconds / c.processor_seconds;
 }
 
 static bool watch(work *w, bool always) {
@@ -141,9 +152,7 @@ static bool watch(work *w, bool always) {
   if (!w->job->watch || (!always && now - w->last_watch < watch_seconds)) return true;
   w->last_watch = now;
   measure_speed(w, now);
-  scree_scene_state state = {w->scene, now_of(w), fraction, w->speed,
-                             w->fraction_speed > 0 ? (1 - fraction) / w->fraction_speed
-                                                   : (double)NAN};
+  scree_scene_state state = {w->scene, now_of(w), fraction, w->speed, seconds_left(w)};
   return w->job->watch(w->job->context, &state);
 }
 
@@ -195,11 +204,12 @@ static scree_status go_on(work *w, scree_error *error) {
 static scree_status take_over(scree_scene *scene, const scree_scene_file *file, const char *path,
                               scree_error *error) {
   scree_plan plan;
-  SCREE_OWNED(scree_scene_file, shrunk);
+  SCREE_OWNED(scree_scene_file, scaled);
+  const scree_scene_extent extent = scree_scene_get_extent(scene);
   SCREE_CLEANUP(scree_free_at) char *text = NULL;
-  if (scree_scene_file_shrinks(file))
-    SCREE_TRY(scree_scene_file_shrink(file, scree_scene_largest(scene), &shrunk, error));
-  if (shrunk) file = shrunk;
+  if (scree_scene_file_scales(file))
+    SCREE_TRY(scree_scene_file_scale(file, &extent, &scaled, error));
+  if (scaled) file = scaled;
   SCREE_TRY(scree_scene_file_text(file, &text, error));
   SCREE_TRY(scree_scene_check_same(scene, text, path, error));
   SCREE_TRY(scree_scene_file_plan(file, &scene->arena, &plan, error));
@@ -275,7 +285,6 @@ scree_status scree_scene_complete(const scree_scene_job *job, scree_scene **scen
   scree_status status = prepare(&w, error);
   if (status == SCREE_OK) {
     w.speed_steps = scree_world_step_count(w.scene->world);
-    w.speed_at_fraction = scree_scene_fraction(w.scene);
     status = go_on(&w, error);
   }
   bool stopped = status == SCREE_CANCELLED || status == SCREE_DIVERGED;

@@ -1,9 +1,9 @@
 /* What a scene leaves out and what then follows from its particles: how wide a container is that is
  * filled by layers, how high these begin, how far a pile is measured. All of it follows from the
  * file and the particles, so that it is the same after loading a checkpoint. */
+#include "scene/geometry.h"
 #include "scene/scene.h"
 
-#include "base/alloc.h"
 #include "base/math.h"
 
 static const double pi = 3.14159265358979;
@@ -11,8 +11,6 @@ static const double loose_packing = 0.30;    /* solid fraction of what has been 
 static const double cell_share = 1.02;       /* of the largest body's diameter: a grid's pitch */
 static const double clearance_share = 0.005; /* of a body's size, kept free on each side */
 static const double most_abreast = 3;        /* bodies, in a width that is not given */
-static const double rim = 1.5;               /* of the longest body: measured beyond a disc */
-static const double coarsest_cell = 0.5;     /* sizes: a coarser height field shows no pile */
 
 static const scree_plan_geometry *geometry_named(const scree_scene *scene, const char *name) {
   size_t index = SCREE_PLAN_FIND(scene->plan.geometry, name);
@@ -49,7 +47,7 @@ static scree_status measure_layers(scree_scene *scene, scree_scene_inlet *inlet,
   return SCREE_OK;
 }
 
-/* About as wide as the heap will be high, and with room for some abreast. */
+/* A container is about as wide as the heap will be high, and with room for some abreast. */
 static double usual_width(const scree_scene *scene, const scree_scene_inlet *inlet, bool round) {
   double solid = 0, count = (double)inlet->plan->count;
   for (size_t k = 0; k < inlet->plan->shapes.count; k++) {
@@ -60,10 +58,6 @@ static double usual_width(const scree_scene *scene, const scree_scene_inlet *inl
   double abreast = fmin(most_abreast, ceil(scree_cbrt(count)));
   return fmax(scree_cbrt(solid / loose_packing * (round ? 4 / 3.14159265358979323846 : 1)),
               (round ? abreast + 0.5 : abreast) * inlet->layers.pitch);
-}
-
-static void take(double *value, double usual) {
-  if (isnan(*value)) *value = usual;
 }
 
 /* ---- where its layers begin ---- */
@@ -85,17 +79,15 @@ static void place_layers(const scree_scene *scene, scree_scene_inlet *inlet) {
     return;
   }
   const scree_plan_geometry *g = geometry_named(scene, plan->in);
-  if (g->cylinder) {
-    take(&g->cylinder->radius, 0.5 * usual_width(scene, inlet, true));
-    l->radius = g->cylinder->radius;
-  } else {
-    take(&g->shaft->width, usual_width(scene, inlet, false));
-    take(&g->shaft->depth, g->shaft->width);
-    l->half[0] = 0.5 * g->shaft->width;
-    l->half[1] = 0.5 * g->shaft->depth;
-  }
-  double loose = g->cylinder ? loose_packing * pi * l->radius * l->radius
-                             : loose_packing * 4 * l->half[0] * l->half[1];
+  const scree_container in = scree_geometry_container(g);
+  const bool round = !in.depth;
+  if (isnan(*in.width)) *in.width = (round ? 0.5 : 1) * usual_width(scene, inlet, round);
+  if (!round && isnan(*in.depth)) *in.depth = *in.width;
+  l->radius = round ? *in.width : 0;
+  l->half[0] = round ? 0 : 0.5 * *in.width;
+  l->half[1] = round ? 0 : 0.5 * *in.depth;
+  double loose = round ? loose_packing * pi * l->radius * l->radius
+                       : loose_packing * 4 * l->half[0] * l->half[1];
   double bottom = isnan(plan->bottom) ? plan->above : plan->bottom;
   if (plan->begin) bottom = l->solid / loose + plan->above;
   if (plan->packed) bottom = fmax(bottom, (cell_share - 1) * l->pitch);
@@ -103,47 +95,14 @@ static void place_layers(const scree_scene *scene, scree_scene_inlet *inlet) {
   l->middle.z += bottom;
 }
 
-/* ---- piles ---- */
-
-/* Of all shapes, with what the layers keep free around them. */
-static double longest_shape(const scree_scene *scene, double clearance) {
-  double longest = 0;
-  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
-    scree_placement p = scree_placement_of(scene->shapes[i].particle, clearance);
-    longest = fmax(longest, 2 * fmin(p.radius, vec3_norm(p.half)));
-  }
-  return longest;
-}
-
-static scree_status complete_pile(const scree_scene *scene, const scree_scene_layers *layers,
-                                  scree_plan_pile *pile, scree_error *error) {
-  if (layers) take(&pile->size, layers->size);
-  if (!isnan(pile->disc))
-    take(&pile->reach, pile->disc + rim * longest_shape(scene, layers ? layers->clearance : 0));
-  if (isnan(pile->size)) return SCREE_OK;
-  return scree_scene_check_cell(scene, &pile->place, pile->cell, pile->size, error);
-}
-
-scree_status scree_scene_check_cell(const scree_scene *scene, const scree_place *place, double cell,
-                                    double size, scree_error *error) {
-  if (cell <= coarsest_cell * size) return SCREE_OK;
-  return scree_scene_fail(scene, place, error,
-                          "cell %g m: at most half the mean particle size, %.4g m", cell,
-                          coarsest_cell * size);
-}
+/* ---- all of it ---- */
 
 scree_status scree_scene_complete_plan(scree_scene *scene, scree_error *error) {
-  const scree_scene_layers *layers = NULL; /* the first */
   for (size_t i = 0; i < scene->plan.inlets.count; i++) {
     scree_scene_inlet *inlet = &scene->inlets[i];
     if (!inlet->plan->layers) continue;
     SCREE_TRY(measure_layers(scene, inlet, error));
     place_layers(scene, inlet);
-    if (!layers) layers = &inlet->layers;
   }
-  for (size_t i = 0; i < scene->plan.sensors.count; i++) {
-    scree_plan_pile *pile = scene->sensors[i].plan->pile;
-    if (pile) SCREE_TRY(complete_pile(scene, layers, pile, error));
-  }
-  return SCREE_OK;
+  return scree_sensors_complete(scene, error);
 }

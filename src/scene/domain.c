@@ -2,10 +2,10 @@
  * inlets, bodies of its table, outlets and where sensors look, and as much again on every side.
  * What has left that has fallen past all of it and would fall for ever. Planes and endless
  * cylinders have no end along themselves, and layers none upwards. */
+#include "scene/region.h"
 #include "scene/scene.h"
 
-#include "base/tree.h"
-#include "world/backend.h"
+#include "world/state/world.h"
 
 static const double least_margin = 10; /* of the largest body's radius */
 
@@ -28,7 +28,8 @@ static void take_in_circle(scree_scene_reach *reach, vec3 p, vec3 axis, double r
   take_in(reach, low, high);
 }
 
-/* Along the axes for which it is not at right angles to `axis` (planes: but for that axis). */
+/* The reach is endless along the axes for which it is not at right angles to `axis` (planes: but
+ * for that axis). */
 static void take_in_endless(scree_scene_reach *reach, vec3 axis, bool plane) {
   const double n[3] = {axis.x, axis.y, axis.z};
   for (int k = 0; k < 3; k++) {
@@ -58,11 +59,6 @@ static void take_in_wall(const scree_scene *scene, size_t index, scree_scene_rea
     take_in_endless(reach, axis, wall.kind == SCREE_WALL_PLANE);
 }
 
-static void take_in_sensor(const scree_plan_sensor *sensor, scree_scene_reach *reach) {
-  if (sensor->region) take_in(reach, sensor->region->box->min, sensor->region->box->max);
-  if (sensor->flow) take_in(reach, sensor->flow->through, sensor->flow->through);
-}
-
 scree_scene_reach scree_scene_reach_of(const scree_scene *scene) {
   scree_scene_reach reach = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
   const scree_plan *plan = &scene->plan;
@@ -74,7 +70,7 @@ scree_scene_reach scree_scene_reach_of(const scree_scene *scene) {
       reach.high[2] = INFINITY;
       continue;
     }
-    scree_scene_region_of(inlet, low, high);
+    scree_region_bounds(&SCREE_REGION_OF(inlet), low, high);
     if (inlet->layers) high[2] = INFINITY;
     take_in(&reach, low, high);
   }
@@ -84,13 +80,14 @@ scree_scene_reach scree_scene_reach_of(const scree_scene *scene) {
 scree_scene_reach scree_scene_domain(const scree_scene *scene) {
   const scree_plan *plan = &scene->plan;
   scree_scene_reach reach = scree_scene_reach_of(scene);
-  double margin = 0;
+  double margin = 0, low[3], high[3];
   take_in(&reach, scene->table_low, scene->table_high);
   for (size_t i = 0; i < plan->outlets.count; i++) {
     const scree_plan_box *box = plan->outlets.items[i].box;
     take_in(&reach, box->min, box->max);
   }
-  for (size_t i = 0; i < plan->sensors.count; i++) take_in_sensor(&plan->sensors.items[i], &reach);
+  for (size_t i = 0; i < plan->sensors.count; i++)
+    if (scree_sensor_reach(&plan->sensors.items[i], low, high)) take_in(&reach, low, high);
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++)
     margin = fmax(margin, least_margin * scene->shapes[i].extent.radius);
   for (int k = 0; k < 3; k++)

@@ -1,6 +1,6 @@
 /* A scene's file: a tree that knows its places, changed field by field, and read into a plan. */
-#include "scene/scene.h"
-#include "scene/templates.h"
+#include "scene/file.h"
+#include "scene/geometry.h"
 
 #include "base/alloc.h"
 #include "base/platform.h"
@@ -90,12 +90,14 @@ static const char *input_at(const scree_plan *plan, size_t index) {
     const scree_plan_shape *s = &plan->shapes.items[i];
     const char *name = s->file || scree_plan_spheres(s) ? s->file : s->clump;
     if (name && index-- == 0) return name;
+    for (size_t k = 0; k < s->parts.count; k++)
+      if (s->parts.items[k].file && index-- == 0) return s->parts.items[k].file;
   }
   if (plan->bodies && index-- == 0) return plan->bodies->file;
   for (size_t i = 0; i < plan->geometry.count; i++) {
-    const scree_plan_geometry *g = &plan->geometry.items[i];
-    if (index < g->file.count) return g->file.items[index];
-    index -= g->file.count;
+    const char *name;
+    for (size_t k = 0; (name = scree_geometry_file_name(&plan->geometry.items[i], k)); k++)
+      if (index-- == 0) return name;
   }
   return NULL;
 }

@@ -1,9 +1,10 @@
 /* Changing a scene's file: fields by their place, parameters that set several, presets, the shapes
  * that are poured, and settings from a file of their own. */
-#include "scene/scene.h"
+#include "scene/file.h"
 
 #include "base/alloc.h"
 #include "base/number.h"
+#include "base/quote.h"
 
 #include <string.h>
 
@@ -22,8 +23,8 @@ static double number_of(const scree_yaml *item, const char *key) {
   return text && scree_number_read(text, &value) ? value : (double)NAN;
 }
 
-/* Of a parameter. */
-static bool shrinks(const scree_yaml *parameter) {
+/* Whether the fields of a parameter follow the size of the shapes. */
+static bool scales(const scree_yaml *parameter) {
   return number_of(parameter, "power") > 0;
 }
 
@@ -82,7 +83,7 @@ static bool sets(const scree_yaml *parameter, const char *field) {
   return false;
 }
 
-/* What is set is as it is meant: it shrinks no more. */
+/* What is set is as it is meant: it follows the size of the shapes no more. */
 static scree_status set_field(scree_scene_file *file, const char *field, const char *value,
                               scree_error *error) {
   SCREE_TRY(need_named(file, field, error));
@@ -90,7 +91,7 @@ static scree_status set_field(scree_scene_file *file, const char *field, const c
   const scree_yaml *parameters = scree_yaml_find(&file->root, "parameters");
   for (size_t i = 0; parameters && i < parameters->item_count; i++) {
     char path[64];
-    if (!shrinks(&parameters->items[i]) || !sets(&parameters->items[i], field)) continue;
+    if (!scales(&parameters->items[i]) || !sets(&parameters->items[i], field)) continue;
     snprintf(path, sizeof path, "parameters.%zu.power", i);
     SCREE_TRY(scree_yaml_set(&file->root, path, "0", error));
   }
@@ -114,15 +115,20 @@ static scree_status set_all(scree_scene_file *file, const char *field, const cha
 
 /* ---- parameters and presets ---- */
 
-/* Of a list of groups the one of that name; NULL: there is none. */
-static const scree_yaml *find_item(const scree_scene_file *file, const char *list,
-                                   const char *name) {
+/* The group of a list whose `key` is that name; NULL: there is none. */
+static const scree_yaml *find_by(const scree_scene_file *file, const char *list, const char *key,
+                                 const char *name) {
   const scree_yaml *items = scree_yaml_find(&file->root, list);
   for (size_t i = 0; items && items->kind == SCREE_YAML_SEQUENCE && i < items->item_count; i++) {
-    const char *text = text_of(&items->items[i], "name");
+    const char *text = text_of(&items->items[i], key);
     if (text && !strcmp(text, name)) return &items->items[i];
   }
   return NULL;
+}
+
+static const scree_yaml *find_item(const scree_scene_file *file, const char *list,
+                                   const char *name) {
+  return find_by(file, list, "name", name);
 }
 
 static size_t list_names(const scree_scene_file *file, const char *list,
@@ -168,6 +174,22 @@ static scree_status set_parameter(scree_scene_file *file, const scree_yaml *para
   return SCREE_OK;
 }
 
+/* A preset for particles of a size: what has a power follows theirs from then on, but for what was
+ * set before. */
+static scree_status let_scale(scree_scene_file *file, const char *size, scree_error *error) {
+  const scree_yaml *parameters = scree_yaml_find(&file->root, "parameters");
+  for (size_t i = 0; parameters && i < parameters->item_count; i++) {
+    char path[64];
+    const char *power = text_of(&parameters->items[i], "scales");
+    if (!power) continue;
+    snprintf(path, sizeof path, "parameters.%zu.size", i);
+    SCREE_TRY(scree_yaml_set(&file->root, path, size, error));
+    snprintf(path, sizeof path, "parameters.%zu.power", i);
+    SCREE_TRY(scree_yaml_set(&file->root, path, power, error));
+  }
+  return SCREE_OK;
+}
+
 static scree_status set_preset(scree_scene_file *file, const char *name, scree_error *error) {
   const scree_yaml *preset = find_item(file, "presets", name);
   if (!preset) {
@@ -180,6 +202,7 @@ static scree_status set_preset(scree_scene_file *file, const char *name, scree_e
   for (size_t i = 0; set && i < set->item_count; i++)
     if (set->items[i].kind == SCREE_YAML_SCALAR && strcmp(set->items[i].key, "preset") != 0)
       SCREE_TRY(scree_scene_file_set(file, set->items[i].key, set->items[i].text, error));
+  if (text_of(preset, "size")) SCREE_TRY(let_scale(file, text_of(preset, "size"), error));
   return scree_yaml_set(&file->root, "preset", name, error);
 }
 
@@ -187,27 +210,37 @@ scree_status scree_scene_file_set(scree_scene_file *file, const char *field, con
                                   scree_error *error) {
   if (file->root.kind != SCREE_YAML_MAPPING) return scree_scene_file_check(file, error);
   if (!strcmp(field, "preset")) return set_preset(file, value, error);
-  const scree_yaml *parameter = find_item(file, "parameters", field);
+  const scree_yaml *parameter = find_item(file, "parameters", field),
+                   *renamed = find_by(file, "parameters", "was", field);
+  if (!parameter && renamed)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "'%s' is called '%s' now", field,
+                      text_of(renamed, "name"));
   return parameter ? set_parameter(file, parameter, field, value, error)
                    : set_field(file, field, value, error);
 }
 
-/* ---- what shrinks with the particles ---- */
+/* ---- what follows the size of the particles ---- */
 
-bool scree_scene_file_shrinks(const scree_scene_file *file) {
+bool scree_scene_file_scales(const scree_scene_file *file) {
   const scree_yaml *parameters = scree_yaml_find(&file->root, "parameters");
   for (size_t i = 0; parameters && i < parameters->item_count; i++)
-    if (shrinks(&parameters->items[i])) return true;
+    if (scales(&parameters->items[i])) return true;
   return false;
 }
 
-static scree_status shrink(scree_scene_file *file, const scree_yaml *parameter, double largest,
-                           scree_error *error) {
-  double share = fmin(1, largest / number_of(parameter, "below")),
-         power = number_of(parameter, "power"), factor = power > floor(power) ? sqrt(share) : 1,
-         value;
+static double factor_of(const scree_yaml *parameter, const scree_scene_extent *extent) {
+  double size = number_of(parameter, "size"), power = number_of(parameter, "power"),
+         share = size > 0 ? extent->mean / size
+                          : fmin(1, extent->largest / number_of(parameter, "below")),
+         factor = power > floor(power) ? sqrt(share) : 1;
   for (double whole = 1; whole <= power; whole++) factor *= share;
+  return factor;
+}
+
+static scree_status scale(scree_scene_file *file, const scree_yaml *parameter, double factor,
+                          scree_error *error) {
   const scree_yaml *field;
+  double value;
   for (size_t i = 0; (field = field_of(parameter, i)); i++) {
     const scree_yaml *node = field->text ? scree_yaml_at(&file->root, field->text) : NULL;
     char text[SCREE_NUMBER_SIZE];
@@ -218,17 +251,18 @@ static scree_status shrink(scree_scene_file *file, const scree_yaml *parameter, 
   return SCREE_OK;
 }
 
-scree_status scree_scene_file_shrink(const scree_scene_file *file, double largest,
-                                     scree_scene_file **shrunk, scree_error *error) {
+scree_status scree_scene_file_scale(const scree_scene_file *file, const scree_scene_extent *extent,
+                                    scree_scene_file **scaled, scree_error *error) {
   scree_yaml root;
   SCREE_OWNED(scree_scene_file, made);
   SCREE_TRY(scree_yaml_copy(&file->root, &root, error));
   SCREE_TRY(scree_scene_file_keep(&root, file->name, &made, error));
   const scree_yaml *parameters = scree_yaml_find(&made->root, "parameters");
-  for (size_t i = 0; parameters && i < parameters->item_count; i++)
-    if (shrinks(&parameters->items[i]))
-      SCREE_TRY(shrink(made, &parameters->items[i], largest, error));
-  *shrunk = made;
+  for (size_t i = 0; parameters && i < parameters->item_count; i++) {
+    const scree_yaml *p = &parameters->items[i];
+    if (scales(p)) SCREE_TRY(scale(made, p, factor_of(p, extent), error));
+  }
+  *scaled = made;
   made = NULL;
   return SCREE_OK;
 }
@@ -243,7 +277,7 @@ static const scree_field *field_named(const struct scree_record *record, const c
   return NULL;
 }
 
-/* Of a thing, the part that it has and that has the field, with a point behind; "": itself, or
+/* The part of a thing that it has and that has the field, with a point behind; "": itself, or
  * none. */
 static void part_with(const scree_yaml *item, const struct scree_record *record, const char *rest,
                       char part[64]) {
@@ -392,20 +426,6 @@ scree_status scree_scene_file_read_over(const char *path, const char *template_n
   return SCREE_OK;
 }
 
-/* As text that reads back to the same, to be freed. */
-static char *quote(const char *text) {
-  char *quoted = scree_alloc(4 * strlen(text) + 4, 1), *at = quoted;
-  if (!quoted) return NULL;
-  *at++ = '"';
-  for (; *text; text++) {
-    scree_yaml_escape(*text, at);
-    at += strlen(at);
-  }
-  *at++ = '"';
-  *at = 0;
-  return quoted;
-}
-
 /* The first material that no geometry is of; NULL: none is left, or there is one for all. */
 static const char *particle_material(const scree_scene_file *file) {
   const scree_yaml *materials = scree_yaml_find(&file->root, "materials"),
@@ -426,7 +446,7 @@ static scree_status add_shape(scree_scene_file *file, const scree_poured *shape,
   const char *material = particle_material(file);
   const scree_yaml *inlets = scree_yaml_find(&file->root, "inlets");
   char path[PATH_BYTES], share[SCREE_NUMBER_SIZE];
-  SCREE_CLEANUP(scree_free_at) char *value = quote(shape->value);
+  SCREE_CLEANUP(scree_free_at) char *value = scree_quoted(SCREE_QUOTE_YAML, shape->value);
   if (!value) return scree_fail_memory(error, strlen(shape->value), "a shape");
   snprintf(path, sizeof path, "shapes.%.64s", shape->name);
   SCREE_TRY(scree_yaml_set(&file->root, path, "{}", error));

@@ -55,8 +55,8 @@ typedef struct scree_fill_layer {
  * so many tries ends the layer. Returns how many were placed. */
 size_t scree_fill_place(const scree_fill_layer *layer, scree_placement *placements, size_t count);
 
-/* Of shapes that have these shares (NULL: equal ones) and were dealt so often: the one that is most
- * behind. */
+/* The shape that is most behind, of those that have these shares (NULL: equal ones) and were dealt
+ * so often. */
 size_t scree_fill_next_shape(const double *shares, size_t shape_count, const size_t *dealt);
 /* Item i of the order in which count particles take the shapes in these shares, shuffled: order has
  * room for count. */

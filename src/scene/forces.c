@@ -8,6 +8,7 @@
  *
  * as far as a body takes two steps at least to come to the fluid's speed. Buoyancy is the weight of
  * the fluid that it displaces. */
+#include "scene/region.h"
 #include "scene/scene.h"
 
 #include "base/math.h"
@@ -46,15 +47,6 @@ scree_status scree_scene_plan_forces(scree_scene *scene, scree_error *error) {
   return SCREE_OK;
 }
 
-static bool is_within(const scree_plan_force *f, vec3 p) {
-  if (f->box) return scree_is_in((const double[3]){p.x, p.y, p.z}, f->box->min, f->box->max);
-  if (!f->cylinder) return true;
-  vec3 axis = vec3_unit(vec3_load(f->cylinder->axis)), d = vec3_sub(p, vec3_load(f->cylinder->at));
-  double along = vec3_dot(d, axis);
-  if (f->cylinder->length > 0 && (along < 0 || along > f->cylinder->length)) return false;
-  return vec3_norm(vec3_mad(d, axis, -along)) <= f->cylinder->radius;
-}
-
 static double factor_of(const scree_plan_force *f, vec3 p, double time) {
   const double at[] = {p.x, p.y, p.z, time};
   if (f->table.count == 0) return 1;
@@ -84,7 +76,8 @@ static vec3 force_of(const scree_scene *scene, size_t index, size_t shape, const
   vec3 p = vec3_load(body->position), none = {0, 0, 0};
   double time = scree_world_time(scene->world);
   if (time < f->from || time > f->until ||
-      !scene->acts_on[index * SCREE_SCENE_SHAPES(scene) + shape] || !is_within(f, p))
+      !scene->acts_on[index * SCREE_SCENE_SHAPES(scene) + shape] ||
+      !scree_region_has(&SCREE_REGION_OF(f), p))
     return none;
   double factor = factor_of(f, p, time);
   if (!f->drag) {

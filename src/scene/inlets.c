@@ -1,17 +1,15 @@
 /* Inlets: random sequential addition. A body that is due takes a random place and orientation in
  * its region; where it would touch another or a wall it takes the next, and after so many tries it
  * waits until the next tick. Shapes come in their shares: next is the one that is most behind. */
+#include "scene/region.h"
 #include "scene/starts.h"
 
 #include "base/alloc.h"
 #include "base/array.h"
-#include "base/math.h"
 
 #include <string.h>
 
 enum { TRIES = 100, FIRST_TRIES = 4000, STREAM = 64 };
-
-static const double pi = 3.14159265358979323846;
 
 /* ---- what is due ---- */
 
@@ -78,38 +76,6 @@ bool scree_scene_is_filled(const scree_scene *scene) {
 
 /* ---- a place ---- */
 
-/* A place along a unit vector so that the body lies within [low, high]; false: it is too long. */
-static bool draw_along(const scree_placement *p, vec3 n, double low, double high, scree_rng *rng,
-                       double *at) {
-  double up, down, share = scree_rng_uniform(rng);
-  scree_placement_reach(p, n, &up, &down);
-  *at = low + down + share * (high - low - up - down);
-  return high - low >= up + down;
-}
-
-static bool draw_in_box(const scree_plan_box *box, scree_placement *p, scree_rng *rng) {
-  double at[3];
-  bool fits = true;
-  for (int k = 0; k < 3; k++) {
-    vec3 n = {k == 0, k == 1, k == 2};
-    fits = draw_along(p, n, box->min[k], box->max[k], rng, &at[k]) && fits;
-  }
-  p->position = vec3_load(at);
-  return fits;
-}
-
-static bool draw_in_cylinder(const scree_plan_cylinder *c, scree_placement *p, scree_rng *rng) {
-  vec3 axis = vec3_unit(vec3_load(c->axis)), u, w;
-  double along;
-  vec3_frame(axis, &u, &w);
-  bool fits = draw_along(p, axis, 0, c->length, rng, &along);
-  double r = c->radius * sqrt(scree_rng_uniform(rng)), a = 2 * pi * scree_rng_uniform(rng);
-  vec3 at = vec3_mad(vec3_mad(vec3_scale(u, r * scree_cos(a)), w, r * scree_sin(a)), axis, along);
-  p->position = vec3_add(vec3_load(c->at), at);
-  scree_placement_settle(p);
-  return fits && scree_placement_within(p, vec3_load(c->at), axis, c->radius);
-}
-
 /* Whether the random place is within the region. */
 static bool draw(const scree_scene *scene, const scree_scene_inlet *inlet, size_t shape,
                  scree_rng *rng, scree_placement *p) {
@@ -118,10 +84,7 @@ static bool draw(const scree_scene *scene, const scree_scene_inlet *inlet, size_
       inlet->plan->orientation ? scene->shapes[shape].as_given : scree_rng_rotation(rng);
   p->position = (vec3){0, 0, 0};
   scree_placement_settle(p);
-  bool within = inlet->plan->box ? draw_in_box(inlet->plan->box, p, rng)
-                                 : draw_in_cylinder(inlet->plan->cylinder, p, rng);
-  scree_placement_settle(p);
-  return within;
+  return scree_region_draw(&SCREE_REGION_OF(inlet->plan), p, rng);
 }
 
 bool scree_scene_draw_start(const scree_scene *scene, size_t index, size_t which, scree_rng *rng,
@@ -169,22 +132,6 @@ scree_status scree_scene_check_inlets(scree_scene *scene, scree_error *error) {
 }
 
 /* ---- filling ---- */
-
-void scree_scene_region_of(const scree_plan_inlet *plan, double low[3], double high[3]) {
-  if (plan->box) {
-    memcpy(low, plan->box->min, 3 * sizeof *low);
-    memcpy(high, plan->box->max, 3 * sizeof *high);
-    return;
-  }
-  const scree_plan_cylinder *c = plan->cylinder;
-  vec3 axis = vec3_unit(vec3_load(c->axis));
-  const double n[3] = {axis.x, axis.y, axis.z};
-  for (int k = 0; k < 3; k++) {
-    double aside = c->radius * sqrt(fmax(0, 1 - n[k] * n[k])), end = c->length * n[k];
-    low[k] = c->at[k] + fmin(0, end) - aside;
-    high[k] = c->at[k] + fmax(0, end) + aside;
-  }
-}
 
 /* The body, and in a periodic domain its images that reach into the region. */
 static bool push_present(scree_scene *scene, const scree_placement *p, const double low[3],
@@ -239,7 +186,7 @@ double scree_scene_highest(const scree_scene *scene, const scree_placement *exte
 static scree_status list_near(scree_scene *scene, const scree_plan_inlet *plan,
                               scree_error *error) {
   double low[3], high[3];
-  scree_scene_region_of(plan, low, high);
+  scree_region_bounds(&SCREE_REGION_OF(plan), low, high);
   return scree_scene_list_present(scene, NULL, low, high, error);
 }
 
@@ -250,9 +197,17 @@ static bool is_free(const scree_scene *scene, const scree_placement *p) {
   return scree_scene_is_clear(scene, p, &wall);
 }
 
+scree_status scree_scene_add_body(const scree_scene_shape *shape, scree_world *world,
+                                  const scree_body *state, scree_error *error) {
+  size_t index;
+  SCREE_TRY(scree_world_add_body(world, shape->particle, shape->material, state, &index, error));
+  return scree_world_set_body_density(world, index, shape->density, error);
+}
+
 scree_status scree_scene_admit(scree_scene *scene, size_t shape, const scree_body *body,
                                scree_error *error) {
   scree_scene_shape *s = &scene->shapes[shape];
+  if (s->piece_count > 0) return scree_scene_admit_assembly(scene, shape, body, error);
   if (!SCREE_RESERVE(&scene->shape_of, scene->shape_of.count + 1) ||
       !SCREE_RESERVE(&scene->entered_at, scene->entered_at.count + 1) ||
       !SCREE_RESERVE(&scene->stays, scene->stays.count + 1))
@@ -285,8 +240,10 @@ scree_status scree_scene_enter(scree_scene *scene, scree_scene_inlet *inlet, siz
   memcpy(body.velocity, velocity, sizeof body.velocity);
   if (!SCREE_PUSH(&scene->present, *p))
     return scree_fail_memory(error, scene->present.count * sizeof *p, "bodies");
+  size_t before = scene->stays.count;
   SCREE_TRY(scree_scene_admit(scene, shape, &body, error));
-  scene->stays.items[scene->stays.count - 1].inlet = (uint32_t)(inlet - scene->inlets);
+  for (size_t b = before; b < scene->stays.count; b++)
+    scene->stays.items[b].inlet = (uint32_t)(inlet - scene->inlets);
   inlet->mass += s->mass;
   inlet->entered++;
   inlet->counts[which]++;

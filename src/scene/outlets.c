@@ -1,7 +1,7 @@
 /* Outlets: bodies whose centre is in one, or beyond the domain, are taken out and booked. A domain
  * that the scene does not name is looked at with every row of the series only. */
 #include "scene/scene.h"
-#include "world/backend.h"
+#include "world/state/remote.h"
 
 #include <string.h>
 

@@ -7,14 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a file's name means: beside the scene's file, unless it begins at the root. */
-char *scree_scene_path(const char *folder, const char *name) {
-  size_t size = strlen(folder) + strlen(name) + 1;
-  char *path = scree_alloc(size, 1);
-  if (path) snprintf(path, size, "%s%s", *name == '/' ? "" : folder, name);
-  return path;
-}
-
 static bool is_count(const char *text) {
   return text && *text && !text[strspn(text, "0123456789")];
 }
@@ -33,6 +25,7 @@ scree_shape_spec scree_scene_shape_spec(const scree_plan_shape *s, const char *p
   spec.table = table ? path : NULL;
   spec.sphere = isnan(s->sphere) ? 0 : s->sphere;
   if (!isnan(s->box[0])) memcpy(spec.box, s->box, sizeof spec.box);
+  spec.thickness = isnan(s->thickness) ? 0 : s->thickness;
   spec.unit_m = s->unit < 0 ? 0 : scree_plan_unit(s->unit);
   spec.resolution = isnan(s->resolution) ? 0 : s->resolution;
   spec.noise = s->noise;
@@ -72,16 +65,16 @@ static char *describe(const scree_plan_shape *shape, const scree_shape_made *mad
   return scree_strdup(text);
 }
 
-static scree_status make_unscaled(const scree_plan_shape *plan, const char *folder,
-                                  scree_shape_store *store, const scree_progress *progress,
-                                  scree_shape_made *made, scree_error *error) {
+scree_status scree_scene_make_unscaled(const scree_plan_shape *plan, const char *folder,
+                                       size_t part, scree_shape_store *store,
+                                       const scree_progress *progress, scree_shape_made *made,
+                                       scree_error *error) {
   const char *name = name_of(plan);
-  char *path = scree_scene_path(folder, name ? name : "");
+  SCREE_CLEANUP(scree_free_at) char *path = scree_scene_path(folder, name ? name : "");
   if (!path) return scree_fail_memory(error, 0, "a path");
   scree_shape_spec spec = scree_scene_shape_spec(plan, path);
-  scree_status status = scree_shape_make(&spec, store, progress, made, error);
-  scree_free(path);
-  return status;
+  spec.part = part;
+  return scree_shape_make(&spec, store, progress, made, error);
 }
 
 scree_status scree_scene_make_shape(scree_scene *scene, size_t index, const char *folder,
@@ -91,10 +84,11 @@ scree_status scree_scene_make_shape(scree_scene *scene, size_t index, const char
   scree_shape_made *made = making->made;
   bool again = index && plan->family == (plan - 1)->family; /* another size of the last one */
   scree_status status = SCREE_OK;
-  if (!again) {
+  if (!again && !plan->joints) {
     scree_particle_free(made->particle);
     *made = (scree_shape_made){0};
-    status = make_unscaled(plan, folder, making->store, making->progress, made, error);
+    status =
+        scree_scene_make_unscaled(plan, folder, 0, making->store, making->progress, made, error);
   }
   if (status != SCREE_OK) return status;
   s->scan_volume = made->scan_volume;

@@ -11,9 +11,47 @@
  * velocity that takes it to its place in the coming step, on the circle for a hinge. At an end it
  * stops, and what it moved with is lost. A servo has no mass: u is its speed times the share of the
  * force that is missing, at most that speed. */
+#include "scene/plan_fields.h"
 #include "scene/scene.h"
 
+#include "world/state/walls.h"
+
 #include "base/math.h"
+
+/* ---- the plan ---- */
+
+static scree_status check_servo(const scree_reader *r, const void *record) {
+  const scree_plan_servo *s = record;
+  if (!given(&s->force) || !given(&s->speed) || s->force == 0)
+    return scree_fail_place(r, &s->place, "needs what it keeps, not 0, and a speed");
+  return SCREE_OK;
+}
+SCREE_RECORD_TABLE(scree_plan_servo, SCREE_PLAN_SERVO, "servo", NULL, check_servo)
+SCREE_RECORD_TABLE(scree_plan_turning_servo, SCREE_PLAN_TURNING_SERVO, "servo", NULL, check_servo)
+
+static scree_status check_part(const scree_reader *r, const scree_plan_part *p, double inertia,
+                               const char *what) {
+  if (!p->servo && isnan(inertia)) return scree_fail_place(r, &p->place, "needs %s", what);
+  if (p->servo && (p->spring != 0 || p->damper != 0 || p->force != 0 || p->amplitude != 0))
+    return scree_fail_place(r, &p->place, "a servo stands instead of spring, damper and drive");
+  if (given(&p->least) && given(&p->most) && !(p->least < p->most))
+    return scree_fail_place(r, &p->place, "least %g must be below most %g", p->least, p->most);
+  if ((given(&p->least) && p->least > 0) || (given(&p->most) && p->most < 0))
+    return scree_fail_place(r, &p->place, "it begins at 0, which must lie between its ends");
+  return SCREE_OK;
+}
+
+static scree_status check_slide(const scree_reader *r, const void *record) {
+  const scree_plan_part *p = record;
+  return check_part(r, p, p->mass, "a mass or a servo");
+}
+static scree_status check_hinge(const scree_reader *r, const void *record) {
+  const scree_plan_part *p = record;
+  return check_part(r, p, p->inertia, "an inertia or a servo");
+}
+
+SCREE_RECORD_TABLE(scree_plan_slide, SCREE_PLAN_SLIDE, "a slide", NULL, check_slide)
+SCREE_RECORD_TABLE(scree_plan_hinge, SCREE_PLAN_HINGE, "a hinge", NULL, check_hinge)
 
 static const scree_plan_part *plan_of(const scree_scene *scene, size_t geometry) {
   const scree_plan_geometry *g = &scene->plan.geometry.items[geometry];
@@ -146,6 +184,8 @@ static void move(scree_scene *scene, size_t geometry) {
          m = turns(scene, geometry) ? plan->inertia : plan->mass;
   double now = scree_scene_push(scene, geometry), push = now != 0 ? 2 * now - part->push : 0;
   part->push = now;
+  part->given -= 0.5 * now * (part->earlier + before) * dt;
+  part->earlier = before;
   if (time < plan->from) return;
   part->speed = plan->servo ? step_servo(plan->servo, now) : step_free(scene, geometry, push, time);
   if (!plan->servo) {
@@ -178,10 +218,14 @@ double scree_scene_part_energy(const scree_scene *scene, size_t geometry) {
   return 0.5 * m * part->speed * part->speed + potential_of(scene, geometry, part->way);
 }
 
-/* J, that its walls have done on bodies. */
-static double wall_work(const scree_scene *scene, size_t geometry) {
+/* J, that it has done on bodies by its motion: its walls' work, but for a belt's, of which the
+ * drive does a part. Of the last step's forces the first half counts, as in the ledger. */
+static double work_on_bodies(const scree_scene *scene, size_t geometry) {
   const scree_scene_geometry *g = &scene->geometry[geometry];
   double sum = 0;
+  if (scree_wall_is_belt(scree_world_wall_at(scene->world, g->first_wall)))
+    return g->part->given -
+           0.5 * scree_scene_push(scene, geometry) * g->part->earlier * scene->time_step;
   for (size_t w = g->first_wall; w < g->first_wall + g->wall_count; w++) {
     double power, energy;
     scree_world_wall_power(scene->world, w, &power, &energy);
@@ -190,12 +234,28 @@ static double wall_work(const scree_scene *scene, size_t geometry) {
   return sum;
 }
 
+double scree_scene_part_balance(const scree_scene *scene, size_t geometry) {
+  const scree_scene_part *part = scene->geometry[geometry].part;
+  if (!part || plan_of(scene, geometry)->servo) return 0;
+  return scree_scene_part_energy(scene, geometry) + part->lost - part->work +
+         work_on_bodies(scene, geometry);
+}
+
 double scree_scene_parts_balance(const scree_scene *scene) {
+  double sum = 0;
+  for (size_t i = 0; i < scene->plan.geometry.count; i++) sum += scree_scene_part_balance(scene, i);
+  return sum;
+}
+
+double scree_scene_parts_turned(const scree_scene *scene) {
   double sum = 0;
   for (size_t i = 0; i < scene->plan.geometry.count; i++) {
     const scree_scene_part *part = scene->geometry[i].part;
     if (!part || plan_of(scene, i)->servo) continue;
-    sum += scree_scene_part_energy(scene, i) + part->lost - part->work + wall_work(scene, i);
+    const scree_plan_part *plan = plan_of(scene, i);
+    double m = turns(scene, i) ? plan->inertia : plan->mass;
+    sum += 0.5 * m * part->speed * part->speed + fabs(potential_of(scene, i, part->way)) +
+           fabs(part->lost) + fabs(part->work);
   }
   return sum;
 }

@@ -1,5 +1,6 @@
 /* Phases of a scene: they follow each other, each ends after its time or, where all that is there
  * has been still for a while, before. Motions may act during one alone. */
+#include "scene/motions.h"
 #include "scene/scene.h"
 
 #include <string.h>
@@ -16,15 +17,12 @@ static scree_status move_wall(scree_scene *scene, size_t wall_index, const scree
   double velocity[3] = {0, 0, 0}, spin[3] = {0, 0, 0};
   const scree_plan_phase *phase = phase_of(scene);
   if (phase && !strcmp(m->during, phase->place.name)) {
-    if (m->translate) memcpy(velocity, m->translate->velocity, sizeof velocity);
-    if (m->rotate) {
-      scree_wall wall;
-      scree_world_get_wall(scene->world, wall_index, &wall);
-      vec3 turn = vec3_scale(vec3_unit(vec3_load(m->rotate->axis)), m->rotate->speed);
-      vec3 arm = vec3_sub(vec3_load(wall.position), vec3_load(m->rotate->through));
-      vec3_store(spin, turn);
-      vec3_store(velocity, vec3_cross(turn, arm));
-    }
+    scree_wall wall;
+    vec3 v, w;
+    scree_world_get_wall(scene->world, wall_index, &wall);
+    scree_motion_velocity(m, vec3_load(wall.position), &v, &w);
+    vec3_store(velocity, v);
+    vec3_store(spin, w);
   }
   return scree_world_set_wall_velocity(scene->world, wall_index, velocity, spin, error);
 }
@@ -106,6 +104,13 @@ double scree_scene_phase_times(const scree_scene *scene) {
   return sum;
 }
 
+double scree_scene_duration(const scree_scene *scene) {
+  const scree_plan_stop *stop = scene->plan.stop;
+  double most = scene->plan.phases.count ? scree_scene_phase_times(scene) : (double)INFINITY;
+  if (!isnan(stop->filled)) most = fmin(most, scree_scene_filling_time(scene) + stop->filled);
+  return isnan(scene->plan.time) ? most : fmin(scene->plan.time, most);
+}
+
 double scree_scene_fraction(const scree_scene *scene) {
   double time = scree_world_time(scene->world), all = scree_scene_phase_times(scene), done = 0;
   if (scene->plan.phases.count == 0) return fmin(1, time / scree_scene_duration(scene));
@@ -113,12 +118,4 @@ double scree_scene_fraction(const scree_scene *scene) {
     done += scene->plan.phases.items[i].time;
   if (phase_of(scene)) done += fmin(time - scene->phase_start, phase_of(scene)->time);
   return all > 0 ? done / all : 1;
-}
-
-bool scree_scene_is_in_phase(const scree_scene *scene, const scree_texts *names) {
-  const scree_plan_phase *phase = phase_of(scene);
-  if (names->count == 0) return true;
-  for (size_t i = 0; phase && i < names->count; i++)
-    if (!strcmp(names->items[i], phase->place.name)) return true;
-  return false;
 }

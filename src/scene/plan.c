@@ -1,38 +1,9 @@
 /* The fields of a scene in tables, and what fields must be together. */
-#include "scene/plan_fields.h"
-
-#include "base/vec.h"
+#include "scene/region.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-double scree_plan_unit(int unit) {
-  static const double metres[] = {1, 1e-2, 1e-3, 1e-6, 0.0254, 0.3048, 1e3};
-  return metres[unit];
-}
-
-size_t scree_plan_find(const void *items, size_t count, size_t size, const char *name) {
-  for (size_t i = 0; i < count; i++) {
-    const scree_place *place = (const void *)((const char *)items + i * size);
-    if (!strcmp(place->name, name)) return i;
-  }
-  return count;
-}
-
-static bool is_across(const double *v, const double *n) {
-  vec3 a = vec3_load(v), b = vec3_load(n);
-  return fabs(vec3_dot(a, b)) <= 1e-6 * vec3_norm(a) * vec3_norm(b);
-}
-
-scree_status scree_plan_one_of(const scree_reader *r, const scree_place *place, const bool *there,
-                               size_t count, const char *names) {
-  size_t found = 0;
-  for (size_t i = 0; i < count; i++) found += there[i];
-  if (found == 1) return SCREE_OK;
-  return scree_fail_place(r, place, found ? "only one of %s may be given" : "needs one of %s",
-                          names);
-}
 
 /* ---- materials ---- */
 
@@ -71,6 +42,49 @@ static scree_status check_spheres(const scree_reader *r, const scree_plan_shape 
   return SCREE_OK;
 }
 
+static scree_status check_fracture(const scree_reader *r, const void *record) {
+  const scree_plan_fracture *f = record;
+  if (isnan(f->tension)) return scree_fail_place(r, &f->place, "needs tension, the strength in Pa");
+  return SCREE_OK;
+}
+SCREE_RECORD_TABLE(scree_plan_fracture, SCREE_PLAN_FRACTURE, "a fracture", NULL, check_fracture)
+
+static scree_status check_strengths(const scree_reader *r, const void *record) {
+  const scree_plan_joints *j = record;
+  for (size_t k = 0; k < j->pairs.count; k++)
+    if (j->pairs.items[k].between.count != 2)
+      return scree_fail_place(r, &j->pairs.items[k].place, "needs between: [part, part]");
+  if (isnan(j->tension)) return scree_fail_place(r, &j->place, "needs tension, the strength in Pa");
+  return SCREE_OK;
+}
+SCREE_RECORD_TABLE(scree_plan_joined, SCREE_PLAN_JOINED, "a pair of parts", NULL, NULL)
+SCREE_RECORD_TABLE(scree_plan_joints, SCREE_PLAN_JOINTS, "joints", NULL, check_strengths)
+SCREE_RECORD_TABLE(scree_plan_component, SCREE_PLAN_COMPONENT, "a part", NULL, NULL)
+
+/* Shapes that break or come apart. */
+static scree_status check_joints(const scree_reader *r, const scree_plan_shape *s) {
+  if (given(&s->thickness) && !s->file)
+    return scree_fail_place(r, &s->place, "thickness is of a file's open surface");
+  if (s->parts.count > 0 && !s->joints)
+    return scree_fail_place(r, &s->place, "has parts: give joints, what holds them");
+  if (s->joints && s->fracture)
+    return scree_fail_place(r, &s->fracture->place,
+                            "the shape has joints between parts: give fracture to a part");
+  if (s->joints && (s->size || s->rp || scree_plan_spheres(s)))
+    return scree_fail_place(r, &s->place, "size, rp and a number of spheres are not for parts");
+  if (s->joints && !s->file && !s->parts.count && !s->clump)
+    return scree_fail_place(r, &s->joints->place,
+                            "needs parts, a file that names them, or spheres");
+  for (size_t k = 0; k < s->parts.count; k++) {
+    const scree_plan_component *c = &s->parts.items[k];
+    const bool there[] = {c->file != NULL, c->sample != NULL, given(c->box)};
+    if (!s->file) SCREE_TRY(scree_plan_one_of(r, &c->place, there, 3, "file, sample, box"));
+    if (s->file && (there[0] || there[1] || there[2]))
+      return scree_fail_place(r, &c->place, "its surface is in the shape's file: %.100s", s->file);
+  }
+  return SCREE_OK;
+}
+
 static scree_status check_shape(const scree_reader *r, const void *record) {
   const scree_plan_shape *s = record;
   bool table = s->clump && !is_number(s->clump);
@@ -78,16 +92,17 @@ static scree_status check_shape(const scree_reader *r, const void *record) {
     return scree_fail_place(r, &s->place,
                             "clump %.20s: so many spheres stand for a file, sample or box: give it",
                             s->clump);
-  const bool there[] = {s->file != NULL, s->sample != NULL, given(&s->sphere), table,
-                        given(s->box)};
+  const bool there[] = {s->file != NULL, s->sample != NULL, given(&s->sphere),
+                        table,           given(s->box),     s->parts.count > 0 && !s->file};
   bool none = true;
-  for (int i = 0; i < 5; i++) none = none && !there[i];
+  SCREE_TRY(check_joints(r, s));
+  for (int i = 0; i < 6; i++) none = none && !there[i];
   if (s->size && none) return SCREE_OK; /* spheres */
   if (s->size && given(&s->sphere))
     return scree_fail_place(r, &s->place,
                             "size is of a file, sample, clump or box; alone, of spheres");
-  scree_status status =
-      scree_plan_one_of(r, &s->place, there, 5, "file, sample, sphere (its diameter), clump, box");
+  scree_status status = scree_plan_one_of(r, &s->place, there, 6,
+                                          "file, sample, sphere (its diameter), clump, box, parts");
   if (status == SCREE_OK && s->clump && !table) status = check_spheres(r, s);
   if (status != SCREE_OK) return status;
   if (scree_plan_spheres(s) && s->file && scree_is_clump_table(s->file))
@@ -109,79 +124,6 @@ static scree_status check_shape(const scree_reader *r, const void *record) {
   return SCREE_OK;
 }
 SCREE_RECORD_TABLE(scree_plan_shape, SCREE_PLAN_SHAPE, "a shape", NULL, check_shape)
-
-/* ---- geometry ---- */
-
-SCREE_RECORD_TABLE(scree_plan_turn, SCREE_PLAN_TURN, "a turn", NULL, NULL)
-
-SCREE_RECORD_TABLE(scree_plan_disc, SCREE_PLAN_DISC, "a disc", "a radius", NULL)
-
-SCREE_RECORD_TABLE(scree_plan_cylinder, SCREE_PLAN_CYLINDER, "a cylinder", NULL, NULL)
-
-static scree_status check_corners(const scree_reader *r, const scree_place *place,
-                                  const double *min, const double *max) {
-  if (!given(min) || !given(max))
-    return scree_fail_place(r, place, "needs min: [x, y, z] and max: [x, y, z]");
-  for (int k = 0; k < 3; k++)
-    if (!(min[k] < max[k]))
-      return scree_fail_place(r, place, "min %g must be below max %g along %c", min[k], max[k],
-                              "xyz"[k]);
-  return SCREE_OK;
-}
-static scree_status check_box(const scree_reader *r, const void *record) {
-  const scree_plan_box *b = record;
-  return check_corners(r, &b->place, b->min, b->max);
-}
-SCREE_RECORD_TABLE(scree_plan_box, SCREE_PLAN_BOX, "a box", NULL, check_box)
-
-SCREE_RECORD_TABLE(scree_plan_shaft, SCREE_PLAN_SHAFT, "a shaft", NULL, NULL)
-
-scree_status scree_plan_check_window(const scree_reader *r, const scree_place *place, double from,
-                                     double until) {
-  if (!given(&until) || from < until) return SCREE_OK;
-  return scree_fail_place(r, place, "until %g s must be after from %g s", until, from);
-}
-
-/* ---- geometry, whole ---- */
-
-static scree_status check_geometry(const scree_reader *r, const void *record) {
-  const scree_plan_geometry *g = record;
-  const bool there[] = {g->file.count > 0, given(g->box),       given(g->plane),
-                        g->disc != NULL,   g->cylinder != NULL, g->shaft != NULL,
-                        g->loop != NULL,   g->screw != NULL,    g->sieve != NULL};
-  SCREE_TRY(scree_plan_one_of(r, &g->place, there, 9,
-                              "file, box, plane, disc, cylinder, shaft, loop, screw, sieve"));
-  if (g->cylinder && given(g->cylinder->at))
-    return scree_fail_place(r, &g->cylinder->place,
-                            "at stands beside the cylinder, as of all geometry, not in it");
-  if (g->side && !there[0] && !there[1])
-    return scree_fail_place(r, &g->place, "side is of a file or a box, which may be closed");
-  const double *normal = g->disc ? g->disc->normal : g->plane;
-  if (given(g->surface_velocity) && (g->disc || given(g->plane)) &&
-      !is_across(g->surface_velocity, normal))
-    return scree_fail_place(r, &g->place, "surface_velocity must lie in the surface");
-  if (g->belt && !g->file.count && !g->loop)
-    return scree_fail_place(r, &g->belt->place,
-                            "is of a file or a loop; give a surface_velocity instead");
-  if (g->belt && given(g->surface_velocity))
-    return scree_fail_place(r, &g->place, "only one of surface_velocity, belt may be given");
-  if ((g->slide != NULL) + (g->hinge != NULL) + (g->motion.count > 0) > 1)
-    return scree_fail_place(r, &g->place, "only one of motion, slide, hinge may be given");
-  if (g->copies && (g->belt || given(g->surface_velocity)))
-    return scree_fail_place(r, &g->copies->place, "of belts there are none: give each its own");
-  const scree_plan_motion *motions = g->motion.items;
-  for (size_t i = 0; i < g->motion.count; i++)
-    if (motions[i].round && (g->motion.count > 1 || !g->copies || !given(&g->copies->radius)))
-      return scree_fail_place(r, &motions[i].place,
-                              "round is the only motion of copies along a chain: give copies: "
-                              "{count, axis, through, span, radius}");
-  for (size_t i = 0; g->motion.count > 1 && i < g->motion.count; i++)
-    if (motions[i].during)
-      return scree_fail_place(r, &motions[i].place,
-                              "a motion during a phase must be the geometry's only one");
-  return SCREE_OK;
-}
-SCREE_RECORD_TABLE(scree_plan_geometry, SCREE_PLAN_GEOMETRY, "geometry", NULL, check_geometry)
 
 /* ---- inlets and outlets ---- */
 
@@ -223,10 +165,7 @@ static scree_status check_inlet(const scree_reader *r, const void *record) {
   const bool rates[] = {given(&i->rate), given(&i->mass_rate), i->count > 0};
   SCREE_TRY(scree_plan_one_of(r, &i->place, there, 3, "box, cylinder, layers in a geometry"));
   if (i->layers) return check_layered(r, i);
-  if (i->cylinder && !given(&i->cylinder->radius))
-    return scree_fail_place(r, &i->cylinder->place, "needs a radius");
-  if (i->cylinder && (!given(i->cylinder->at) || !(i->cylinder->length > 0)))
-    return scree_fail_place(r, &i->cylinder->place, "needs at: [x, y, z] and a length above 0");
+  SCREE_TRY(scree_region_check(r, &SCREE_REGION_OF(i), true));
   if (i->shapes.count == 0) return scree_fail_place(r, &i->place, "needs shapes: {name: share}");
   if (!rates[0] && !rates[1] && !rates[2])
     return scree_fail_place(r, &i->place, "needs a rate, a mass_rate or a count");
@@ -247,7 +186,7 @@ SCREE_RECORD_TABLE(scree_plan_outlet, SCREE_PLAN_OUTLET, "an outlet", "a box: {m
 
 static scree_status check_domain(const scree_reader *r, const void *record) {
   const scree_plan_domain *d = record;
-  SCREE_TRY(check_corners(r, &d->place, d->min, d->max));
+  SCREE_TRY(scree_plan_check_corners(r, &d->place, d->min, d->max));
   for (size_t i = 0; i < d->periodic.count; i++) {
     const char *axis = d->periodic.items[i];
     if (strlen(axis) != 1 || !strchr("xyz", *axis))
@@ -268,14 +207,11 @@ static scree_status check_force(const scree_reader *r, const void *record) {
   const scree_plan_force *f = record;
   const bool there[] = {given(f->force), given(f->acceleration), given(f->per_volume),
                         f->drag != NULL};
-  scree_status status =
-      scree_plan_one_of(r, &f->place, there, 4, "force, acceleration, per_volume, drag");
-  if (status == SCREE_OK && f->box && f->cylinder)
-    status = scree_fail_place(r, &f->place, "only one of box, cylinder may be given");
-  if (status == SCREE_OK && f->cylinder &&
-      (!given(&f->cylinder->radius) || !given(f->cylinder->at)))
-    status = scree_fail_place(r, &f->cylinder->place, "needs a radius and at: [x, y, z]");
-  return status == SCREE_OK ? scree_plan_check_window(r, &f->place, f->from, f->until) : status;
+  SCREE_TRY(scree_plan_one_of(r, &f->place, there, 4, "force, acceleration, per_volume, drag"));
+  if (f->box && f->cylinder)
+    return scree_fail_place(r, &f->place, "only one of box, cylinder may be given");
+  SCREE_TRY(scree_region_check(r, &SCREE_REGION_OF(f), false));
+  return scree_plan_check_window(r, &f->place, f->from, f->until);
 }
 SCREE_RECORD_TABLE(scree_plan_force, SCREE_PLAN_FORCE, "a force", NULL, check_force)
 
@@ -301,11 +237,13 @@ SCREE_RECORD_TABLE(scree_plan_output, SCREE_PLAN_OUTPUT, "output", NULL, NULL)
 
 static scree_status check_parameter(const scree_reader *r, const void *record) {
   const scree_scene_parameter *p = record;
-  if (given(&p->below) != given(&p->power))
-    return scree_fail_place(r, &p->place, "below and power go together");
-  if (isnan(p->power) || 2 * p->power == floor(2 * p->power)) return SCREE_OK;
-  return scree_fail_place(r, &p->place, "power %g: must be a whole number, or half of one",
-                          p->power);
+  if ((given(&p->below) || given(&p->size)) != given(&p->power))
+    return scree_fail_place(r, &p->place, "below or size, and power, go together");
+  for (const double *power = &p->power; power; power = power == &p->power ? &p->scales : NULL)
+    if (!isnan(*power) && 2 * *power != floor(2 * *power))
+      return scree_fail_place(r, &p->place, "power %g: must be a whole number, or half of one",
+                              *power);
+  return SCREE_OK;
 }
 SCREE_RECORD_TABLE(scree_scene_parameter, SCREE_PLAN_PARAMETER, "a parameter",
                    "a name and sets: [FIELD, ...]", check_parameter)

@@ -2,6 +2,9 @@
 #pragma once
 
 #include "base/schema_rows.h"
+#include "scene/geometry/kinds.h"
+#include "scene/motions/kinds.h"
+#include "scene/sensors/kinds.h"
 
 #include <math.h>
 
@@ -20,7 +23,7 @@ enum { SCREE_MOST_CLASSES = 100 };
   ROW(T, REAL, restitution, 0.3, 0.01, 1, "",                                                      \
       "of a pair, the lower of the two, unless `pairs` says more")                                 \
   ROW(T, REAL, friction, 0.5, 0, 100, "", "likewise")                                              \
-  ROW(T, REAL, rolling_friction, 0, 0, 100, "", "of spheres, likewise; 0: they roll freely")       \
+  ROW(T, REAL, rolling_friction, 0, 0, 100, "", "likewise, of what limits rolling; 0: freely")     \
   ROW(T, REAL, surface_energy, 0, 0, 1e6, "J/m2", "of cohesion, likewise; 0: nothing sticks")      \
   ROW(T, REAL, poisson, 0.3, 0, 0.5, "", "Poisson's ratio, of the law hertz")
 SCREE_RECORD_TYPE(scree_plan_material, SCREE_PLAN_MATERIAL)
@@ -29,7 +32,7 @@ SCREE_RECORD_TYPE(scree_plan_material, SCREE_PLAN_MATERIAL)
   ROW(T, TEXTS, between, "two materials, or one twice")                                            \
   ROW(T, REAL, restitution, NAN, 0.01, 1, "", "")                                                  \
   ROW(T, REAL, friction, NAN, 0, 100, "", "")                                                      \
-  ROW(T, REAL, rolling_friction, NAN, 0, 100, "", "of spheres")                                    \
+  ROW(T, REAL, rolling_friction, NAN, 0, 100, "", "")                                              \
   ROW(T, REAL, surface_energy, NAN, 0, 1e6, "J/m2", "of cohesion")                                 \
   ROW(T, REAL, pull_off, NAN, 0, 1e9, "N", "that holds any two that touch")                        \
   ROW(T, REAL, wear, 0, 0, 1, "1/Pa",                                                              \
@@ -61,6 +64,60 @@ SCREE_RECORD_TYPE(scree_plan_lognormal, SCREE_PLAN_LOGNORMAL)
   ROW(T, COUNT, classes, 8, 1, SCREE_MOST_CLASSES, "of a continuous one")
 SCREE_RECORD_TYPE(scree_plan_size, SCREE_PLAN_SIZE)
 
+/* What holds two pieces together. */
+#define SCREE_PLAN_BOND(ROW, T)                                                                    \
+  ROW(T, REAL, tension, NAN, 1, 1e12, "Pa", "strength")                                            \
+  ROW(T, REAL, cohesion, NAN, 1, 1e12, "Pa", "in shear; not given: three times the tension")       \
+  ROW(T, REAL, friction, NAN, 0, 10, "", "by which a pressure adds to that; not given: 0.6")       \
+  ROW(T, REAL, toughness, NAN, 0, 1e9, "J/m2",                                                     \
+      "energy by area at which it breaks too; not given, or 0: at none")                           \
+  ROW(T, REAL, weibull, NAN, 0, 1000, "",                                                          \
+      "modulus of the scatter of strengths; not given, or 0: none")                                \
+  ROW(T, REAL, young, NAN, 1, 1e16, "Pa",                                                          \
+      "of the joints; not given: 200 times the tension, at least the material's")                  \
+  ROW(T, REAL, damping, NAN, 0, 1, "", "share of critical; not given: 0.05")
+typedef struct scree_plan_bond {
+  SCREE_PLAN_BOND(SCREE_MEMBER, scree_plan_bond)
+} scree_plan_bond;
+/* The bond of a record that has these rows. */
+#define SCREE_BOND_OF(record)                                                                      \
+  ((scree_plan_bond){(record)->tension, (record)->cohesion, (record)->friction,                    \
+                     (record)->toughness, (record)->weibull, (record)->young, (record)->damping})
+
+/* Fields of a shape that breaks: its cells, and what holds them together. */
+#define SCREE_PLAN_FRACTURE(ROW, T)                                                                \
+  ROW(T, COUNT, cells, 60, 1, 10000, "that may break off")                                         \
+  ROW(T, SEED, seed, 1, "of their places")                                                         \
+  SCREE_PLAN_BOND(ROW, T)
+SCREE_RECORD_TYPE(scree_plan_fracture, SCREE_PLAN_FRACTURE)
+
+/* A part of an assembly: one of file, sample, box. */
+#define SCREE_PLAN_COMPONENT(ROW, T)                                                               \
+  ROW(T, TEXT, file, "a scan, in the coordinates of all; not given: the shape's file names it")    \
+  ROW(T, TEXT, sample, "a built-in one")                                                           \
+  ROW(T, VECTOR, box, SCREE_NONE, 1e-9, 1e3, "m", "three sides")                                   \
+  ROW(T, VECTOR, at, SCREE_ZERO, -1e3, 1e3, "m", "where its origin lies")                          \
+  ROW(T, WORD, unit, -1, SCREE_PLAN_UNITS, "of the file's lengths")                                \
+  ROW(T, TEXT, triangles, "recommended, all, or at most so many")                                  \
+  ROW(T, TEXT, material, "not given: the shape's")                                                 \
+  ROW(T, REAL, density, NAN, 1e-3, 1e6, "kg/m3", "another than its material's")                    \
+  ROW(T, GROUP, fracture, scree_plan_fracture, "it breaks itself")
+SCREE_RECORD_TYPE(scree_plan_component, SCREE_PLAN_COMPONENT)
+
+#define SCREE_PLAN_JOINED(ROW, T)                                                                  \
+  ROW(T, TEXTS, between, "two parts; stud* is all that begin so")                                  \
+  SCREE_PLAN_BOND(ROW, T)
+SCREE_RECORD_TYPE(scree_plan_joined, SCREE_PLAN_JOINED)
+
+#define SCREE_PLAN_JOINTS(ROW, T)                                                                  \
+  ROW(T, REAL, gap, NAN, 1e-9, 1, "m",                                                             \
+      "within which faces of two parts hold each other; not given: a 500th of the whole's size")   \
+  ROW(T, TEXTS, loose, "parts that nothing needs to hold")                                         \
+  ROW(T, REAL, bending, 1, 1e-6, 1, "", "of spheres: share of a solid wire's stiffness in it")     \
+  ROW(T, LIST, pairs, scree_plan_joined, "what holds two parts otherwise")                         \
+  SCREE_PLAN_BOND(ROW, T)
+SCREE_RECORD_TYPE(scree_plan_joints, SCREE_PLAN_JOINTS)
+
 /* One of file, sample, sphere, clump (a table), box; a clump that is a count is one of the others'
  * surface. */
 #define SCREE_PLAN_SHAPE(ROW, T)                                                                   \
@@ -86,6 +143,10 @@ SCREE_RECORD_TYPE(scree_plan_size, SCREE_PLAN_SIZE)
   ROW(T, REAL, density, NAN, 1e-3, 1e6, "kg/m3", "another than its material's")                    \
   ROW(T, GROUP, size, scree_plan_size,                                                             \
       "of many sizes, each the diameter of the sphere of equal volume")                            \
+  ROW(T, REAL, thickness, NAN, 1e-9, 1, "m", "of an open surface: a sheet, half to each side")     \
+  ROW(T, GROUP, fracture, scree_plan_fracture, "it breaks into cells that joints hold")            \
+  ROW(T, NAMED, parts, scree_plan_component, "that joints hold; of a file: those that it names")   \
+  ROW(T, GROUP, joints, scree_plan_joints, "between parts, or between the spheres of a table")     \
   ROW(T, OWN, double scaled, scaled, NAN)                                                          \
   ROW(T, OWN, size_t family, family, 0)
 SCREE_RECORD_TYPE(scree_plan_shape, SCREE_PLAN_SHAPE)
@@ -98,12 +159,7 @@ size_t scree_plan_spheres(const scree_plan_shape *shape);
   ROW(T, REAL, angle_deg, 0, -360, 360, "deg", "right-handed about the axis")
 SCREE_RECORD_TYPE(scree_plan_turn, SCREE_PLAN_TURN)
 
-#define SCREE_PLAN_DISC(ROW, T)                                                                    \
-  ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m", "")                                                    \
-  ROW(T, DIRECTION, normal, (0, 0, 1), "")
-SCREE_RECORD_TYPE(scree_plan_disc, SCREE_PLAN_DISC)
-
-/* Of geometry, and as the region of an inlet. */
+/* A cylinder, of geometry and as the region of an inlet. */
 #define SCREE_PLAN_CYLINDER(ROW, T)                                                                \
   ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m",                                                        \
       "inside; of geometry with layers in it not given: as wide as what they pour will be high")   \
@@ -117,71 +173,12 @@ SCREE_RECORD_TYPE(scree_plan_cylinder, SCREE_PLAN_CYLINDER)
   ROW(T, VECTOR, max, SCREE_NONE, -1e6, 1e6, "m", "opposite corner")
 SCREE_RECORD_TYPE(scree_plan_box, SCREE_PLAN_BOX)
 
-#define SCREE_PLAN_TRANSLATE(ROW, T)                                                               \
-  ROW(T, VECTOR, velocity, SCREE_NONE, -1e3, 1e3, "m/s", "")                                       \
-  ROW(T, DIRECTION, along, SCREE_NONE, "direction of what the table says")                         \
-  ROW(T, TABLE, table, 0, 0, "s|m/s", "[time in s, speed in m/s], linear between")                 \
-  ROW(T, TABLE, positions, 0, 0, "s|m", "or [time in s, way in m], linear between")
-SCREE_RECORD_TYPE(scree_plan_translate, SCREE_PLAN_TRANSLATE)
-
-#define SCREE_PLAN_ROTATE(ROW, T)                                                                  \
-  ROW(T, DIRECTION, axis, (0, 0, 1), "")                                                           \
-  ROW(T, VECTOR, through, SCREE_ZERO, -1e6, 1e6, "m", "a point of the axis")                       \
-  ROW(T, REAL, speed, NAN, -1e4, 1e4, "rad/s", "right-handed about the axis")                      \
-  ROW(T, TABLE, table, 0, 0, "s|rad/s", "[time in s, speed in rad/s], linear between")             \
-  ROW(T, TABLE, positions, 0, 0, "s|rad", "or [time in s, angle in rad], linear between")          \
-  ROW(T, REAL, amplitude, NAN, 0, 1e3, "rad", "or it rocks so far both ways")                      \
-  ROW(T, REAL, frequency, NAN, 0, 1e5, "Hz", "")                                                   \
-  ROW(T, REAL, phase, 0, -7, 7, "rad", "of the sine")
-SCREE_RECORD_TYPE(scree_plan_rotate, SCREE_PLAN_ROTATE)
-
-#define SCREE_PLAN_VIBRATE(ROW, T)                                                                 \
-  ROW(T, DIRECTION, along, (0, 0, 1), "")                                                          \
-  ROW(T, REAL, amplitude, NAN, 0, 1e3, "m", "")                                                    \
-  ROW(T, REAL, frequency, NAN, 0, 1e5, "Hz", "")                                                   \
-  ROW(T, REAL, phase, 0, -7, 7, "rad", "of the sine")
-SCREE_RECORD_TYPE(scree_plan_vibrate, SCREE_PLAN_VIBRATE)
-
-#define SCREE_PLAN_CRANK(ROW, T)                                                                   \
-  ROW(T, DIRECTION, along, (0, 0, 1), "away from the shaft")                                       \
-  ROW(T, REAL, radius, NAN, 1e-9, 1e3, "m", "of the crank: half the stroke")                       \
-  ROW(T, REAL, rod, NAN, 1e-9, 1e6, "m", "its length, more than the radius")                       \
-  ROW(T, REAL, speed, NAN, 1e-9, 1e5, "rad/s", "of the shaft")                                     \
-  ROW(T, REAL, phase, 0, -7, 7, "rad", "at the start; 0: farthest out")
-SCREE_RECORD_TYPE(scree_plan_crank, SCREE_PLAN_CRANK)
-
-/* The copies are carried along their way. */
-#define SCREE_PLAN_TRAVEL(ROW, T)                                                                  \
-  ROW(T, REAL, speed, NAN, -1e3, 1e3, "m/s", "of the chain; above 0 right-handed about the axis")
-SCREE_RECORD_TYPE(scree_plan_travel, SCREE_PLAN_TRAVEL)
-
-/* Rows of time and value, one table for each of x, y, z and the angles about them. */
-enum { SCREE_PATH_COLUMNS = 6 };
-#define SCREE_PLAN_PATH(ROW, T)                                                                    \
-  ROW(T, TEXT, file,                                                                               \
-      "a table: t and any of x, y, z, angle_x, angle_y, angle_z, with units as `x [mm]`")          \
-  ROW(T, VECTOR, through, SCREE_ZERO, -1e6, 1e6, "m", "about which it turns, by angle_x first")    \
-  ROW(T, OWN, scree_table tables[SCREE_PATH_COLUMNS], tables, {{0}})                               \
-  ROW(T, OWN, bool is_read, is_read, false)
-SCREE_RECORD_TYPE(scree_plan_path, SCREE_PLAN_PATH)
-
+/* A motion is of one kind; they stand in scene/motions. */
 #define SCREE_PLAN_MOTION(ROW, T)                                                                  \
-  ROW(T, GROUP, translate, scree_plan_translate, "")                                               \
-  ROW(T, GROUP, rotate, scree_plan_rotate, "")                                                     \
-  ROW(T, GROUP, vibrate, scree_plan_vibrate, "")                                                   \
-  ROW(T, GROUP, crank, scree_plan_crank, "to and fro by crank and rod")                            \
-  ROW(T, GROUP, round, scree_plan_travel, "of copies along a chain: with it")                      \
-  ROW(T, GROUP, path, scree_plan_path, "by a table in a file")                                     \
+  SCREE_MOTION_KINDS(ROW, T)                                                                       \
   SCREE_PLAN_WINDOW(ROW, T)                                                                        \
   ROW(T, TEXT, during, "a phase: only while it lasts")
 SCREE_RECORD_TYPE(scree_plan_motion, SCREE_PLAN_MOTION)
-
-/* Four endless planes about a vertical axis. */
-#define SCREE_PLAN_SHAFT(ROW, T)                                                                   \
-  ROW(T, REAL, width, NAN, 1e-9, 1e6, "m",                                                         \
-      "inside, along x; with layers in it not given: as wide as what they pour will be high")      \
-  ROW(T, REAL, depth, NAN, 1e-9, 1e6, "m", "along y; not given: the width")
-SCREE_RECORD_TYPE(scree_plan_shaft, SCREE_PLAN_SHAFT)
 
 /* Keeps a force (N) or torque (N m) on bodies. */
 #define SCREE_PLAN_SERVO(ROW, T)                                                                   \
@@ -230,34 +227,6 @@ SCREE_RECORD_TYPE(scree_plan_hinge, SCREE_PLAN_HINGE)
 SCREE_RECORD_LIKE(scree_plan_hinge, scree_plan_slide);
 typedef scree_plan_hinge scree_plan_part; /* either */
 
-/* A sheet round two wheels, of which one is at the geometry's origin. */
-#define SCREE_PLAN_LOOP(ROW, T)                                                                    \
-  ROW(T, VECTOR, span, SCREE_NONE, -1e6, 1e6, "m", "from the wheel at `at` to the other")          \
-  ROW(T, DIRECTION, axis, (0, 1, 0), "of the wheels, square to the span")                          \
-  ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m", "of the wheels")                                       \
-  ROW(T, REAL, width, NAN, 1e-9, 1e6, "m", "along the axis")
-SCREE_RECORD_TYPE(scree_plan_loop, SCREE_PLAN_LOOP)
-
-/* A flight of a helix about its axis, from the geometry's origin on, and its shaft. */
-#define SCREE_PLAN_SCREW(ROW, T)                                                                   \
-  ROW(T, DIRECTION, axis, (1, 0, 0), "from `at` on; the flight is right-handed")                   \
-  ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m", "of the flight")                                       \
-  ROW(T, REAL, shaft, NAN, 1e-9, 1e6, "m", "radius of the shaft")                                  \
-  ROW(T, REAL, pitch, NAN, 1e-9, 1e6, "m", "")                                                     \
-  ROW(T, REAL, length, NAN, 1e-9, 1e6, "m", "")                                                    \
-  ROW(T, REAL, thickness, NAN, 1e-9, 1e6, "m", "of the flight, along the axis")
-SCREE_RECORD_TYPE(scree_plan_screw, SCREE_PLAN_SCREW)
-
-/* A plate with round holes in a square pattern, about the geometry's origin: size along x and y; or
- * bent about a line of that radius above it, along y. */
-#define SCREE_PLAN_SIEVE(ROW, T)                                                                   \
-  ROW(T, VECTOR, size, SCREE_NONE, 1e-9, 1e6, "m", "along x and y, and its thickness")             \
-  ROW(T, REAL, hole, NAN, 1e-9, 1e6, "m", "diameter")                                              \
-  ROW(T, REAL, pitch, NAN, 1e-9, 1e6, "m", "from hole to hole, along x and y")                     \
-  ROW(T, REAL, bend, NAN, 1e-9, 1e6, "m",                                                          \
-      "radius of the upper face about a line along y above it; not given: flat")
-SCREE_RECORD_TYPE(scree_plan_sieve, SCREE_PLAN_SIEVE)
-
 /* The surface of closed loops about an axis runs along itself. */
 #define SCREE_PLAN_BELT(ROW, T)                                                                    \
   ROW(T, DIRECTION, axis, (0, 1, 0), "of its pulleys")                                             \
@@ -275,17 +244,9 @@ SCREE_RECORD_TYPE(scree_plan_belt, SCREE_PLAN_BELT)
   ROW(T, REAL, radius, NAN, 1e-9, 1e6, "m", "of the wheels, to the chain")
 SCREE_RECORD_TYPE(scree_plan_round, SCREE_PLAN_ROUND)
 
-/* One of file, box, plane, disc, cylinder, shaft, loop, screw, sieve. */
+/* Geometry is of one kind; they stand in scene/geometry. */
 #define SCREE_PLAN_GEOMETRY(ROW, T)                                                                \
-  ROW(T, TEXTS, file, "a mesh, or several that move together")                                     \
-  ROW(T, VECTOR, box, SCREE_NONE, 1e-9, 1e6, "m", "three sides, about `at`")                       \
-  ROW(T, DIRECTION, plane, SCREE_NONE, "normal, out of the solid")                                 \
-  ROW(T, GROUP, disc, scree_plan_disc, "")                                                         \
-  ROW(T, GROUP, cylinder, scree_plan_cylinder, "a sheet from `at` along its axis")                 \
-  ROW(T, GROUP, shaft, scree_plan_shaft, "four endless walls about z")                             \
-  ROW(T, GROUP, loop, scree_plan_loop, "a sheet round two wheels, one of them at `at`")            \
-  ROW(T, GROUP, screw, scree_plan_screw, "a flight on a shaft")                                    \
-  ROW(T, GROUP, sieve, scree_plan_sieve, "a plate with round holes, flat or bent")                 \
+  SCREE_GEOMETRY_KINDS(ROW, T)                                                                     \
   ROW(T, WORD, unit, 2, SCREE_PLAN_UNITS, "of the file's lengths")                                 \
   ROW(T, VECTOR, at, SCREE_ZERO, -1e6, 1e6, "m", "where its origin goes")                          \
   ROW(T, GROUP, turn, scree_plan_turn, "about its origin, before it goes there")                   \
@@ -343,86 +304,11 @@ SCREE_RECORD_TYPE(scree_plan_outlet, SCREE_PLAN_OUTLET)
   ROW(T, TEXTS, periodic, "axes along which what leaves enters again")
 SCREE_RECORD_TYPE(scree_plan_domain, SCREE_PLAN_DOMAIN)
 
-#define SCREE_PLAN_FLOW(ROW, T)                                                                    \
-  ROW(T, VECTOR, through, SCREE_NONE, -1e6, 1e6, "m", "a point of the plane")                      \
-  ROW(T, DIRECTION, normal, (0, 0, 1), "along it counts up, against it down")                      \
-  ROW(T, REAL, radius, NAN, 0, 1e6, "m", "about the point; not given: all of it")
-SCREE_RECORD_TYPE(scree_plan_flow, SCREE_PLAN_FLOW)
-
-#define SCREE_PLAN_REGION(ROW, T) ROW(T, GROUP, box, scree_plan_box, "")
-SCREE_RECORD_TYPE(scree_plan_region, SCREE_PLAN_REGION)
-
-#define SCREE_PLAN_PILE(ROW, T)                                                                    \
-  ROW(T, REAL, floor, 0, -1e6, 1e6, "m", "height of what the pile stands on")                      \
-  ROW(T, REAL, cell, 0, 0, 1e3, "m", "of the height field; 0: a tenth of the size")                \
-  ROW(T, REAL, disc, NAN, 1e-9, 1e6, "m",                                                          \
-      "radius about the origin; bodies beyond are not of the pile; not given: all are")            \
-  ROW(T, REAL, reach, NAN, 1e-9, 1e6, "m",                                                         \
-      "of the height field with a disc; not given: one and a half of the longest shape beyond it") \
-  ROW(T, REAL, size, NAN, 1e-9, 1e3, "m",                                                          \
-      "of a body; not given: the mean of what layers pour, else of those there")                   \
-  ROW(T, COUNT, sectors, 36, 1, 3600, "in azimuth")                                                \
-  ROW(T, REAL, band_low, 0.2, 0, 1, "", "of the height: the flank begins")                         \
-  ROW(T, REAL, band_high, 0.8, 0, 1, "", "and ends")                                               \
-  ROW(T, REAL, every, NAN, 0, 1e9, "s",                                                            \
-      "between lines of the series that have it; 0: only the last; not given: all")                \
-  ROW(T, TEXTS, during, "phases; not given: all")
-SCREE_RECORD_TYPE(scree_plan_pile, SCREE_PLAN_PILE)
-
-#define SCREE_PLAN_SLOPE(ROW, T)                                                                   \
-  ROW(T, DIRECTION, axis, (1, 0, 0), "the surface is seen along it")                               \
-  ROW(T, GROUP, box, scree_plan_box, "of the bodies in it; not given: about the middle of all")
-SCREE_RECORD_TYPE(scree_plan_slope, SCREE_PLAN_SLOPE)
-
-#define SCREE_PLAN_SEGREGATION(ROW, T)                                                             \
-  ROW(T, REAL, cells, NAN, 1e-9, 1e6, "m", "side of the cells that are compared")                  \
-  ROW(T, WORD, by, 0, "size|shape|material",                                                       \
-      "classes: of a shape's sizes each, all of a shape, all of a material")
-SCREE_RECORD_TYPE(scree_plan_segregation, SCREE_PLAN_SEGREGATION)
-
-#define SCREE_PLAN_IMPACTS(ROW, T)                                                                 \
-  ROW(T, WORD, by, 0, "shape|material", "classes of bodies; geometry by name")                     \
-  ROW(T, REAL, least, 1e-9, 1e-18, 1e12, "J", "where the spectra begin")                           \
-  ROW(T, REAL, most, 1e3, 1e-18, 1e12, "J", "and end")                                             \
-  ROW(T, COUNT, bins, 5, 1, 100, "in a decade of energy")                                          \
-  ROW(T, REAL, threshold, 0, 0, 1e12, "J", "damage is what the energy of approach exceeds it by")  \
-  ROW(T, REAL, window, NAN, 1e-9, 1e9, "s", "a spectrum for each; not given: one of all")
-SCREE_RECORD_TYPE(scree_plan_impacts, SCREE_PLAN_IMPACTS)
-
-#define SCREE_PLAN_GRID(ROW, T)                                                                    \
-  ROW(T, GROUP, box, scree_plan_box, "")                                                           \
-  ROW(T, GROUP, cylinder, scree_plan_cylinder, "instead of a box")                                 \
-  ROW(T, VECTOR, cells, SCREE_NONE, 1, 1000, "",                                                   \
-      "along x, y and z; of a cylinder outward, around and along")                                 \
-  ROW(T, REAL, width, NAN, 1e-9, 1e3, "m",                                                         \
-      "of coarse graining; not given: the largest body's size")                                    \
-  ROW(T, REAL, every, NAN, 1e-9, 1e9, "s", "between samples; not given: as the series")            \
-  ROW(T, TEXT, with, "a geometry: the grid is in its frame and moves with it")
-SCREE_RECORD_TYPE(scree_plan_grid, SCREE_PLAN_GRID)
-
-#define SCREE_PLAN_RESIDENCE(ROW, T)                                                               \
-  ROW(T, WORD, by, 0, "size|shape|material",                                                       \
-      "classes: of a shape's sizes each, all of a shape, all of a material")                       \
-  ROW(T, TEXT, inlet, "of those that came by it; not given: all")                                  \
-  ROW(T, TEXT, outlet, "of those that left by it; not given: all")                                 \
-  ROW(T, COUNT, bins, 20, 1, 10000, "of the histogram")
-SCREE_RECORD_TYPE(scree_plan_residence, SCREE_PLAN_RESIDENCE)
-
-/* One of them. */
+/* A sensor is of one kind; they stand in scene/sensors. */
 #define SCREE_PLAN_SENSOR(ROW, T)                                                                  \
-  ROW(T, GROUP, flow, scree_plan_flow, "count and mass through a plane, by shape")                 \
-  ROW(T, GROUP, region, scree_plan_region, "what is in a box")                                     \
-  ROW(T, TEXT, wall, "force, torque, power and wear of a geometry")                                \
-  ROW(T, TEXT, position, "where a geometry is")                                                    \
-  ROW(T, TEXT, part, "of a geometry that forces move")                                             \
-  ROW(T, GROUP, pile, scree_plan_pile, "angle of repose three ways")                               \
-  ROW(T, GROUP, slope, scree_plan_slope, "angle of the surface")                                   \
-  ROW(T, GROUP, segregation, scree_plan_segregation, "Lacey's index by shape")                     \
-  ROW(T, GROUP, residence, scree_plan_residence, "time from inlet to outlet")                      \
-  ROW(T, GROUP, grid, scree_plan_grid, "fields of means over time, for ParaView")                  \
-  ROW(T, GROUP, impacts, scree_plan_impacts, "energies of contacts, by class")                     \
+  SCREE_SENSOR_KINDS(ROW, T)                                                                       \
   ROW(T, REAL, from, 0, 0, 1e9, "s", "what comes before is neither gathered nor in means")         \
-  ROW(T, REAL, until, NAN, 1e-9, 1e9, "s", "nor what comes after; not given: all")
+  ROW(T, REAL, until, NAN, 0, 1e9, "s", "nor what comes after; not given: all")
 SCREE_RECORD_TYPE(scree_plan_sensor, SCREE_PLAN_SENSOR)
 
 /* law: 0 Schiller and Naumann, 1 Stokes */
@@ -484,25 +370,30 @@ SCREE_RECORD_TYPE(scree_plan_bodies, SCREE_PLAN_BODIES)
   ROW(T, REAL, stiffness_factor, 1, 1e-9, 1e9, "",                                                 \
       "multiplies every stiffness: below 1 steps are longer and overlaps deeper")                  \
   ROW(T, REAL, tangential_ratio, 1, 1e-6, 1, "", "tangential over normal stiffness")               \
+  ROW(T, WORD, rolling, 0, "couple|epsd", "what rolling_friction limits; epsd: as LIGGGHTS does")  \
   ROW(T, REAL, time_step, 0, 0, 1, "s", "0: by steps")
 SCREE_RECORD_TYPE(scree_plan_contact, SCREE_PLAN_CONTACT)
 
 /* A name for fields that are set together. */
 #define SCREE_PLAN_PARAMETER(ROW, T)                                                               \
   ROW(T, TEXT, name, "")                                                                           \
+  ROW(T, TEXT, was, "what it was called before: who says that is told the name")                   \
   ROW(T, TEXTS, sets, "fields; * is every name of a group")                                        \
   ROW(T, REAL, factor, NAN, -1e9, 1e9, "", "times the value")                                      \
   ROW(T, REAL, least, NAN, -1e300, 1e300, "", "of the value")                                      \
   ROW(T, REAL, most, NAN, -1e300, 1e300, "", "")                                                   \
   ROW(T, REAL, below, NAN, 1e-9, 1e3, "m",                                                         \
       "where the largest shape is smaller, the fields shrink")                                     \
+  ROW(T, REAL, size, NAN, 1e-9, 1e3, "m", "or they are for shapes of this mean size, and scale")   \
   ROW(T, REAL, power, NAN, 0, 10, "",                                                              \
-      "of the share of that size that they shrink by; 0, once they are set: they do not")
+      "of the share of that size that they change by; 0, once they are set: they do not")          \
+  ROW(T, REAL, scales, NAN, 0, 10, "", "the power that a preset with a size gives them")
 SCREE_RECORD_TYPE(scree_scene_parameter, SCREE_PLAN_PARAMETER)
 
 #define SCREE_PLAN_PRESET(ROW, T)                                                                  \
   ROW(T, TEXT, name, "")                                                                           \
   ROW(T, TEXT, about, "")                                                                          \
+  ROW(T, REAL, size, NAN, 1e-9, 1e3, "m", "of the particles that its values are for")              \
   ROW(T, VALUES, set, "values of parameters and fields")
 SCREE_RECORD_TYPE(scree_plan_preset, SCREE_PLAN_PRESET)
 
@@ -533,6 +424,8 @@ SCREE_RECORD_TYPE(scree_plan_preset, SCREE_PLAN_PRESET)
   ROW(T, OWN, scree_plan_shape_list families, families, {0})
 SCREE_RECORD_TYPE(scree_plan, SCREE_PLAN_SCENE)
 
+/* sensors.c: names that sensors refer to, regions, what each kind checks. */
+scree_status scree_plan_check_sensors(const scree_reader *reader, const scree_plan *plan);
 /* plan_check.c: of a whole scree_plan, whose records are good each. */
 scree_status scree_plan_check(const scree_reader *reader, const void *plan);
 
@@ -540,7 +433,8 @@ scree_status scree_plan_check(const scree_reader *reader, const void *plan);
 typedef struct scree_size_class {
   double size, share; /* m, the diameter of the sphere of equal volume; by number, all together 1 */
 } scree_size_class;
-/* In the arena; of as much mass and number as the distribution has in them. NULL: no memory. */
+/* The classes, in the arena, of as much mass and number as the distribution has in them. NULL: no
+ * memory. */
 scree_size_class *scree_plan_size_classes(const scree_plan_size *size, scree_arena *arena,
                                           size_t *count);
 /* A shape of many sizes becomes one for each class, in inlets by its share. */

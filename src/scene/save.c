@@ -3,10 +3,9 @@
  * bodies; the series. What follows from the file is made
  * again. A frame's world has its bodies and walls without what contacts remember; what follows from
  * contacts is kept as a number. */
-#include "scene/grid.h"
-#include "scene/impacts.h"
+#include "world/state/save.h"
 #include "scene/scene.h"
-#include "world/checkpoint.h"
+#include "world/step/checkpoint.h"
 
 #include "base/alloc.h"
 #include "base/array.h"
@@ -14,7 +13,7 @@
 
 #include <string.h>
 
-static const scree_seal seal = {"screeSCN", "checkpoint of a scree scene", "scene", 8};
+static const scree_seal seal = {"screeSCN", "checkpoint of a scree scene", "scene", 10};
 
 /* ---- the fields, in and out alike ---- */
 
@@ -46,7 +45,6 @@ static void code_progress(scree_codec *c, scree_scene *scene) {
                      &costs->processor_seconds, &scene->frame_coordination};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   scree_code_u64(c, &costs->body_steps);
-  scree_code_u64(c, &scene->next_map);
   scree_code_u64(c, &costs->piece_count);
   scree_code_bool(c, &scene->is_frame);
   code_size(c, &scene->phase);
@@ -85,63 +83,6 @@ static void code_inlets(scree_codec *c, scree_scene *scene) {
 #define HOLDS(codec, reserved)                                                                     \
   (scree_codec_good(codec) && ((reserved) || ((codec)->out_of_memory = true, false)))
 
-/* An array that grows. */
-#define CODE_REALS(codec, list)                                                                    \
-  do {                                                                                             \
-    size_t count_ = (list)->count;                                                                 \
-    scree_code_count((codec), &count_, sizeof(double));                                            \
-    if (HOLDS(codec, SCREE_RESERVE(list, count_))) {                                               \
-      (list)->count = count_;                                                                      \
-      scree_code_reals((codec), (list)->items, count_);                                            \
-    }                                                                                              \
-  } while (0)
-
-static void code_impacts(scree_codec *c, scree_scene_impacts *impacts) {
-  scree_code_reals(c, impacts->sums, impacts->class_count * SCREE_IMPACT_SUMS);
-  scree_code_reals(c, impacts->spectra,
-                   impacts->class_count * SCREE_IMPACT_SPECTRA * impacts->bin_count);
-  scree_code_real(c, &impacts->window_from);
-  CODE_REALS(c, &impacts->windows);
-  CODE_REALS(c, &impacts->bodies);
-}
-
-static void code_hits(scree_codec *c, scree_scene *scene) {
-  size_t count = scene->hits.count;
-  scree_code_u64(c, &scene->next_hits);
-  scree_code_count(c, &count, 50);
-  if (!HOLDS(c, SCREE_RESERVE(&scene->hits, count))) return;
-  scene->hits.count = count;
-  for (size_t i = 0; i < count; i++) {
-    scree_scene_hit *hit = &scene->hits.items[i];
-    double *reals[] = {&hit->seen_normal, &hit->seen_tangential, &hit->approach, &hit->normal,
-                       &hit->tangential};
-    scree_code_u32(c, &hit->a);
-    scree_code_u32(c, &hit->b);
-    scree_code_bool(c, &hit->wall);
-    scree_code_bool(c, &hit->touching);
-    for (size_t k = 0; k < sizeof reals / sizeof *reals; k++) scree_code_real(c, reals[k]);
-  }
-}
-
-void scree_scene_code_sensor(scree_codec *c, scree_scene *scene, scree_scene_sensor *sensor) {
-  double *arrays[] = {sensor->count, sensor->mass};
-  for (size_t k = 0; k < 2; k++) scree_code_reals(c, arrays[k], SCREE_SCENE_SHAPES(scene) + 1);
-  scree_code_reals(c, sensor->maps, SCREE_MAP_COUNT * sensor->cell_count);
-  scree_code_real(c, &sensor->watched);
-  if (sensor->impacts) code_impacts(c, sensor->impacts);
-  if (sensor->grid) {
-    scree_code_reals(c, sensor->grid->sums, sensor->grid->number_count);
-    scree_code_reals(c, sensor->grid->mixing, 2 * scene->plan.families.count);
-    scree_code_u64(c, &sensor->grid->next);
-    scree_code_u64(c, &sensor->grid->sample_count);
-  }
-  size_t count = sensor->side.count;
-  scree_code_count(c, &count, 1);
-  if (!HOLDS(c, SCREE_RESERVE(&sensor->side, count))) return;
-  sensor->side.count = count;
-  scree_code_bytes(c, sensor->side.items, count);
-}
-
 static void code_bodies(scree_codec *c, scree_scene *scene) {
   size_t count = scene->shape_of.count;
   scree_code_count(c, &count, 28);
@@ -178,7 +119,8 @@ static void code_parts(scree_codec *c, scree_scene *scene) {
   for (size_t i = 0; i < scene->plan.geometry.count; i++) {
     scree_scene_part *part = scene->geometry[i].part;
     if (!part) continue;
-    double *reals[] = {&part->way, &part->speed, &part->push, &part->work, &part->lost};
+    double *reals[] = {&part->way,  &part->speed, &part->push,   &part->work,
+                       &part->lost, &part->given, &part->earlier};
     for (size_t k = 0; k < sizeof reals / sizeof *reals; k++) scree_code_real(c, reals[k]);
   }
 }
@@ -222,9 +164,10 @@ static void code_state(scree_codec *c, scree_scene *scene) {
   code_progress(c, scene);
   code_inlets(c, scene);
   for (size_t i = 0; i < scene->plan.sensors.count; i++)
-    scree_scene_code_sensor(c, scene, &scene->sensors[i]);
+    scree_sensor_code(c, scene, &scene->sensors[i]);
+  for (size_t i = 0; i < scene->plan.sensors.count; i++)
+    scree_sensor_code_shared(c, scene, &scene->sensors[i]);
   code_parts(c, scene);
-  code_hits(c, scene);
   code_bodies(c, scene);
   code_series(c, scene);
   code_changes(c, scene);
@@ -243,6 +186,26 @@ static void code_geometry(scree_codec *c, scree_scene *scene) {
   }
 }
 
+/* What each piece is of. */
+static scree_status code_pieces(scree_codec *c, scree_scene *scene, scree_error *error) {
+  size_t count = SCREE_SCENE_SHAPES(scene) - scene->named_count;
+  scree_code_count(c, &count, 2 * sizeof(uint32_t));
+  SCREE_SCRATCH_ZERO(scree_scene_piece, pieces, count, error);
+  for (size_t i = 0; i < count; i++) {
+    scree_scene_piece *p = &pieces[i];
+    const scree_scene_shape *s = &scene->shapes[scene->named_count + i];
+    if (!c->loading) *p = (scree_scene_piece){(uint32_t)s->assembly, s->group, s->part};
+    scree_code_u32(c, &p->assembly);
+    scree_code_u32(c, &p->group);
+    code_text(c, scene, &p->part);
+    if (p->assembly < scene->named_count) continue;
+    c->failed = true;
+    return SCREE_OK;
+  }
+  return c->loading && scree_codec_good(c) ? scree_scene_append_pieces(scene, pieces, count, error)
+                                           : SCREE_OK;
+}
+
 /* ---- saving ---- */
 
 static scree_status save(scree_codec *c, const scree_scene *scene, bool as_frame,
@@ -255,6 +218,7 @@ static scree_status save(scree_codec *c, const scree_scene *scene, bool as_frame
   scree_seal_begin(c);
   scree_code_text(c, scene->name, strlen(scene->name));
   scree_code_text(c, scene->text, strlen(scene->text));
+  SCREE_TRY(code_pieces(c, &state, error));
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++)
     scree_code_text(c, scene->shapes[i].source, strlen(scene->shapes[i].source));
   SCREE_TRY(scree_world_save_block(c, scene->gallery, true, error));
@@ -347,6 +311,8 @@ static size_t next_wall(const scree_scene *scene) {
 static scree_status load(loader *l) {
   scree_scene *scene = l->scene;
   SCREE_TRY(load_plan(l));
+  SCREE_TRY(code_pieces(&l->codec, scene, l->error));
+  if (!scree_codec_good(&l->codec)) return fail_here(l);
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++)
     if (!(scene->shapes[i].source = scree_decode_text(&l->codec))) return fail_here(l);
   SCREE_TRY(scree_world_load_block(&l->codec, l->name, &scene->gallery, l->error));
@@ -357,10 +323,11 @@ static scree_status load(loader *l) {
     scree_particle_retain(scene->shapes[i].particle);
     scree_scene_measure_shape(scene, i);
   }
+  scree_scene_place_pieces(scene);
   code_geometry(&l->codec, scene);
   if (!scree_codec_good(&l->codec) || next_wall(scene) != scree_world_wall_count(scene->world))
     return fail_here(l);
-  SCREE_TRY(scree_scene_plan_maps(scene, l->error));
+  SCREE_TRY(scree_sensors_begin(scene, l->error));
   code_state(&l->codec, scene);
   if (l->codec.position != l->codec.count) l->codec.failed = true;
   if (!scree_codec_good(&l->codec)) return fail_here(l);

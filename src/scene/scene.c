@@ -2,14 +2,13 @@
  * looked for; between ticks the world goes its steps. Which steps are ticks follows from the scene
  * alone, so that it can be cut into calls anyhow. */
 #include "scene/scene.h"
+#include "scene/geometry.h"
+#include "scene/motions.h"
 
 #include "base/alloc.h"
-#include "base/array.h"
 #include "base/platform.h"
-#include "base/progress.h"
 
 #include <errno.h>
-#include <stdarg.h>
 #include <string.h>
 
 static const double tick_share = 0.25; /* of the way a body falls in, or flies, by its radius */
@@ -28,6 +27,7 @@ static scree_world_options world_options(const scree_scene *scene, double time_s
   scree_world_options o = scree_default_world_options();
   memcpy(o.gravity, plan->gravity, sizeof o.gravity);
   o.law = (scree_law)plan->contact->law;
+  o.rolling = (scree_rolling)plan->contact->rolling;
   o.steps_per_contact = plan->contact->steps;
   o.stiffness_factor = plan->contact->stiffness_factor;
   o.tangential_ratio = plan->contact->tangential_ratio;
@@ -98,27 +98,6 @@ scree_status scree_scene_make_world(const scree_scene *scene, double time_step, 
   return SCREE_OK;
 }
 
-scree_status scree_scene_fail(const scree_scene *scene, const scree_place *place,
-                              scree_error *error, const char *format, ...) {
-  scree_reader r = {scene->name, NULL, error, ""};
-  char text[sizeof error->message];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return scree_fail_place(&r, place, "%s", text);
-}
-
-scree_status scree_scene_blame(const scree_scene *scene, const scree_place *place,
-                               scree_status status, const scree_error *why, scree_error *error) {
-  if (status == SCREE_OK) return status;
-  if (status != SCREE_OUT_OF_MEMORY && status != SCREE_CANCELLED)
-    scree_scene_fail(scene, place, error, "%s", why->message);
-  else if (error)
-    *error = *why;
-  return status;
-}
-
 static scree_status check_period(const scree_scene *scene, size_t index, scree_error *error) {
   const scree_plan_domain *d = scene->plan.domain;
   scree_particle_measures m;
@@ -138,16 +117,9 @@ static scree_status check_period(const scree_scene *scene, size_t index, scree_e
 
 /* One of each shape, far apart: it keeps the particles, and knows the time step for the worst pair
  * of all, whatever order they enter in. */
-scree_status scree_scene_add_body(const scree_scene_shape *shape, scree_world *world,
-                                  const scree_body *state, scree_error *error) {
-  size_t index;
-  SCREE_TRY(scree_world_add_body(world, shape->particle, shape->material, state, &index, error));
-  return scree_world_set_body_density(world, index, shape->density, error);
-}
-
 static scree_status make_gallery(scree_scene *scene, const char *folder, scree_error *error) {
   SCREE_TRY(scree_scene_make_world(scene, 0, &scene->gallery, error));
-  SCREE_TRY(scree_scene_add_geometry(scene, folder, scene->gallery, error));
+  SCREE_TRY(scree_geometry_add(scene, folder, scene->gallery, error));
   double far = 0;
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
     scree_particle_measures m;
@@ -157,17 +129,16 @@ static scree_status make_gallery(scree_scene *scene, const char *folder, scree_e
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
     scree_body body = scree_default_body();
     SCREE_TRY(check_period(scene, i, error));
-    body.position[2] = 1e5 * far + (double)i * far;
-    SCREE_TRY(scree_scene_add_body(&scene->shapes[i], scene->gallery, &body, error));
+    const scree_scene_shape *s = &scene->shapes[i];
+    body.position[2] = 1e5 * far + (double)scree_scene_named(scene, i) * far;
+    if (i >= scene->named_count) {
+      vec3_store(body.position, vec3_add(vec3_load(body.position), s->at));
+      memcpy(body.orientation, (double[4]){s->turned.w, s->turned.x, s->turned.y, s->turned.z},
+             sizeof body.orientation);
+    }
+    SCREE_TRY(scree_scene_add_body(s, scene->gallery, &body, error));
   }
-  return SCREE_OK;
-}
-
-scree_placement scree_placement_of(const scree_particle *p, double more) {
-  return (scree_placement){.radius = p->measures.bounding_radius + more,
-                           .box_centre = vec3_lerp(p->box.low, p->box.high, 0.5),
-                           .half = vec3_add(vec3_scale(vec3_sub(p->box.high, p->box.low), 0.5),
-                                            (vec3){more, more, more})};
+  return scree_scene_join_gallery(scene, error);
 }
 
 void scree_scene_measure_shape(scree_scene *scene, size_t index) {
@@ -182,9 +153,20 @@ void scree_scene_measure_shape(scree_scene *scene, size_t index) {
                : scene->plan.materials.count ? material_at(scene, s->material)->density
                                              : scree_default_material().density;
   s->family = plan->family;
-  if (plan->mass_from && s->scan_volume > 0) s->density *= s->scan_volume / m.volume;
+  if (index >= scene->named_count && !s->part)
+    s->density = scene->shapes[s->assembly].density;
+  else if (plan->mass_from && s->scan_volume > 0)
+    s->density *= s->scan_volume / m.volume;
   s->volume = m.volume;
   s->mass = s->density * m.volume;
+  if (s->part) { /* the whole is what its parts are together, of their mean density */
+    scree_scene_shape *whole = &scene->shapes[s->assembly];
+    bool first = index == whole->first_piece;
+    double mass = s->mass + (first ? 0 : whole->density * whole->volume);
+    whole->volume = s->volume + (first ? 0 : whole->volume);
+    whole->density = mass / whole->volume;
+    whole->mass = whole->density * whole->volume;
+  }
   scene->size = index ? fmin(scene->size, m.size) : m.size;
 }
 
@@ -216,6 +198,7 @@ static scree_status allocate_inlets(scree_scene *scene, scree_error *error) {
 scree_status scree_scene_prepare(scree_scene *scene, scree_error *error) {
   const scree_plan *plan = &scene->plan;
   SCREE_TRY(scree_plan_expand(&scene->plan, &scene->arena, error));
+  scene->named_count = plan->shapes.count;
   SCREE_TRY_TAKE(scene->shapes, &scene->arena, plan->shapes.count, error);
   SCREE_TRY_TAKE(scene->geometry, &scene->arena, plan->geometry.count, error);
   SCREE_TRY_TAKE(scene->inlets, &scene->arena, plan->inlets.count, error);
@@ -227,21 +210,25 @@ scree_status scree_scene_prepare(scree_scene *scene, scree_error *error) {
   SCREE_TRY(scree_scene_plan_forces(scene, error));
   SCREE_TRY(scree_scene_plan_parts(scene, error));
   SCREE_TRY(allocate_inlets(scene, error));
-  return scree_scene_plan_columns(scene, error);
+  return scree_sensors_plan(scene, error);
 }
 
 static scree_status set_up(scree_scene *scene, const char *folder, scree_error *error) {
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) scree_scene_measure_shape(scene, i);
   SCREE_TRY(scree_scene_complete_plan(scene, error));
+  SCREE_TRY(scree_scene_read_places(scene, folder, error));
   SCREE_TRY(make_gallery(scene, folder, error));
   scree_error why; /* a time step that is too long */
   scree_status status = scree_world_step(scene->gallery, 0, &why);
   SCREE_TRY(scree_scene_blame(scene, &scene->plan.contact->place, status, &why, error));
   scene->time_step = scree_world_time_step(scene->gallery, NULL);
-  plan_ticks(scene);
   SCREE_TRY(scree_scene_make_world(scene, scene->time_step, &scene->world, error));
-  SCREE_TRY(scree_scene_add_geometry(scene, folder, scene->world, error));
+  SCREE_TRY(scree_geometry_add(scene, folder, scene->world, error));
   scree_world_share_walls(scene->world, scene->gallery);
+  scene->gallery->hit_speed = scree_scene_hit_speed(scene);
+  scene->time_step = scree_world_time_step(scene->gallery, NULL);
+  scene->world->options.time_step = scene->time_step;
+  plan_ticks(scene);
   return SCREE_OK;
 }
 
@@ -250,8 +237,9 @@ static scree_status look_for_walls(const scree_scene *scene, const char *folder,
                                    scree_error *error) {
   for (size_t i = 0; i < scene->plan.geometry.count; i++) {
     const scree_plan_geometry *g = &scene->plan.geometry.items[i];
-    for (size_t k = 0; k < g->file.count; k++) {
-      char *path = scree_scene_path(folder, g->file.items[k]);
+    const char *name;
+    for (size_t k = 0; (name = scree_geometry_file_name(g, k)); k++) {
+      char *path = scree_scene_path(folder, name);
       if (!path) return scree_fail_memory(error, 0, "a path");
       scree_path_info info;
       scree_error why;
@@ -273,7 +261,8 @@ static scree_status make_particles(scree_scene *scene, const char *folder, scree
   for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(scene); i++) {
     const scree_plan_shape *plan = &scene->plan.shapes.items[i];
     scree_error why;
-    status = scree_scene_make_shape(scene, i, folder, &making, &why);
+    if (plan->joints) status = scree_scene_make_parts(scene, i, folder, &making, &why);
+    if (status == SCREE_OK) status = scree_scene_make_shape(scene, i, folder, &making, &why);
     status = scree_scene_blame(scene, &plan->place, status, &why, error);
   }
   scree_particle_free(made.particle);
@@ -308,11 +297,13 @@ static scree_status create(const scree_scene_file *file, scree_shape_store *stor
   SCREE_TRY_ALLOC_ZERO(made, 1, error);
   SCREE_TRY(scree_scene_take_file(made, file, error));
   SCREE_TRY(make_particles(made, file->folder, store, progress, error));
+  SCREE_TRY(scree_scene_break_shapes(made, progress, error));
   SCREE_TRY(set_up(made, file->folder, error));
-  SCREE_TRY(scree_scene_plan_maps(made, error));
+  SCREE_TRY(scree_sensors_begin(made, error));
   SCREE_TRY(scree_scene_check_inlets(made, error));
   SCREE_TRY(scree_scene_plan_layers(made, error));
   SCREE_TRY(scree_scene_check_softness(made, error));
+  SCREE_TRY(scree_motions_check_speeds(made, error));
   SCREE_TRY(scree_scene_read_bodies(made, file->folder, error));
   SCREE_TRY(scree_scene_begin_phases(made, error));
   *scene = made;
@@ -320,24 +311,25 @@ static scree_status create(const scree_scene_file *file, scree_shape_store *stor
   return SCREE_OK;
 }
 
-double scree_scene_largest(const scree_scene *scene) {
-  double largest = 0;
+scree_scene_extent scree_scene_get_extent(const scree_scene *scene) {
+  scree_scene_extent e = {0};
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
     scree_particle_measures m;
     scree_particle_measure(scene->shapes[i].particle, &m);
-    largest = fmax(largest, 2 * m.bounding_radius);
+    e.largest = fmax(e.largest, 2 * m.bounding_radius);
+    e.mean += m.size / (double)SCREE_SCENE_SHAPES(scene);
   }
-  return largest;
+  return e;
 }
 
-scree_status scree_scene_file_largest(const scree_scene_file *file, scree_shape_store *store,
-                                      const scree_progress *progress, double *diameter,
-                                      scree_error *error) {
+scree_status scree_scene_file_extent(const scree_scene_file *file, scree_shape_store *store,
+                                     const scree_progress *progress, scree_scene_extent *extent,
+                                     scree_error *error) {
   SCREE_OWNED(scree_scene, made);
   SCREE_TRY_ALLOC_ZERO(made, 1, error);
   SCREE_TRY(scree_scene_take_file(made, file, error));
   SCREE_TRY(make_particles(made, file->folder, store, progress, error));
-  *diameter = scree_scene_largest(made);
+  *extent = scree_scene_get_extent(made);
   return SCREE_OK;
 }
 
@@ -345,15 +337,15 @@ scree_status scree_scene_file_largest(const scree_scene_file *file, scree_shape_
 scree_status scree_scene_create_from(const scree_scene_file *file, scree_shape_store *store,
                                      const scree_progress *progress, scree_scene **scene,
                                      scree_error *error) {
-  if (!scree_scene_file_shrinks(file)) return create(file, store, progress, scene, error);
+  if (!scree_scene_file_scales(file)) return create(file, store, progress, scene, error);
   SCREE_OWNED(scree_shape_store, own);
-  SCREE_OWNED(scree_scene_file, shrunk);
-  double largest;
+  SCREE_OWNED(scree_scene_file, scaled);
+  scree_scene_extent extent;
   if (!store) SCREE_TRY(scree_shape_store_create(&own, error));
   if (own) store = own;
-  SCREE_TRY(scree_scene_file_largest(file, store, progress, &largest, error));
-  SCREE_TRY(scree_scene_file_shrink(file, largest, &shrunk, error));
-  return create(shrunk, store, progress, scene, error);
+  SCREE_TRY(scree_scene_file_extent(file, store, progress, &extent, error));
+  SCREE_TRY(scree_scene_file_scale(file, &extent, &scaled, error));
+  return create(scaled, store, progress, scene, error);
 }
 
 scree_status scree_scene_create(const scree_scene_file *file, const scree_progress *progress,
@@ -377,16 +369,13 @@ void scree_scene_free(scree_scene *scene) {
   if (!scene) return;
   scree_world_free(scene->world);
   scree_world_free(scene->gallery);
+  scree_scene_forget_assemblies(scene);
   for (size_t i = 0; scene->shapes && i < SCREE_SCENE_SHAPES(scene); i++) {
     scree_particle_free(scene->shapes[i].particle);
     scree_free(scene->shapes[i].source);
   }
-  for (size_t i = 0; scene->sensors && i < scene->plan.sensors.count; i++) {
-    scree_free(scene->sensors[i].side.items);
-    scree_scene_free_impacts(&scene->sensors[i]);
-  }
-  scree_free(scene->hits.items);
-  scree_free(scene->hits_now.items);
+  scree_sensors_end(scene);
+  scree_free(scene->tables.items);
   scree_free(scene->columns.items);
   scree_free(scene->series.items);
   scree_free(scene->shape_of.items);
@@ -441,7 +430,6 @@ static int find_end(scree_scene *scene) {
 
 static scree_status tick(scree_scene *scene, scree_error *error) {
   scene->next_tick += scene->tick_steps;
-  SCREE_TRY(scree_scene_watch_flows(scene, error));
   scree_scene_empty(scene);
   return scree_scene_fill(scene, error);
 }
@@ -457,10 +445,8 @@ static size_t steps_to_decision(const scree_scene *scene, size_t wanted) {
   size_t steps = wanted < left ? wanted : (size_t)left, layer = scree_scene_steps_to_layer(scene);
   if (layer < steps) steps = layer;
   uint64_t done = scree_world_step_count(scene->world);
-  if (scene->map_steps && scene->next_map - done < steps) steps = scene->next_map - done;
-  if (scene->hit_steps && scene->next_hits - done < steps) steps = scene->next_hits - done;
-  uint64_t sample = scree_scene_next_sample(scene);
-  if (sample - done < steps) steps = sample > done ? (size_t)(sample - done) : 1;
+  uint64_t look = scree_sensors_next(scene);
+  if (look < done + steps) steps = look > done ? (size_t)(look - done) : 1;
   double due = fmin(next_row(scene), fmin(time_limit(scene), scree_scene_phase_end(scene)));
   double until = floor((due - scree_world_time(scene->world)) / scene->time_step) - 1;
   if (until < (double)steps) steps = until > 1 ? (size_t)until : 1;
@@ -470,9 +456,7 @@ static size_t steps_to_decision(const scree_scene *scene, size_t wanted) {
 static scree_status decide(scree_scene *scene, scree_error *error) {
   bool ticks = scree_world_step_count(scene->world) >= scene->next_tick;
   if (scree_world_time(scene->world) >= next_row(scene)) scree_scene_take_lost(scene);
-  SCREE_TRY(scree_scene_watch_maps(scene, error));
-  SCREE_TRY(scree_scene_watch_impacts(scene, error));
-  SCREE_TRY(scree_scene_watch_grids(scene, error));
+  SCREE_TRY(scree_sensors_watch(scene, ticks, error));
   if (ticks) SCREE_TRY(tick(scene, error));
   SCREE_TRY(scree_scene_turn_phase(scene, ticks, error));
   scene->end = find_over(scene);
@@ -544,12 +528,6 @@ void scree_scene_reopen(scree_scene *scene, const scree_plan *plan) {
 const char *scree_scene_end(const scree_scene *scene) {
   return ends[scene->end];
 }
-double scree_scene_duration(const scree_scene *scene) {
-  const scree_plan_stop *stop = scene->plan.stop;
-  double most = scene->plan.phases.count ? scree_scene_phase_times(scene) : (double)INFINITY;
-  if (!isnan(stop->filled)) most = fmin(most, scree_scene_filling_time(scene) + stop->filled);
-  return fmin(time_limit(scene), most);
-}
 scree_scene_costs scree_scene_get_costs(const scree_scene *scene) {
   return scene->costs;
 }
@@ -569,9 +547,6 @@ const scree_world *scree_scene_view(const scree_scene *scene) {
   return scene->world;
 }
 
-const char *scree_scene_shape_name(const scree_scene *scene, size_t index) {
-  return SCREE_PLAN_NAME(scene->plan.shapes, index);
-}
 const char *scree_scene_shape_family(const scree_scene *scene, size_t index) {
   return index < SCREE_SCENE_SHAPES(scene)
              ? scree_scene_class_name(scene, SCREE_BY_SHAPE, scene->shapes[index].family)
@@ -583,64 +558,9 @@ const char *scree_scene_shape_source(const scree_scene *scene, size_t index) {
 scree_particle *scree_scene_shape_particle(const scree_scene *scene, size_t index) {
   return scene->shapes[index].particle;
 }
-const char *scree_scene_geometry_name(const scree_scene *scene, size_t index) {
-  return SCREE_PLAN_NAME(scene->plan.geometry, index);
-}
 const char *scree_scene_geometry_note(const scree_scene *scene, size_t index) {
   return scene->geometry[index].note;
 }
-const char *scree_scene_inlet_name(const scree_scene *scene, size_t index) {
-  return SCREE_PLAN_NAME(scene->plan.inlets, index);
-}
-const char *scree_scene_outlet_name(const scree_scene *scene, size_t index) {
-  return SCREE_PLAN_NAME(scene->plan.outlets, index);
-}
-size_t scree_scene_body_shape(const scree_scene *scene, size_t index) {
-  return scene->shape_of.items[index];
-}
-size_t scree_scene_wall_geometry(const scree_scene *scene, size_t index) {
-  size_t g = 0;
-  while (index >= scene->geometry[g].first_wall + scene->geometry[g].wall_count) g++;
-  return g;
-}
-
-/* What is there and was dissipated, less what came in and was done; of parts that forces move
- * likewise. */
-static double missing_energy(const scree_scene *scene, const scree_observation *o) {
-  double is = o->kinetic + o->rotational + o->potential + o->elastic + o->dissipated_dashpot +
-              o->dissipated_friction;
-  double should = scene->entered_energy - scene->left_energy + o->wall_work + o->applied_work;
-  return is + scree_scene_parts_balance(scene) - should;
-}
-
-double scree_scene_missing_energy(const scree_scene *scene) {
-  scree_observation o;
-  scree_world_observe(scene->world, &o);
-  return missing_energy(scene, &o);
-}
-
-void scree_scene_get_book(const scree_scene *scene, scree_scene_book *book) {
-  scree_observation o;
-  scree_world_observe(scene->world, &o);
-  scree_scene_book b = {.entered_count = scene->shape_of.count,
-                        .left_count = scene->left_count,
-                        .entered_mass = scene->entered_mass,
-                        .left_mass = scene->left_mass,
-                        .entered_energy = scene->entered_energy,
-                        .left_energy = scene->left_energy};
-  for (size_t i = 0; i < scene->plan.inlets.count; i++) b.waiting_count += scene->inlets[i].waiting;
-  for (size_t i = 0; i < scene->shape_of.count; i++)
-    if (!scree_world_body_removed(scene->world, i)) {
-      b.inside_count++;
-      b.inside_mass += scree_world_body_mass(scene->world, i);
-    }
-  double missing = missing_energy(scene, &o);
-  double turned = o.dissipated_dashpot + o.dissipated_friction + o.kinetic + o.rotational +
-                  o.elastic + fabs(o.wall_work) + fabs(o.applied_work);
-  b.ledger = turned > 0 ? missing / turned : 0;
-  *book = b;
-}
-
 size_t scree_scene_inlet_count(const scree_scene *scene, size_t index, double *mass,
                                size_t *waiting) {
   if (mass) *mass = scene->inlets[index].mass;

@@ -2,16 +2,10 @@
 #pragma once
 
 #include "base/owned.h"
+#include "scene/file.h"
 #include "scene/fill.h"
 #include "scene/motion.h"
-#include "scene/plan.h"
-#include "world/world.h"
-
-struct scree_scene_file {
-  scree_yaml root;
-  char *name;   /* for messages */
-  char *folder; /* where the files that it names lie, with a slash at its end, or "" */
-};
+#include "world/state/world.h"
 
 /* One of the shapes. */
 typedef struct scree_scene_shape {
@@ -24,6 +18,12 @@ typedef struct scree_scene_shape {
   double density, mass, volume;
   double scan_volume; /* m3, before decimation; 0: not known */
   size_t entered, left;
+  size_t first_piece, piece_count; /* of one that breaks: shapes behind those of the file */
+  size_t assembly;                 /* of a piece: the shape that it is of, */
+  const char *part;                /* which of its parts; NULL: it has none */
+  uint32_t group;                  /* as a number: parts may share a name */
+  vec3 at;                         /* and where it lies in its frame */
+  quat turned;
 } scree_scene_shape;
 
 /* Where a part that forces move is (parts.c). */
@@ -31,6 +31,8 @@ typedef struct scree_scene_part {
   double way, speed; /* m, m/s or rad, rad/s */
   double push;       /* N or N m, of bodies in the step before the last */
   double work, lost; /* J, by the drive; by the damper and the ends */
+  double given;      /* J, to bodies by its motion, until the step before the last */
+  double earlier;    /* its speed in the step before */
 } scree_scene_part;
 
 /* A piece of geometry is one wall of the world or several; of a mesh one of what is solid and one
@@ -41,7 +43,7 @@ typedef struct scree_scene_geometry {
   const char *note;              /* lines about its meshes; NULL: none, or from a checkpoint */
 } scree_scene_geometry;
 
-/* Of an inlet by layers; all but the count of layers follows from the plan. */
+/* What an inlet by layers keeps; all but the count of layers follows from the plan. */
 typedef struct scree_scene_layers {
   uint32_t *order;          /* by body, in the order of entering: which of the inlet's shapes */
   scree_placement *extents; /* of each of the inlet's shapes, clearance included */
@@ -81,37 +83,16 @@ typedef struct scree_scene_outlet {
   double first_time, first_place[3]; /* s, m: of the first that left */
 } scree_scene_outlet;
 
-/* A contact that is followed (impacts.c), or the last one of these neighbours. */
-typedef struct scree_scene_hit {
-  uint32_t a, b;
-  bool wall, touching;
-  double seen_normal, seen_tangential; /* J, the pair's losses at the last look */
-  double approach, normal, tangential; /* J, of the contact */
-} scree_scene_hit;
-
-typedef struct scree_scene_hits {
-  scree_scene_hit *items; /* in the order of the world's neighbours */
-  size_t count, capacity;
-} scree_scene_hits;
-
-typedef struct scree_scene_impacts scree_scene_impacts; /* impacts.h */
-typedef struct scree_scene_grid scree_scene_grid;       /* grid.h */
+typedef struct scree_sensor_kind scree_sensor_kind; /* sensors/sensor.h */
 
 typedef struct scree_scene_sensor {
   const scree_plan_sensor *plan;
+  const scree_sensor_kind *kind; /* NULL: it is not planned yet */
+  void *state;                   /* of the kind, in the arena */
+  void *shared;                  /* by all sensors of the kind, likewise */
+  bool leads;                    /* the first of them */
   size_t first_column;
-  size_t geometry;      /* of a wall or a position */
-  double *count, *mass; /* of a flow, by shape, all shapes last */
-  double *maps;   /* of a wall: each scree_wall_map by triangle of its meshes, one number of each
-                     other wall: N s, N s, J, m3 */
-  double watched; /* s in which they were gathered */
-  size_t cell_count;
-  scree_scene_impacts *impacts;
-  struct scree_scene_grid *grid;
-  struct {
-    int8_t *items; /* of a flow: the side each body was on */
-    size_t count, capacity;
-  } side;
+  size_t geometry; /* that it is of; where it is of none, 0 */
 } scree_scene_sensor;
 
 /* How a body came and went: s, NaN while it is in; UINT32_MAX: from a table, and while it is in. */
@@ -125,6 +106,12 @@ typedef struct scree_scene_column {
   const char *unit;
 } scree_scene_column;
 
+/* Where a table of a sensor is. */
+typedef struct scree_scene_table_place {
+  char name[96]; /* SENSOR.WHAT */
+  size_t sensor, table;
+} scree_scene_table_place;
+
 typedef struct scree_scene_change_list {
   scree_scene_change_entry *items; /* texts in the scene's arena */
   size_t count, capacity;
@@ -137,6 +124,8 @@ struct scree_scene {
   char *name;
   scree_world *world, *gallery; /* the gallery has one body of each shape, never moved */
   scree_scene_shape *shapes;
+  size_t named_count;                      /* of shapes, without pieces of those that break */
+  struct scree_scene_assembly *assemblies; /* of these, until the gallery has them; else NULL */
   scree_scene_geometry *geometry;
   scree_scene_inlet *inlets;
   scree_scene_outlet *outlets; /* and the domain's rim */
@@ -150,6 +139,10 @@ struct scree_scene {
     size_t count, capacity;
   } series; /* rows of columns.count */
   size_t row_count;
+  struct {
+    scree_scene_table_place *items;
+    size_t count, capacity;
+  } tables;
   struct {
     uint32_t *items; /* shape of each body */
     size_t count, capacity;
@@ -166,18 +159,17 @@ struct scree_scene {
     scree_placement *items; /* scratch of inlets */
     size_t count, capacity;
   } present;
-  bool *usual_density;           /* of materials: none is given; NULL where the file is not known */
-  double time_step, size;        /* s; m: the smallest shape's */
-  uint64_t tick_steps;           /* between looks at inlets, outlets, flows and the end */
-  uint64_t next_tick;            /* step */
-  uint64_t map_steps, next_map;  /* likewise of looks at walls; 0: no sensor needs any */
-  uint64_t hit_steps, next_hits; /* and of looks at impacts */
-  scree_scene_hits hits, hits_now; /* hits_now: scratch */
+  bool *usual_density;    /* of materials: none is given; NULL where the file is not known */
+  double time_step, size; /* s; m: the smallest shape's */
+  uint64_t tick_steps;    /* between looks at inlets, outlets, flows and the end */
+  uint64_t next_tick;     /* step */
   bool has_parts;
   bool *acts_on; /* of forces, each by shape */
   size_t still_ticks;
   double entered_mass, left_mass, entered_energy, left_energy;
   size_t left_count;
+  double (*table_places)[3]; /* of a table of bodies, in the arena */
+  size_t table_place_count;
   double table_low[3],
       table_high[3];  /* m: the box of the bodies from a table; low above high: none */
   int end;            /* index into the reasons; 0: it goes on */
@@ -195,30 +187,8 @@ enum { SCREE_SCENE_ENDS = 6 }; /* that a scene may have, 0: none yet */
 /* scene.c: of its time or its phases, by the longest schedule. */
 double scree_scene_fraction(const scree_scene *scene);
 
-/* plan.c of a file: into the arena of whoever asks. */
-scree_status scree_scene_file_plan(const scree_scene_file *file, scree_arena *arena,
-                                   scree_plan *plan, scree_error *error);
-/* As scree_scene_file_input, but that it fails where the file or memory does; "": no more. */
-scree_status scree_scene_file_find_input(const scree_scene_file *file, size_t index, char *path,
-                                         size_t size, scree_error *error);
-/* A file of a tree, which it takes, of that name. */
-scree_status scree_scene_file_keep(scree_yaml *root, const char *name, scree_scene_file **file,
-                                   scree_error *error);
-/* Whether it has parameters whose fields shrink with the largest shape (m); a copy in which they
- * have, to be freed. */
-bool scree_scene_file_shrinks(const scree_scene_file *file);
-scree_status scree_scene_file_shrink(const scree_scene_file *file, double largest,
-                                     scree_scene_file **shrunk, scree_error *error);
-/* m: the diameter of its largest shape, which is made for it; and of those of a scene. */
-scree_status scree_scene_file_largest(const scree_scene_file *file, scree_shape_store *store,
-                                      const scree_progress *progress, double *diameter,
-                                      scree_error *error);
-double scree_scene_largest(const scree_scene *scene);
-/* As printed, to be freed. */
-scree_status scree_scene_file_text(const scree_scene_file *file, char **text, scree_error *error);
-
-/* particles.c: what a shape is made from, whose file lies at path. */
-scree_shape_spec scree_scene_shape_spec(const scree_plan_shape *shape, const char *path);
+/* The extent of its shapes. */
+scree_scene_extent scree_scene_get_extent(const scree_scene *scene);
 /* The particle of one, in its order: *made holds the last one before its sizes, of which more may
  * be made; its particle is to be freed. */
 typedef struct scree_scene_making {
@@ -228,9 +198,6 @@ typedef struct scree_scene_making {
 } scree_scene_making;
 scree_status scree_scene_make_shape(scree_scene *scene, size_t index, const char *folder,
                                     const scree_scene_making *making, scree_error *error);
-/* Where a file named in a scene lies; NULL when memory is out. */
-char *scree_scene_path(const char *folder, const char *name);
-
 /* A world of its materials, without walls and bodies; s, 0: by what there will be. */
 scree_status scree_scene_make_world(const scree_scene *scene, double time_step, scree_world **world,
                                     scree_error *error);
@@ -239,32 +206,18 @@ scree_status scree_scene_take_file(scree_scene *scene, const scree_scene_file *f
                                    scree_error *error);
 /* J that is there and that the books do not explain. */
 double scree_scene_missing_energy(const scree_scene *scene);
-/* save.c: what a sensor has gathered, in or out. */
-struct scree_codec;
-void scree_scene_code_sensor(struct scree_codec *c, scree_scene *scene, scree_scene_sensor *sensor);
 
-/* geometry.c: motions of one, from where it stands. */
-scree_status scree_scene_set_motions(const scree_scene *scene, size_t index, scree_world *world,
-                                     scree_error *error);
-/* paths.c: the tables of a geometry's motions, once. */
-scree_status scree_scene_read_paths(scree_scene *scene, size_t geometry, const char *folder,
-                                    scree_error *error);
-/* geometry.c: how the surface of one runs round, as of scree_wall. */
-void scree_scene_belt_loop(const scree_plan_geometry *geometry, double loop[3]);
-/* geometry.c: walls into a world. */
-scree_status scree_scene_add_geometry(scree_scene *scene, const char *folder, scree_world *world,
-                                      scree_error *error);
 /* What is wrong with what the scene's file has at that place. */
 scree_status scree_scene_fail(const scree_scene *scene, const scree_place *place,
                               scree_error *error, const char *format, ...) SCREE_PRINTF(4, 5);
 /* The status; a failure that is told by `why` is told with its place. */
 scree_status scree_scene_blame(const scree_scene *scene, const scree_place *place,
                                scree_status status, const scree_error *why, scree_error *error);
-/* Whether a body in that place is clear of all walls; else *wall is one that it is not clear of. */
+/* clear.c: whether a body in that place is clear of all walls; else *wall is one that it is not
+ * clear of. */
 bool scree_scene_is_clear(const scree_scene *scene, const scree_placement *placement, size_t *wall);
 
-/* inlets.c: the box around an inlet's region; then checks and filling. */
-void scree_scene_region_of(const scree_plan_inlet *plan, double low[3], double high[3]);
+/* inlets.c: checks and filling. */
 scree_status scree_scene_check_inlets(scree_scene *scene, scree_error *error);
 scree_status scree_scene_fill(scree_scene *scene, scree_error *error);
 /* Whether nothing more will come, ever. */
@@ -280,10 +233,8 @@ static inline bool scree_is_still(const scree_observation *o, double still) {
 }
 
 /* defaults.c: what the plan leaves out and follows from the particles; of layers order, region and
- * measures. Then whether cells of a height field suit bodies of that size. */
+ * measures. */
 scree_status scree_scene_complete_plan(scree_scene *scene, scree_error *error);
-scree_status scree_scene_check_cell(const scree_scene *scene, const scree_place *place, double cell,
-                                    double size, scree_error *error);
 /* layers.c: plans those of an inlet, refusing what cannot be; lets in those that are due. */
 scree_status scree_scene_plan_layers(scree_scene *scene, scree_error *error);
 scree_status scree_scene_enter_layers(scree_scene *scene, scree_error *error);
@@ -295,6 +246,12 @@ double scree_scene_filling_time(const scree_scene *scene);
 /* inlets.c: one body more in the world, and in the books. */
 scree_status scree_scene_admit(scree_scene *scene, size_t shape, const scree_body *body,
                                scree_error *error);
+/* view.c: whether the sums of energy miss so much that results are in doubt, and what has it. */
+bool scree_scene_doubt_energy(const scree_scene *scene, char *text);
+/* bodies.c: where the bodies of a table are, before walls are made: they tell its sides. */
+scree_status scree_scene_read_places(scree_scene *scene, const char *folder, scree_error *error);
+/* starts.c: refuses bodies of a table that an open sheet passes through. */
+scree_status scree_scene_check_pierced(const scree_scene *scene, scree_error *error);
 /* bodies.c: those that are there from the start. */
 scree_status scree_scene_read_bodies(scree_scene *scene, const char *folder, scree_error *error);
 /* `which` of the inlet's shapes. */
@@ -315,19 +272,35 @@ double scree_scene_phase_times(const scree_scene *scene);
 bool scree_scene_is_in_phase(const scree_scene *scene, const scree_texts *names);
 
 /* softness.c: the contact that may be pressed beyond its limit the most, by the speed of an inlet,
- * the fall from it to the lowest geometry and the motion of walls. */
+ * or of the table's bodies, the fall from there to the lowest geometry and the motion of walls. */
 typedef struct scree_scene_softness {
-  size_t inlet, shape, other;   /* whose bodies; against a shape, or a geometry */
-  bool is_wall;                 /* other: a geometry */
-  double speed, overlap, limit; /* m/s; m: v sqrt(m/K), and what the law reads */
-  double size;                  /* m, of the smaller */
-  double stiffer; /* so many times as stiff it would hold, in the root as many steps */
-  double least;   /* of its size, by how much the stiffest contact gives way */
+  size_t inlet, shape, other; /* whose bodies, SIZE_MAX: the table's; against a shape, a geometry */
+  size_t squeezed;            /* a lighter shape between both; SIZE_MAX: none */
+  bool is_wall;               /* other: a geometry */
+  double speed, energy;       /* m/s, J */
+  double overlap, limit;      /* m: v sqrt(m/K), and where contacts harden */
+  double size;                /* m, of the smaller */
+  double stiffer;             /* so many times as stiff it would hold, in the root as many steps */
+  double least;               /* of its size, by how much the stiffest contact gives way */
 } scree_scene_softness;
-/* False where none may. The sentence that says so is put into text. */
+/* False where none may: by hits; by a body that squeezes a lighter one against a wall. */
 bool scree_scene_soft(const scree_scene *scene, scree_scene_softness *softness);
-void scree_scene_describe_softness(const scree_scene *scene, const scree_scene_softness *softness,
-                                   char *text, size_t size);
+bool scree_scene_squeezes(const scree_scene *scene, scree_scene_softness *softness);
+/* A table of both, what keeps them soft and what that costs; false where there is none. */
+bool scree_scene_describe_softness(const scree_scene *scene, char text[SCREE_REMARK]);
+/* m/s, of the fastest hit of an inlet's bodies, by which the step of Hertz's law goes; at least 1
+ * where bodies come from elsewhere. */
+double scree_scene_hit_speed(const scree_scene *scene);
+/* pinch.c: of the bodies that two pieces of geometry close on, that which is pressed in the most.
+ * m: the gap where it is narrow and wide, the overlap on the softer side, its limit, and the gap
+ * that keeps within it. */
+typedef struct scree_scene_pinch {
+  size_t shape, geometry[2];
+  double narrow, wide, overlap, limit, room;
+} scree_scene_pinch;
+bool scree_scene_pinches(const scree_scene *scene, double duration, scree_scene_pinch *pinch);
+/* softness.c: of how far such a body is pressed together, what the softer side gives way by. */
+double scree_scene_pinch_share(const scree_scene *scene, size_t shape, const size_t geometry[2]);
 /* softness.c: refuses inlets so fast that bodies would pass what they hit. */
 scree_status scree_scene_check_softness(const scree_scene *scene, scree_error *error);
 /* outlets.c: takes out what is in an outlet or left the domain. */
@@ -347,19 +320,24 @@ enum { SCREE_BY_SIZE, SCREE_BY_SHAPE, SCREE_BY_MATERIAL };
 size_t scree_scene_class_count(const scree_scene *scene, int by);
 size_t scree_scene_class_of(const scree_scene *scene, int by, size_t shape);
 const char *scree_scene_class_name(const scree_scene *scene, int by, size_t index);
-/* Whether now is between a sensor's `from` and `until`. */
-bool scree_scene_is_watching(const scree_scene *scene, const scree_scene_sensor *sensor);
-scree_status scree_scene_plan_columns(scree_scene *scene, scree_error *error);
-/* Of flows: who crossed since the last tick. */
-scree_status scree_scene_watch_flows(scree_scene *scene, scree_error *error);
+/* sensors.c: all of them. Their missing fields; their columns, by the plan alone; their room; looks
+ * that are due, of which some are at ticks; the step of the next other one; what one has gathered,
+ * in or out; whether one is of a region. */
+struct scree_codec;
+scree_status scree_sensors_complete(const scree_scene *scene, scree_error *error);
+scree_status scree_sensors_plan(scree_scene *scene, scree_error *error);
+scree_status scree_sensors_begin(scree_scene *scene, scree_error *error);
+scree_status scree_sensors_watch(scree_scene *scene, bool ticks, scree_error *error);
+uint64_t scree_sensors_next(const scree_scene *scene);
+void scree_sensor_code(struct scree_codec *codec, scree_scene *scene, scree_scene_sensor *sensor);
+void scree_sensor_code_shared(struct scree_codec *codec, scree_scene *scene,
+                              scree_scene_sensor *sensor);
+bool scree_sensor_reach(const scree_plan_sensor *plan, double low[3], double high[3]);
+void scree_sensors_end(scree_scene *scene);
 scree_status scree_scene_record(scree_scene *scene, scree_error *error);
-/* maps.c: room for all; what a look adds; the sums over a wall sensor's geometry (N s, N s, J, m3),
- * and the highest of its triangles as scree_scene_wall_map. */
-scree_status scree_scene_plan_maps(scree_scene *scene, scree_error *error);
-scree_status scree_scene_watch_maps(scree_scene *scene, scree_error *error);
-scree_status scree_scene_read_maps(const scree_scene *scene, const scree_scene_sensor *sensor,
-                                   double sums[SCREE_MAP_COUNT], double highest[SCREE_MAP_COUNT],
-                                   scree_error *error);
+/* What they have besides columns, as files in the folder. */
+scree_status scree_scene_write_tables(const scree_scene *scene, const char *folder,
+                                      scree_error *error);
 
 /* parts.c: room for those that forces move; their coming step; J, kinetic and potential, and what
  * one's walls have done on bodies; what the books of all miss. */
@@ -369,44 +347,14 @@ double scree_scene_part_energy(const scree_scene *scene, size_t geometry);
 /* N along the slide or N m about the hinge, of all bodies in the last step. */
 double scree_scene_push(const scree_scene *scene, size_t geometry);
 double scree_scene_parts_balance(const scree_scene *scene);
+/* J, the energy book of one geometry that forces move; 0 where it is none. */
+double scree_scene_part_balance(const scree_scene *scene, size_t geometry);
+/* J, of what changed its form in them. */
+double scree_scene_parts_turned(const scree_scene *scene);
 
 /* forces.c: on whom; of the coming step. */
 scree_status scree_scene_plan_forces(scree_scene *scene, scree_error *error);
 scree_status scree_scene_apply_forces(scree_scene *scene, scree_error *error);
-
-/* residence.c: its columns; its tables. */
-scree_status scree_scene_read_residence(const scree_scene *scene, const scree_scene_sensor *sensor,
-                                        double *at, scree_error *error);
-void scree_scene_put_stays(const scree_scene *scene, const scree_scene_sensor *sensor,
-                           FILE *stream);
-scree_status scree_scene_put_histogram(const scree_scene *scene, const scree_scene_sensor *sensor,
-                                       FILE *stream, scree_error *error);
-
-/* impacts.c: likewise. */
-scree_status scree_scene_plan_impacts(scree_scene *scene, scree_scene_sensor *sensor,
-                                      scree_error *error);
-scree_status scree_scene_watch_impacts(scree_scene *scene, scree_error *error);
-void scree_scene_free_impacts(scree_scene_sensor *sensor);
-
-/* grid.c: likewise; the step of the next sample. */
-scree_status scree_scene_plan_grid(scree_scene *scene, scree_scene_sensor *sensor,
-                                   scree_error *error);
-scree_status scree_scene_watch_grids(scree_scene *scene, scree_error *error);
-uint64_t scree_scene_next_sample(const scree_scene *scene);
-
-/* tables.c: what sensors have besides columns, as CSV files in the folder. */
-scree_status scree_scene_write_tables(const scree_scene *scene, const char *folder,
-                                      scree_error *error);
-
-/* measures.c: into columns from `at` on. */
-scree_status scree_scene_put_pile(const scree_scene *scene, const scree_plan_pile *plan, double *at,
-                                  scree_error *error);
-enum { SCREE_PILE_COLUMNS = 11 };
-scree_status scree_scene_measure_slope(const scree_scene *scene, const scree_plan_slope *plan,
-                                       double *at, scree_error *error);
-/* mixing.c: bodies in a cell, then the index of each class. */
-scree_status scree_scene_measure_mixing(const scree_scene *scene, const scree_scene_sensor *sensor,
-                                        double *at, scree_error *error);
 
 /* scene.c: the arrays of a scene that has a plan. */
 scree_status scree_scene_prepare(scree_scene *scene, scree_error *error);
@@ -420,7 +368,7 @@ scree_status scree_scene_list_present(scree_scene *scene, const scree_placement 
 /* m: of the highest body, but those that move slower up than `slowest` (or faster down). */
 double scree_scene_highest(const scree_scene *scene, const scree_placement *extents,
                            double slowest);
-/* At rest or as `state` says, of the shape's density. */
+/* inlets.c: a body of the shape, at rest or as `state` says, of its density. */
 scree_status scree_scene_add_body(const scree_scene_shape *shape, scree_world *world,
                                   const scree_body *state, scree_error *error);
 /* What the engine must know of a shape that has its particle. */
@@ -434,6 +382,38 @@ scree_status scree_scene_check_same(scree_scene *scene, const char *text, const 
                                     scree_error *error);
 
 #define SCREE_SCENE_SHAPES(scene) ((scene)->plan.shapes.count)
+/* The shape of the file that it is, or that it is a piece of. */
+static inline size_t scree_scene_named(const scree_scene *scene, size_t shape) {
+  return shape < scene->named_count ? shape : scene->shapes[shape].assembly;
+}
+
+/* particles.c: one, before its sizes; of a file's parts or all (0). */
+scree_status scree_scene_make_unscaled(const scree_plan_shape *plan, const char *folder,
+                                       size_t part, scree_shape_store *store,
+                                       const scree_progress *progress, scree_shape_made *made,
+                                       scree_error *error);
+/* assemblies.c: the parts of a shape with joints, and in making->made the particle that stands for
+ * them, which scree_scene_make_shape takes. */
+scree_status scree_scene_make_parts(scree_scene *scene, size_t index, const char *folder,
+                                    const scree_scene_making *making, scree_error *error);
+/* What a piece is of. */
+typedef struct scree_scene_piece {
+  uint32_t assembly, group; /* the shape; which of its parts, */
+  const char *part;         /* and its name; NULL: none */
+} scree_scene_piece;
+/* Cuts shapes that break, whose particles are there, and makes their pieces shapes; the same by a
+ * list of what each is of, without particles. */
+scree_status scree_scene_break_shapes(scree_scene *scene, const scree_progress *progress,
+                                      scree_error *error);
+scree_status scree_scene_append_pieces(scree_scene *scene, const scree_scene_piece *pieces,
+                                       size_t count, scree_error *error);
+/* Joints between the pieces in the gallery; where the pieces of a loaded gallery lie; all pieces of
+ * a shape, and their joints, into the world. */
+scree_status scree_scene_join_gallery(scree_scene *scene, scree_error *error);
+void scree_scene_forget_assemblies(scree_scene *scene);
+void scree_scene_place_pieces(scree_scene *scene);
+scree_status scree_scene_admit_assembly(scree_scene *scene, size_t shape, const scree_body *body,
+                                        scree_error *error);
 
 static inline bool scree_is_in(const double p[3], const double low[3], const double high[3]) {
   for (int k = 0; k < 3; k++)
@@ -459,3 +439,6 @@ static inline quat scree_body_turn(const scree_body *body) {
  * drawn, not continued. */
 scree_status scree_scene_save_frame(const scree_scene *scene, const char *path, bool overwrite,
                                     scree_error *error);
+
+/* sensors/pile.c: where there is none. */
+scree_pile scree_no_pile(void);

@@ -1,107 +1,43 @@
 /* Whether contacts are stiff enough for how fast bodies will hit: a linear spring is pressed by
  * v sqrt(m/K), and the law reads depths up to its limit only. The speed is that of the inlet and of
  * the fall from it to the lowest geometry, and beside that of the wall's motion; how much of it a
- * body has when it hits is not known, so what exceeds the limit is told. Where the inlet's velocity
- * alone presses a body in by half its size its middle passes the surface, and it would be pushed
- * out on the far side: that is refused. */
+ * body has when it hits is not known, so what exceeds the limit is told. Bodies of a table
+ * likewise, by their own speeds. Where the inlet's velocity alone would press a linear spring in by
+ * a body's size no hardened one holds it, and it would come out on the far side: that is refused.
+ *
+ * A body of mass M that squeezes a light one between itself, by K1, and a wall, by K2, stops
+ * against both springs in series, Ks = K1 K2/(K1 + K2), and so presses with v sqrt(M Ks): the
+ * softer of the two gives way by v sqrt(M Ks)/min(K1, K2). */
+#include "scene/motions.h"
+#include "scene/region.h"
 #include "scene/scene.h"
 
-#include "world/materials.h"
+#include "world/state/parameters.h"
 
-static const double passes = 0.5; /* of the size */
+static const double passes = 1; /* of the size */
+/* So many times as heavy as another, a body squeezes it and is not moved by it. */
+static const double heavy = 4;
 
 /* ---- speeds ---- */
 
-static double largest_of(const scree_table *table, bool slopes) {
-  double largest = 0;
-  for (size_t i = 0; i < table->count; i++) {
-    const double *row = table->items[i];
-    if (!slopes) largest = fmax(largest, fabs(row[1]));
-    if (slopes && i && row[0] > table->items[i - 1][0])
-      largest =
-          fmax(largest, fabs(row[1] - table->items[i - 1][1]) / (row[0] - table->items[i - 1][0]));
-  }
-  return largest;
-}
-
-/* m: the farthest point of a geometry from an axis; 0 where it has no end. */
-static double arm_of(const scree_scene *scene, size_t geometry, vec3 axis, vec3 through) {
-  const scree_scene_geometry *g = &scene->geometry[geometry];
-  double far = 0;
-  for (size_t w = g->first_wall; w < g->first_wall + g->wall_count; w++) {
-    const scree_world_wall *wall = scree_world_wall_at(scene->world, w);
-    for (size_t v = 0; wall->surface && v < wall->surface->mesh.vertex_count; v++) {
-      vec3 p = vec3_add(mat3_mul_vec(&wall->frame.rotation,
-                                     vec3_load(wall->surface->mesh.positions + 3 * v)),
-                        wall->frame.position),
-           d = vec3_sub(p, through);
-      far = fmax(far, vec3_norm(vec3_mad(d, axis, -vec3_dot(d, axis))));
-    }
-  }
-  return far;
-}
-
-/* m/s of what stands out of a chain, as it goes round a wheel. */
-static double speed_round(const scree_scene *scene, size_t geometry, double speed) {
-  const scree_plan_round *c = scene->plan.geometry.items[geometry].copies;
-  const vec3 axis = vec3_unit(vec3_load(c->axis)), first = vec3_load(c->through);
-  const double far = fmin(arm_of(scene, geometry, axis, first),
-                          arm_of(scene, geometry, axis, vec3_add(first, vec3_load(c->span))));
-  return fabs(speed) * fmax(1, (far - vec3_norm(vec3_load(c->span))) / c->radius);
-}
-
-static double speed_on_path(const scree_scene *scene, size_t geometry,
-                            const scree_plan_path *path) {
-  double speed = 0;
-  for (int k = 0; k < SCREE_PATH_COLUMNS; k++) {
-    const vec3 axis = {k % 3 == 0, k % 3 == 1, k % 3 == 2};
-    const double arm = k < 3 ? 1 : arm_of(scene, geometry, axis, vec3_load(path->through));
-    speed += arm * largest_of(&path->tables[k], true);
-  }
-  return speed;
-}
-
-static const double two_pi = 6.283185307179586;
-
-/* m/s of its fastest point; motions act together. */
-static double speed_of_geometry(const scree_scene *scene, size_t index) {
-  const scree_plan_geometry *g = &scene->plan.geometry.items[index];
-  double speed = 0;
-  for (size_t i = 0; i < g->motion.count; i++) {
-    const scree_plan_motion *m = &g->motion.items[i];
-    const scree_plan_translate *t = m->translate;
-    const scree_plan_rotate *r = m->rotate;
-    const scree_plan_vibrate *v = m->vibrate;
-    if (t && !isnan(t->velocity[0])) speed += vec3_norm(vec3_load(t->velocity));
-    if (t) speed += largest_of(&t->table, false) + largest_of(&t->positions, true);
-    if (r) {
-      double most = isnan(r->speed) ? 0 : fabs(r->speed);
-      if (!isnan(r->amplitude)) most = two_pi * r->frequency * r->amplitude;
-      most += largest_of(&r->table, false) + largest_of(&r->positions, true);
-      speed += arm_of(scene, index, vec3_unit(vec3_load(r->axis)), vec3_load(r->through)) * most;
-    }
-    if (v) speed += two_pi * v->frequency * fabs(v->amplitude);
-    if (m->crank)
-      speed += m->crank->speed * m->crank->radius * (1 + m->crank->radius / m->crank->rod);
-    if (m->round) speed += speed_round(scene, index, m->round->speed);
-    if (m->path) speed += speed_on_path(scene, index, m->path);
-  }
-  return speed;
-}
-
-/* m: along gravity, from the highest corner of an inlet to the lowest of the geometry; 0 where the
- * geometry has no lowest. */
-static double fall_from(const scree_scene *scene, const scree_scene_inlet *inlet) {
-  vec3 down = vec3_load(scene->plan.gravity);
-  if (!(vec3_norm(down) > 0)) return 0;
-  down = vec3_unit(down);
-  scree_scene_reach all = scree_scene_reach_of(scene), region;
+static scree_scene_reach region_of(const scree_scene_inlet *inlet) {
+  scree_scene_reach region;
   if (inlet->plan->layers && inlet->plan->layers->in) {
     vec3_store(region.low, inlet->layers.middle);
     vec3_store(region.high, inlet->layers.middle);
   } else {
-    scree_scene_region_of(inlet->plan, region.low, region.high);
+    scree_region_bounds(&SCREE_REGION_OF(inlet->plan), region.low, region.high);
   }
+  return region;
+}
+
+/* m: along gravity, from the highest corner of a region to the lowest of the geometry; 0 where the
+ * geometry has no lowest. */
+static double fall_from(const scree_scene *scene, scree_scene_reach region) {
+  vec3 down = vec3_load(scene->plan.gravity);
+  if (!(vec3_norm(down) > 0)) return 0;
+  down = vec3_unit(down);
+  scree_scene_reach all = scree_scene_reach_of(scene);
   const double n[3] = {down.x, down.y, down.z};
   double from = 0, to = 0;
   for (int k = 0; k < 3; k++) {
@@ -119,27 +55,35 @@ typedef struct touching {
   bool is_wall;
 } touching;
 
-/* What is pressed by a speed of 1 m/s, m; its limit, and the size, m. */
-static double give_of(const scree_scene *scene, const touching *t, double *size) {
-  const scree_scene_shape *a = &scene->shapes[t->shape], *b = &scene->shapes[t->other];
-  double mass = a->mass;
-  size_t material = 0;
-  *size = a->particle->measures.size;
-  if (t->is_wall) {
-    const scree_world_wall *w =
-        scree_world_wall_at(scene->world, scene->geometry[t->other].first_wall);
-    material = w->given.material;
-  } else {
-    material = b->material;
-    mass = a->mass * b->mass / (a->mass + b->mass);
-    *size = fmin(*size, b->particle->measures.size);
+static size_t material_of_wall(const scree_scene *scene, size_t geometry) {
+  const size_t wall = scene->geometry[geometry].first_wall;
+  return scree_world_wall_at(scene->world, wall)->given.material;
+}
+
+/* What a shape meets another shape or a geometry with: the mass of both in series, kg; the smaller
+ * size, m; the stiffness, N/m, of Hertz's of a linear one that lasts as long, which gives 6 % less
+ * at 1 m/s.
+ */
+typedef struct meeting {
+  double mass, size, stiffness;
+} meeting;
+
+static meeting meet(const scree_scene *scene, const touching *t) {
+  const scree_scene_shape *a = &scene->shapes[t->shape],
+                          *b = t->is_wall ? NULL : &scene->shapes[t->other];
+  meeting m = {.mass = a->mass, .size = a->particle->measures.size};
+  if (b) {
+    m.mass = a->mass * b->mass / (a->mass + b->mass);
+    m.size = fmin(m.size, b->particle->measures.size);
   }
   const scree_contact_sides sides = {
-      a->particle, t->is_wall ? NULL : b->particle, a->material, material, *size, mass};
-  scree_pair_law
-      law; /* of Hertz's a linear one that lasts as long, which gives 6 % less at 1 m/s */
+      a->particle, b ? b->particle : NULL,
+      a->material, b ? b->material : material_of_wall(scene, t->other),
+      m.size,      m.mass};
+  scree_pair_law law;
   scree_set_stiffness(scene->world, &sides, &law);
-  return sqrt(mass / law.stiffness);
+  m.stiffness = law.stiffness;
+  return m;
 }
 
 typedef struct search {
@@ -147,66 +91,167 @@ typedef struct search {
   scree_scene_softness worst;
   double worst_share; /* of the limit */
   double least;       /* of the size: what the stiffest gives way; infinity: there is none */
+  bool moving;        /* walls */
 } search;
 
-static void look(search *s, size_t inlet, const touching *t, double speed) {
-  double size, give = give_of(s->scene, t, &size), share,
-               limit = s->scene->world->options.overlap_limit * size;
-  share = give * speed / limit;
-  s->least = fmin(s->least, give * speed / size);
+/* Bodies of an inlet, or of the table. */
+typedef struct origin {
+  size_t inlet, shape;
+  double speed;
+} origin;
+
+static void keep_worst(search *s, const scree_scene_softness *found) {
+  const double share = found->overlap / found->limit;
   if (!(share > s->worst_share)) return;
   s->worst_share = share;
-  s->worst = (scree_scene_softness){.inlet = inlet,
-                                    .shape = t->shape,
-                                    .other = t->other,
-                                    .is_wall = t->is_wall,
-                                    .speed = speed,
-                                    .overlap = give * speed,
-                                    .limit = limit,
-                                    .size = size,
-                                    .stiffer = share * share};
+  s->worst = *found;
+  s->worst.stiffer = share * share;
+}
+
+static void look(search *s, const origin *from, const touching *t, double speed) {
+  const meeting m = meet(s->scene, t);
+  const double overlap = speed * sqrt(m.mass / m.stiffness);
+  s->least = fmin(s->least, overlap / m.size);
+  keep_worst(s, &(scree_scene_softness){.inlet = from->inlet,
+                                        .shape = t->shape,
+                                        .other = t->other,
+                                        .is_wall = t->is_wall,
+                                        .squeezed = SIZE_MAX,
+                                        .speed = speed,
+                                        .energy = 0.5 * m.mass * speed * speed,
+                                        .overlap = overlap,
+                                        .limit = s->scene->world->options.overlap_limit * m.size,
+                                        .size = m.size});
 }
 
 static double fastest_wall(const scree_scene *scene) {
   double fastest = 0;
   for (size_t g = 0; g < scene->plan.geometry.count; g++)
-    fastest = fmax(fastest, speed_of_geometry(scene, g));
+    fastest = fmax(fastest, scree_motions_fastest(scene, g));
   return fastest;
 }
 
-/* All that the bodies of an inlet may hit, at `speed` and beside that at the walls' own. */
-static void look_at_inlet(search *s, size_t index, double speed, bool moving) {
+/* All that such a body may hit, at its speed and beside that at the walls' own. */
+static void look_at_hits(search *s, const origin *from) {
   const scree_scene *scene = s->scene;
-  const scree_scene_inlet *inlet = &scene->inlets[index];
-  double of_walls = moving ? fastest_wall(scene) : 0;
-  for (size_t k = 0; k < inlet->plan->shapes.count; k++) {
-    touching t = {.shape = inlet->shapes[k], .is_wall = true};
+  touching t = {.shape = from->shape, .is_wall = true};
+  for (t.other = 0; t.other < scene->plan.geometry.count; t.other++)
+    look(s, from, &t, from->speed + (s->moving ? scree_motions_fastest(scene, t.other) : 0));
+  t.is_wall = false;
+  const double speed = fmax(from->speed, s->moving ? fastest_wall(scene) : 0);
+  for (t.other = 0; t.other < SCREE_SCENE_SHAPES(scene); t.other++) look(s, from, &t, speed);
+}
+
+/* All lighter bodies that it may press against walls. */
+static void look_at_squeezes(search *s, const origin *from) {
+  const scree_scene *scene = s->scene;
+  const double mass = scene->shapes[from->shape].mass;
+  for (size_t k = 0; k < SCREE_SCENE_SHAPES(scene); k++) {
+    if (scene->shapes[k].mass * heavy > mass) continue;
+    const meeting above = meet(scene, &(touching){from->shape, k, false});
     for (size_t g = 0; g < scene->plan.geometry.count; g++) {
-      t.other = g;
-      look(s, index, &t, speed + (moving ? speed_of_geometry(scene, g) : 0));
-    }
-    t.is_wall = false;
-    for (size_t b = 0; b < SCREE_SCENE_SHAPES(scene); b++) {
-      t.other = b;
-      look(s, index, &t, fmax(speed, of_walls));
+      const meeting below = meet(scene, &(touching){k, g, true});
+      const double series = above.stiffness * below.stiffness / (above.stiffness + below.stiffness),
+                   speed = from->speed + (s->moving ? scree_motions_fastest(scene, g) : 0);
+      keep_worst(s,
+                 &(scree_scene_softness){.inlet = from->inlet,
+                                         .shape = from->shape,
+                                         .other = g,
+                                         .is_wall = true,
+                                         .squeezed = k,
+                                         .speed = speed,
+                                         .energy = 0.5 * mass * speed * speed,
+                                         .overlap = speed * sqrt(mass * series) /
+                                                    fmin(above.stiffness, below.stiffness),
+                                         .limit = scene->world->options.overlap_limit * below.size,
+                                         .size = below.size});
     }
   }
+}
+
+double scree_scene_pinch_share(const scree_scene *scene, size_t shape, const size_t geometry[2]) {
+  const double one = meet(scene, &(touching){shape, geometry[0], true}).stiffness,
+               other = meet(scene, &(touching){shape, geometry[1], true}).stiffness;
+  return fmax(one, other) / (one + other);
 }
 
 static double speed_of_inlet(const scree_scene_inlet *inlet) {
   return fmax(vec3_norm(vec3_load(inlet->plan->velocity)), inlet->layers.speed);
 }
 
-bool scree_scene_soft(const scree_scene *scene, scree_scene_softness *softness) {
-  search s = {.scene = scene, .least = INFINITY};
-  double g = vec3_norm(vec3_load(scene->plan.gravity));
+typedef void looker(search *s, const origin *from);
+
+/* The speed that an inlet gives, with the fall from it. */
+static double fall_speed(const scree_scene *scene, const scree_scene_inlet *inlet, double gravity) {
+  const double enters = speed_of_inlet(inlet),
+               falls = gravity > 0 ? fall_from(scene, region_of(inlet)) : 0;
+  return sqrt(enters * enters + 2 * gravity * falls);
+}
+
+static double gravity_of(const scree_scene *scene) {
+  return vec3_norm(vec3_load(scene->plan.gravity));
+}
+
+double scree_scene_hit_speed(const scree_scene *scene) {
+  static const double least = 0.1; /* what rests is pressed too */
+  double speed = scene->plan.bodies ? 1 : least;
+  for (size_t i = 0; i < scene->plan.inlets.count; i++)
+    speed = fmax(speed, scene->inlets[i].plan->layers
+                            ? 1
+                            : fall_speed(scene, &scene->inlets[i], gravity_of(scene)));
+  return speed + fastest_wall(scene);
+}
+
+static void look_at_inlets(search *s, looker *at, double gravity) {
+  const scree_scene *scene = s->scene;
   for (size_t i = 0; i < scene->plan.inlets.count; i++) {
-    double speed = speed_of_inlet(&scene->inlets[i]);
-    look_at_inlet(&s, i, sqrt(speed * speed + 2 * g * fall_from(scene, &scene->inlets[i])), true);
+    const scree_scene_inlet *inlet = &scene->inlets[i];
+    origin from = {.inlet = i, .speed = fall_speed(scene, inlet, gravity)};
+    for (size_t k = 0; k < inlet->plan->shapes.count; k++) {
+      from.shape = inlet->shapes[k];
+      at(s, &from);
+    }
   }
-  *softness = s.worst;
-  softness->least = s.least;
-  return s.worst_share > 1;
+}
+
+/* Those of a shape by the fastest of them, and the highest place of all. */
+static void look_at_table(search *s, looker *at, double gravity) {
+  const scree_scene *scene = s->scene;
+  if (!scene->plan.bodies) return;
+  scree_scene_reach region;
+  memcpy(region.low, scene->table_low, sizeof region.low);
+  memcpy(region.high, scene->table_high, sizeof region.high);
+  const double falls = fall_from(scene, region);
+  for (size_t shape = 0; shape < SCREE_SCENE_SHAPES(scene); shape++) {
+    double fastest = -1;
+    for (size_t i = 0; i < scene->shape_of.count; i++) {
+      scree_body body;
+      if (scene->shape_of.items[i] != shape) continue;
+      scree_world_get_body(scene->world, i, &body);
+      fastest = fmax(fastest, vec3_norm(vec3_load(body.velocity)));
+    }
+    const origin from = {SIZE_MAX, shape, sqrt(fastest * fastest + 2 * gravity * falls)};
+    if (fastest >= 0) at(s, &from);
+  }
+}
+
+static bool look_at_all(search *s, looker *at, scree_scene_softness *softness) {
+  const double gravity = gravity_of(s->scene);
+  look_at_inlets(s, at, gravity);
+  look_at_table(s, at, gravity);
+  *softness = s->worst;
+  softness->least = s->least;
+  return s->worst_share > 1;
+}
+
+bool scree_scene_soft(const scree_scene *scene, scree_scene_softness *softness) {
+  search s = {.scene = scene, .least = INFINITY, .moving = true};
+  return look_at_all(&s, look_at_hits, softness);
+}
+
+bool scree_scene_squeezes(const scree_scene *scene, scree_scene_softness *softness) {
+  search s = {.scene = scene, .least = INFINITY, .moving = true};
+  return look_at_all(&s, look_at_squeezes, softness);
 }
 
 static const char *other_name(const scree_scene *scene, const scree_scene_softness *s) {
@@ -218,50 +263,109 @@ static const char *other_name(const scree_scene *scene, const scree_scene_softne
  * are in series, K = L / (1/Ea + 1/Eb). */
 static double young_that_holds(const scree_scene *scene, const scree_scene_softness *s) {
   const scree_world *world = scene->world;
-  size_t material = scene->shapes[s->shape].material, other;
-  if (s->is_wall)
-    other = scree_world_wall_at(world, scene->geometry[s->other].first_wall)->given.material;
-  else
-    other = scene->shapes[s->other].material;
+  size_t material = scene->shapes[s->shape].material,
+         other = s->is_wall ? material_of_wall(scene, s->other) : scene->shapes[s->other].material;
   double a = world->materials[material].young, b = world->materials[other].young;
   if (material == other) return a * s->stiffer;
   double least = s->stiffer * a * b / (a + b);
   return least < b ? least * b / (b - least) : (double)INFINITY;
 }
 
-static void describe(const scree_scene *scene, const scree_scene_softness *s, char *text,
-                     size_t size) {
-  char remedy[200];
-  double young = young_that_holds(scene, s), round = pow(10, floor(log10(young)) - 1);
+static void describe_remedy(const scree_scene *scene, const scree_scene_softness *s,
+                            char text[200]) {
+  const bool squeezed = s->squeezed < SIZE_MAX; /* of two contacts: all are to be stiffer */
+  double young = squeezed ? (double)INFINITY : young_that_holds(scene, s),
+         round = pow(10, floor(log10(young)) - 1);
   size_t material = scene->shapes[s->shape].material;
   if (isfinite(young) && scene->plan.materials.count)
-    snprintf(remedy, sizeof remedy, "materials.%.60s.young %.3g Pa or more",
+    snprintf(text, 200, "materials.%.60s.young %.3g Pa or more",
              scene->plan.materials.items[material].place.name, ceil(young / round) * round);
   else
-    snprintf(remedy, sizeof remedy, "contact.stiffness_factor %.3g or more",
+    snprintf(text, 200, "contact.stiffness_factor %.3g or more",
              ceil(10 * s->stiffer * scene->plan.contact->stiffness_factor) / 10);
-  snprintf(text, size,
-           "'%.60s' against '%.60s' at %.3g m/s is pressed in by v sqrt(m/K) = %.3g m, and the "
-           "limit is %.3g m: %s would hold it, in %.3g times as many steps",
-           scree_scene_shape_name(scene, s->shape), other_name(scene, s), s->speed, s->overlap,
-           s->limit, remedy, sqrt(s->stiffer));
 }
 
-void scree_scene_describe_softness(const scree_scene *scene, const scree_scene_softness *softness,
-                                   char *text, size_t size) {
-  char middle[500];
-  describe(scene, softness, middle, sizeof middle);
-  snprintf(text, size, "inlets.%s: too soft, if bodies fall and are hit as fast as they may: %s",
-           scree_scene_inlet_name(scene, softness->inlet), middle);
+/* A row of the table; the next place in the text. */
+static char *describe_row(const scree_scene *scene, const scree_scene_softness *s, char *text,
+                          const char *end) {
+  char remedy[200], both[160];
+  describe_remedy(scene, s, remedy);
+  const char *one = scree_scene_shape_name(scene, s->shape), *other = other_name(scene, s);
+  if (s->squeezed < SIZE_MAX)
+    snprintf(both, sizeof both, "%.40s, pressed on %.40s by %.40s",
+             scree_scene_shape_name(scene, s->squeezed), other, one);
+  else
+    snprintf(both, sizeof both, "%.40s on %.40s", one, other);
+  return text + snprintf(text, (size_t)(end - text),
+                         "\n  %-32s %9.3g %9.3g %10.3g %8.3g  %.120s, %.3g times the steps", both,
+                         s->speed, s->energy, 1e3 * s->overlap, 1e3 * s->limit, remedy,
+                         sqrt(s->stiffer));
+}
+
+bool scree_scene_describe_softness(const scree_scene *scene, char text[SCREE_REMARK]) {
+  scree_scene_softness rows[2];
+  const bool hits = scree_scene_soft(scene, &rows[0]),
+             squeezes = scree_scene_squeezes(scene, &rows[1]);
+  if (!hits && !squeezes) return false;
+  const scree_scene_softness *worst =
+      &rows[squeezes && !(hits && rows[0].stiffer > rows[1].stiffer)];
+  const char *inlet = scree_scene_inlet_name(scene, worst->inlet), *end = text + SCREE_REMARK;
+  char *at = text + snprintf(text, SCREE_REMARK,
+                             "%s%.60s: too soft, if bodies fall and are hit as fast as they may: "
+                             "beyond the limit contacts harden\n  %-32s %9s %9s %10s %8s  %s",
+                             inlet ? "inlets." : "bodies", inlet ? inlet : "", "pair", "m/s",
+                             "energy, J", "overlap mm", "limit mm", "soft with");
+  if (hits) at = describe_row(scene, &rows[0], at, end);
+  if (squeezes) describe_row(scene, &rows[1], at, end);
+  return true;
 }
 
 scree_status scree_scene_check_softness(const scree_scene *scene, scree_error *error) {
   search s = {.scene = scene};
-  for (size_t i = 0; i < scene->plan.inlets.count; i++)
-    look_at_inlet(&s, i, speed_of_inlet(&scene->inlets[i]), false);
+  look_at_inlets(&s, look_at_hits, 0);
   if (!(s.worst.overlap > passes * s.worst.size)) return SCREE_OK;
-  char text[500];
-  describe(scene, &s.worst, text, sizeof text);
-  return scree_scene_fail(scene, &scene->inlets[s.worst.inlet].plan->place, error,
-                          "enters so fast that bodies would pass what they hit: %s", text);
+  char remedy[200];
+  describe_remedy(scene, &s.worst, remedy);
+  return scree_scene_fail(
+      scene, &scene->inlets[s.worst.inlet].plan->place, error,
+      "enters so fast that bodies would pass what they hit: '%.60s' against "
+      "'%.60s' at %.3g m/s is pressed in by v sqrt(m/K) = %.3g m, more than its "
+      "size; %.120s would keep it within %.3g m",
+      scree_scene_shape_name(scene, s.worst.shape), other_name(scene, &s.worst), s.worst.speed,
+      s.worst.overlap, remedy, s.worst.limit);
+}
+
+/* The geometry whose own books are off the most, where that is most of what is missed; else the
+ * contact that is softest for what may hit it; their count: neither. */
+static size_t blamed_part(const scree_scene *scene, double missing) {
+  const size_t count = scene->plan.geometry.count;
+  size_t worst = count;
+  double largest = 0.5 * fabs(missing);
+  for (size_t i = 0; i < count; i++) {
+    double own = fabs(scree_scene_part_balance(scene, i));
+    if (own >= largest) largest = own, worst = i;
+  }
+  return worst;
+}
+
+bool scree_scene_doubt_energy(const scree_scene *scene, char *text) {
+  static const double told = 1e-2;
+  scree_scene_book b;
+  scree_scene_softness soft;
+  scree_scene_get_book(scene, &b);
+  if (!(fabs(b.ledger) > told)) return false;
+  size_t part = blamed_part(scene, scree_scene_missing_energy(scene));
+  char whose[200] = "; a shorter time step (contact.steps) tells whether contacts have it";
+  if (part < scene->plan.geometry.count)
+    snprintf(whose, sizeof whose, "; the part '%.60s' has most of it",
+             scree_scene_geometry_name(scene, part));
+  else if (scree_scene_soft(scene, &soft))
+    snprintf(whose, sizeof whose, "; '%.60s' on '%.60s' is the softest of its contacts",
+             scree_scene_shape_name(scene, soft.shape),
+             soft.is_wall ? scree_scene_geometry_name(scene, soft.other)
+                          : scree_scene_shape_name(scene, soft.other));
+  snprintf(text, SCREE_REMARK,
+           "warning: the sums miss %.2g of the energy that changed its form, more than %g%s",
+           b.ledger, told, whose);
+  return true;
 }

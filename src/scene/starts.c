@@ -14,6 +14,11 @@ enum { PLACES = 128, DRAWS = 40 * PLACES, STREAM = 48, CHORDS = 64, MOST_CHORDS 
 /* Fewer are a corner that was seen by chance from nowhere, or a body at a rim. */
 static const double told_share = 0.02;
 
+typedef struct body_frame {
+  vec3 position;
+  mat3 rotation;
+} body_frame;
+
 typedef struct places {
   const scree_scene *scene;
   vec3 at[PLACES];
@@ -68,6 +73,64 @@ static bool is_parted(const scree_scene *scene, vec3 from, vec3 to, size_t *wall
   return false;
 }
 
+/* ---- bodies of a table ---- */
+
+/* What a start may lie in a sheet, as a share of the body's size: it comes out on its own side. */
+static const double held_share = 0.04;
+
+/* Whether a sheet passes through the body, drawn towards its centre by that share: through an edge
+ * of a mesh, or near the centre of a sphere. */
+static bool is_pierced(const scree_world_wall *wall, const scree_particle *particle,
+                       const body_frame *body) {
+  const scree_mesh *mesh = &particle->mesh;
+  scree_particle_measures m;
+  scree_particle_measure(particle, &m);
+  vec3 at = body->position;
+  mat3 into = mat3_tmul(&wall->frame.rotation, &body->rotation);
+  vec3 centre = mat3_tmul_vec(&wall->frame.rotation, vec3_sub(at, wall->frame.position));
+  if (!scree_is_near(wall->surface, centre, m.bounding_radius)) return false;
+  for (size_t i = 0; m.kind != SCREE_PARTICLE_MESH && i < m.point_count; i++) {
+    double p[3], radius;
+    scree_particle_point(particle, i, p, &radius);
+    if (scree_is_near(wall->surface, vec3_add(centre, mat3_mul_vec(&into, vec3_load(p))),
+                      (1 - 2 * held_share) * radius))
+      return true;
+  }
+  for (size_t e = 0; m.kind == SCREE_PARTICLE_MESH && e < 3 * mesh->triangle_count; e++) {
+    const uint32_t *t = mesh->triangles + e / 3 * 3;
+    vec3 ends[2] = {vec3_load(mesh->positions + 3 * (size_t)t[e % 3]),
+                    vec3_load(mesh->positions + 3 * (size_t)t[(e + 1) % 3])};
+    for (int k = 0; k < 2; k++)
+      ends[k] = vec3_add(centre, vec3_scale(mat3_mul_vec(&into, ends[k]), 1 - 2 * held_share));
+    vec3 way = vec3_sub(ends[1], ends[0]);
+    scree_ray_interval ray = {ends[0], vec3_unit(way), 0, vec3_norm(way)};
+    uint32_t face;
+    if (scree_next_passage(wall->surface, &ray, 0, SIZE_MAX, &face) < INFINITY) return true;
+  }
+  return false;
+}
+
+scree_status scree_scene_check_pierced(const scree_scene *scene, scree_error *error) {
+  for (size_t w = 0; w < scree_world_wall_count(scene->world); w++) {
+    const scree_world_wall *wall = scree_world_wall_at(scene->world, w);
+    if (!wall->surface || !wall->surface->sheet) continue;
+    scree_body body;
+    for (size_t b = 0; scree_scene_next_body(scene, &b, &body); b++) {
+      const body_frame placed = {vec3_load(body.position), quat_to_mat3(scree_body_turn(&body))};
+      size_t shape = scene->shape_of.items[b];
+      if (!is_pierced(wall, scene->shapes[shape].particle, &placed)) continue;
+      return scree_scene_fail(
+          scene, &scene->plan.bodies->place, error,
+          "the sheet '%s' passes through body %zu, a '%s' at (%g, %g, %g): a sheet holds what "
+          "begins on one side of it",
+          scree_scene_geometry_name(scene, scree_scene_wall_geometry(scene, w)), b + 1,
+          scree_scene_shape_name(scene, shape), body.position[0], body.position[1],
+          body.position[2]);
+    }
+  }
+  return SCREE_OK;
+}
+
 /* ---- parts of the region ---- */
 
 /* Parts are named by the least of their places. */
@@ -110,14 +173,24 @@ static void measure_parts(places *p, scree_scene_starts *starts) {
 
 /* ---- falling ---- */
 
-static bool is_in_outlet(const scree_scene *scene, vec3 at) {
+/* Whether a place is in an outlet, of which is told; `open`: in one that is so from the start. */
+static bool is_in_outlet(const scree_scene *scene, vec3 at, bool open, size_t *which) {
   double p[3];
   vec3_store(p, at);
   for (size_t i = 0; i < scene->plan.outlets.count; i++) {
-    const scree_plan_box *box = scene->plan.outlets.items[i].box;
-    if (scree_is_in(p, box->min, box->max)) return true;
+    const scree_plan_outlet *o = &scene->plan.outlets.items[i];
+    if ((open && o->from > 0) || !scree_is_in(p, o->box->min, o->box->max)) continue;
+    *which = i;
+    return true;
   }
   return false;
+}
+
+static void measure_taken(const places *p, scree_scene_starts *starts) {
+  int taken = 0;
+  for (int i = 0; i < p->count; i++)
+    taken += is_in_outlet(p->scene, p->at[i], true, &starts->taken_by);
+  starts->taken = taken < told_share * p->count ? 0 : (double)taken / p->count;
 }
 
 /* The box that bodies are taken out beyond. */
@@ -138,12 +211,12 @@ static bool falls_past(const scree_scene *scene, const scree_scene_reach *bounds
   for (int i = 0; i < MOST_CHORDS; i++) {
     vec3 next = vec3_mad(vec3_mad(at, velocity, step), g, 0.5 * step * step);
     velocity = vec3_mad(velocity, g, step);
-    if (is_in_outlet(scene, next) || is_parted(scene, at, next, &wall)) return false;
+    if (is_in_outlet(scene, next, false, &wall) || is_parted(scene, at, next, &wall)) return false;
     at = next;
     vec3_store(p, at);
     if (!scree_is_in(p, bounds->low, bounds->high)) return true;
   }
-  return false;
+  return true; /* along planes and cylinders without an end */
 }
 
 static void measure_falls(const places *p, vec3 velocity, scree_scene_starts *starts) {
@@ -165,13 +238,82 @@ static bool is_periodic(const scree_scene *scene) {
   return period[0] > 0 || period[1] > 0 || period[2] > 0;
 }
 
+/* ---- round a gate ---- */
+
+/* Walls are asked with whole bodies: each falls a stride where it can and else goes one to some
+ * side, never up, for others would push it anywhere that is not above. */
+enum { WALKS = 12, STRIDES = 4000 };
+
+/* Whether the geometry stands at first and is drawn away later, as what closes an opening is. */
+static bool is_gate(const scree_scene *scene, const scree_plan_geometry *g, double time) {
+  if (g->slide || g->hinge) return (g->slide ? g->slide->from : g->hinge->from) > time;
+  for (size_t i = 0; i < g->motion.count; i++) {
+    const scree_plan_motion *m = &g->motion.items[i];
+    bool later =
+        m->during ? strcmp(m->during, scene->plan.phases.items[0].place.name) != 0 : m->from > time;
+    if (!(m->translate || m->path) || !later) return false;
+  }
+  return g->motion.count > 0;
+}
+
+static bool step_clear(const scree_scene *scene, scree_placement *body, vec3 way) {
+  scree_placement next = *body;
+  size_t wall;
+  next.position = vec3_add(body->position, way);
+  scree_placement_settle(&next);
+  if (!scree_scene_is_clear(scene, &next, &wall)) return false;
+  *body = next;
+  return true;
+}
+
+/* Whether the body gets to an outlet, or out of the domain, while all stands as at the start. */
+static bool gets_out(const scree_scene *scene, scree_placement *body, scree_rng *rng) {
+  scree_scene_reach bounds = bounds_of(scene);
+  vec3 down = vec3_unit(vec3_load(scene->plan.gravity));
+  double stride = 0.9 * fmin(body->half.x, fmin(body->half.y, body->half.z)), p[3];
+  size_t outlet;
+  for (int i = 0; i < STRIDES; i++) {
+    if (!step_clear(scene, body, vec3_scale(down, stride))) {
+      vec3 side = scree_rng_direction(rng);
+      side = vec3_unit(vec3_mad(side, down, -vec3_dot(side, down)));
+      step_clear(scene, body, vec3_scale(side, stride));
+    }
+    vec3_store(p, body->position);
+    if (is_in_outlet(scene, body->position, true, &outlet) ||
+        !scree_is_in(p, bounds.low, bounds.high))
+      return true;
+  }
+  return false;
+}
+
+bool scree_scene_passes_gate(const scree_scene *scene, size_t index, size_t *gate) {
+  const scree_plan_inlet *plan = scene->inlets[index].plan;
+  scree_rng rng = {scene->plan.seed, STREAM / 2 + index, 0};
+  size_t count = scene->plan.geometry.count, wall;
+  for (*gate = 0; *gate < count; ++*gate)
+    if (is_gate(scene, &scene->plan.geometry.items[*gate], plan->from)) break;
+  if (*gate == count || is_periodic(scene) || !(vec3_norm(vec3_load(scene->plan.gravity)) > 0) ||
+      (plan->layers && plan->layers->in))
+    return false;
+  for (int i = 0, walks = 0; i < DRAWS && walks < WALKS; i++) {
+    scree_placement body;
+    if (!scree_scene_draw_start(scene, index, (size_t)i % plan->shapes.count, &rng, &body) ||
+        !scree_scene_is_clear(scene, &body, &wall))
+      continue;
+    walks++;
+    if (gets_out(scene, &body, &rng)) return true;
+  }
+  return false;
+}
+
 bool scree_scene_look_at_starts(const scree_scene *scene, size_t index,
                                 scree_scene_starts *starts) {
   const scree_plan_inlet *plan = scene->inlets[index].plan;
   places p = {.scene = scene};
   scree_rng rng = {scene->plan.seed, STREAM + index, 0};
   *starts = (scree_scene_starts){0};
-  if ((plan->layers && plan->layers->in) || !scree_world_wall_count(scene->world)) return false;
+  bool walls = scree_world_wall_count(scene->world) > 0;
+  if ((plan->layers && plan->layers->in) || (!walls && !scene->plan.outlets.count)) return false;
   for (int i = 0; i < DRAWS && p.count < PLACES; i++) {
     scree_placement body;
     size_t wall;
@@ -181,7 +323,8 @@ bool scree_scene_look_at_starts(const scree_scene *scene, size_t index,
     p.at[p.count++] = body.position;
   }
   if (!p.count) return false;
-  measure_parts(&p, starts);
-  if (!is_periodic(scene)) measure_falls(&p, vec3_load(plan->velocity), starts);
-  return starts->parted > 0 || starts->past > 0;
+  measure_taken(&p, starts);
+  if (walls) measure_parts(&p, starts);
+  if (walls && !is_periodic(scene)) measure_falls(&p, vec3_load(plan->velocity), starts);
+  return starts->parted > 0 || starts->past > 0 || starts->taken > 0;
 }

@@ -7,6 +7,7 @@
  * sides it is a sheet. Where no body is on either side it is solid. What is solid is one wall,
  * sheets are another; sheets all inside of solids are left out. */
 #include "scene/walls.h"
+#include "scene/region.h"
 
 #include "base/alloc.h"
 #include "mesh/adjacency.h"
@@ -106,22 +107,7 @@ static vec3 place_in(const scree_scene *scene, const scree_plan_inlet *inlet, in
     return vec3_add(l->middle,
                     (vec3){(2 * share[0] - 1) * x, (2 * share[1] - 1) * y, share[2] * thick});
   }
-  if (inlet->box) {
-    const scree_plan_box *b = inlet->box;
-    double at[3];
-    for (int k = 0; k < 3; k++) at[k] = b->min[k] + share[k] * (b->max[k] - b->min[k]);
-    if (inlet->layers) at[2] = b->min[2] + share[2] * thick;
-    return vec3_load(at);
-  }
-  const scree_plan_cylinder *c = inlet->cylinder;
-  vec3 axis = vec3_unit(vec3_load(c->axis)), u, w;
-  vec3_frame(axis, &u, &w);
-  double r = c->radius * sqrt(share[0]), angle = 6.283185307179586 * share[1],
-         along = share[2] * (inlet->layers ? thick : c->length);
-  if (inlet->layers && axis.z < 0) along = -along;
-  vec3 from = vec3_load(c->at);
-  return vec3_mad(vec3_mad(vec3_mad(from, axis, along), u, r * scree_cos(angle)), w,
-                  r * scree_sin(angle));
+  return scree_region_place(&SCREE_REGION_OF(inlet), share, inlet->layers ? thick : 0);
 }
 
 /* The region that most of the inlet lies in. */
@@ -138,12 +124,24 @@ static size_t region_of_inlet(const scree_scene *scene, const division *d,
   return best;
 }
 
+/* Where some of a table's bodies are; a few out of many are mistakes, which the run tells. */
+static void mark_table(const scree_scene *scene, vec3 at, division *d) {
+  static const double least_share = 0.02;
+  for (size_t region = 0; region <= d->pieces.count; region++) {
+    size_t within = 0;
+    for (size_t i = 0; i < scene->table_place_count; i++)
+      within += region_at(d, vec3_sub(vec3_load(scene->table_places[i]), at)) == region;
+    if ((double)within > least_share * (double)scene->table_place_count) d->bodies[region] = true;
+  }
+}
+
 static void mark_bodies(const scree_scene *scene, const scree_plan_geometry *g, division *d) {
   size_t count = d->pieces.count;
   for (size_t i = 0; i < scene->plan.inlets.count && g->side == 0; i++) {
     const scree_plan_inlet *inlet = &scene->plan.inlets.items[i];
     d->bodies[region_of_inlet(scene, d, inlet, vec3_load(g->at))] = true;
   }
+  if (g->side == 0) mark_table(scene, vec3_load(g->at), d);
   if (g->side == 0) return;
   d->bodies[count] = g->side - 1 != INSIDE;
   for (size_t i = 0; i < count && g->side - 1 != OUTSIDE; i++)

@@ -10,9 +10,9 @@ typedef struct scree_scene_walls {
   char note[512];          /* one line: what there is, and what was mended */
 } scree_scene_walls;
 
-/* Of a mesh that is turned already, and goes to where the plan says. Closed pieces are solid where
- * the scene's inlets are not, or as the plan says. SCREE_BAD_MESH, with coordinates, where it is no
- * wall. */
+/* Walls of a mesh that is turned already, and goes to where the plan says. Closed pieces are solid
+ * where the scene's inlets are not, or as the plan says. SCREE_BAD_MESH, with coordinates, where it
+ * is no wall. */
 scree_status scree_scene_make_walls(const scree_scene *scene, const scree_plan_geometry *plan,
                                     const scree_mesh *mesh, scree_scene_walls *walls,
                                     scree_error *error);

@@ -8,7 +8,6 @@
 #include "simplify/flat_fan.h"
 
 #include <math.h>
-#include <string.h>
 
 const char *scree_method_name(scree_method method) {
   return method == SCREE_METHOD_QECD ? "qecd" : "volume";
@@ -21,8 +20,11 @@ scree_simplify_options scree_default_simplify_options(void) {
 void scree_curve_free(scree_curve *curve) {
   if (!curve) return;
   scree_collapse_record_free(&curve->record);
+  for (int k = 0; k < SCREE_ORDER_COUNT; k++) scree_collapse_record_free(&curve->tails[k]);
+  scree_fork_free(&curve->fork);
   scree_free(curve->counts);
   scree_free(curve->cut.triangles);
+  scree_mesh_free(&curve->coarse);
   scree_free(curve);
 }
 
@@ -30,15 +32,8 @@ static size_t count_at(const scree_curve *curve, size_t level) {
   return curve->counts ? curve->counts[level] : curve->mesh->triangle_count - 2 * level;
 }
 
-/* Turns the changes into the levels' values, in metres. */
-static scree_status accumulate(scree_curve *curve, scree_sum area, scree_sum volume, double scale,
-                               scree_error *error) {
-  scree_collapse_record *r = &curve->record;
-  double worst = 0;
-  curve->area = scree_sum_value(area) * scale * scale;
-  curve->volume = scree_sum_value(volume) * scale * scale * scale;
-  uint32_t count = (uint32_t)curve->mesh->triangle_count;
-  bool all_two = true;
+void scree_record_accumulate(scree_collapse_record *r, scree_sum area, scree_sum volume,
+                             double worst, double scale) {
   for (size_t i = 0; i < r->count; i++) {
     scree_sum_add(&area, r->area[i]);
     scree_sum_add(&volume, r->volume[i]);
@@ -47,13 +42,24 @@ static scree_status accumulate(scree_curve *curve, scree_sum area, scree_sum vol
     double move = sqrt((double)r->error[i]) * scale;
     worst = move > worst ? move : worst;
     r->error[i] = (float)worst;
-    all_two &= scree_collapse_record_triangles(r, i) == 2;
   }
+}
+
+scree_status scree_curve_count_levels(scree_curve *curve, scree_error *error) {
+  const scree_collapse_record *r = &curve->record;
+  uint32_t count = (uint32_t)curve->mesh->triangle_count;
+  bool all_two = true;
+  for (size_t i = 0; i < r->count && all_two; i++)
+    all_two = scree_collapse_record_triangles(r, i) == 2;
+  scree_free(curve->counts);
+  curve->counts = NULL;
+  curve->facts.floor_count = count - 2 * r->count;
   if (all_two) return SCREE_OK;
   SCREE_TRY_ALLOC(curve->counts, r->count + 1, error);
   curve->counts[0] = count;
   for (size_t i = 0; i < r->count; i++)
     curve->counts[i + 1] = count -= scree_collapse_record_triangles(r, i);
+  curve->facts.floor_count = count;
   return SCREE_OK;
 }
 
@@ -117,8 +123,16 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
   SCREE_TRY(scree_collapse_record_shrink(&d.record, error));
   made->record = d.record;
   d.record = (scree_collapse_record){0};
-  SCREE_TRY(accumulate(made, d.area, d.volume, d.s.scale, error));
-  made->facts.floor_count = count_at(made, scree_curve_level_count(made) - 1);
+  made->area = scree_sum_value(d.area) * d.s.scale * d.s.scale;
+  made->volume = scree_sum_value(d.volume) * d.s.scale * d.s.scale * d.s.scale;
+  scree_record_accumulate(&made->record, d.area, d.volume, 0, d.s.scale);
+  SCREE_TRY(scree_curve_count_levels(made, error));
+  made->options = *options;
+  made->scale = 1;
+  made->fork = d.fork;
+  made->fork.samples.borrows = false;
+  d.samples.borrows = made->fork.s.vertex != NULL;
+  d.fork = (scree_fork){0};
   *curve = made;
   made = NULL;
   return SCREE_OK;
@@ -131,6 +145,7 @@ static void scale_places(vec3 *position, size_t count, double scale) {
 static void scale_curve(scree_curve *curve, double scale) {
   scree_collapse_record *r = &curve->record;
   double square = scale * scale, cube = square * scale;
+  curve->scale *= scale;
   curve->area *= square;
   curve->volume *= cube;
   scale_places(r->position, r->count, scale);

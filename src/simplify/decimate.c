@@ -7,6 +7,8 @@
  *   in order:  a queue of all edges; the cheapest is judged, and collapsed if it is allowed and
  *              still the cheapest. Costs are found anew whenever a quarter of the triangles has
  *              gone. Where nothing is allowed any more the guards become more lenient, twice.
+ *              This part may be done again in other orders, for which costs are raised by a share
+ *              drawn for each edge (scree_tune.shift).
  *
  * The whole cost of a collapse (cost/volume.c has E and A) is
  *
@@ -49,25 +51,36 @@ static scree_status take_samples(scree_decimator *d) {
   return scree_samples_find(&d->s, &d->tree, &d->samples, d->error);
 }
 
-scree_status scree_decimate(scree_decimator *d) {
-  const bool by_cost_alone = d->coster->merge;
-  SCREE_TRY(scree_decimate_in_passes(d, by_cost_alone ? SCREE_PASS_LEAST : SCREE_REFERENCE_MOST));
-  if (!by_cost_alone) SCREE_TRY(take_samples(d));
+static scree_status keep_fork(scree_decimator *d) {
+  d->fork.collapse_count = d->record.count;
+  SCREE_TRY(scree_halfmesh_copy(&d->s, &d->fork.s, d->error));
+  return scree_samples_copy(&d->samples, &d->s, &d->fork.samples, d->error);
+}
+
+static scree_status go_to_end(scree_decimator *d) {
   while (d->leniency < SCREE_LENIENCIES && d->s.live_triangle_count > d->options.stop_count) {
     size_t done;
     SCREE_TRY(scree_decimate_refresh(d));
+    bool forks = !d->fork.s.vertex && d->order == 0 && scree_has_samples(&d->samples);
+    if (forks && d->s.live_triangle_count <= SCREE_FORK_MOST) SCREE_TRY(keep_fork(d));
     SCREE_TRY(scree_decimate_in_order(d, &done));
     if (done == 0) d->leniency++;
   }
   return SCREE_OK;
 }
 
+scree_status scree_decimate(scree_decimator *d) {
+  const bool by_cost_alone = d->coster->merge;
+  SCREE_TRY(scree_decimate_in_passes(d, by_cost_alone ? SCREE_PASS_LEAST : SCREE_REFERENCE_MOST));
+  if (!by_cost_alone) SCREE_TRY(take_samples(d));
+  return go_to_end(d);
+}
+
 /* ---- Start and end ---- */
 
-static void sum_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void sum_block(void *context, scree_block block) {
   scree_decimator *d = context;
-  for (size_t v = begin; v < end; v++)
+  for (size_t v = block.begin; v < block.end; v++)
     if (d->s.vertex[v].outgoing != SCREE_NONE) d->coster->sum(&d->s, (uint32_t)v);
 }
 
@@ -88,13 +101,12 @@ typedef struct measuring {
 
 enum { MEASURE_BLOCK = 8192 };
 
-static void measure_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void measure_block(void *context, scree_block block) {
   const measuring *m = context;
   scree_sum area = {0}, volume = {0};
-  for (size_t t = begin; t < end; t++) scree_add_triangle(m->s, t, &area, &volume);
-  m->blocks[block].area = area;
-  m->blocks[block].volume = volume;
+  for (size_t t = block.begin; t < block.end; t++) scree_add_triangle(m->s, t, &area, &volume);
+  m->blocks[block.index].area = area;
+  m->blocks[block.index].volume = volume;
 }
 
 static scree_status measure_surface(const scree_halfmesh *s, scree_sum *area, scree_sum *volume,
@@ -111,6 +123,11 @@ static scree_status measure_surface(const scree_halfmesh *s, scree_sum *area, sc
   return SCREE_OK;
 }
 
+static void set_error_limit(scree_decimator *d) {
+  double limit = d->options.error_limit / d->s.scale;
+  d->error_limit = limit > 0 ? limit * limit : INFINITY;
+}
+
 scree_status scree_decimator_start(scree_decimator *d, const scree_mesh *mesh,
                                    const scree_simplify_options *options, scree_error *error) {
   *d = (scree_decimator){.options = *options,
@@ -119,8 +136,7 @@ scree_status scree_decimator_start(scree_decimator *d, const scree_mesh *mesh,
                          .error = error};
   d->coster = options->method == SCREE_METHOD_QECD ? &scree_qecd_coster : &scree_volume_coster;
   SCREE_TRY(scree_halfmesh_build(mesh, NULL, &d->s, error));
-  double limit = options->error_limit / d->s.scale;
-  d->error_limit = limit > 0 ? limit * limit : INFINITY;
+  set_error_limit(d);
   SCREE_TRY(measure_surface(&d->s, &d->area, &d->volume, error));
   d->s.area = scree_sum_value(d->area);
   SCREE_TRY(scree_collapse_record_allocate(&d->record, d->s.live_vertex_count, error));
@@ -128,7 +144,30 @@ scree_status scree_decimator_start(scree_decimator *d, const scree_mesh *mesh,
   return scree_surface_tree_make(&d->s, &d->tree, error);
 }
 
+scree_status scree_decimate_from(scree_decimator *d, const scree_fork *fork, int order,
+                                 const scree_simplify_options *options, scree_error *error) {
+  *d = (scree_decimator){.coster = &scree_volume_coster,
+                         .options = *options,
+                         .first_triangle_count = fork->s.live_triangle_count,
+                         .usual_far = INFINITY,
+                         .order = order,
+                         .error = error};
+  SCREE_TRY(scree_halfmesh_copy(&fork->s, &d->s, error));
+  SCREE_TRY(scree_samples_copy(&fork->samples, &d->s, &d->samples, error));
+  set_error_limit(d);
+  SCREE_TRY(scree_collapse_record_allocate(&d->record, d->s.live_vertex_count, error));
+  SCREE_TRY(sum_all(d));
+  SCREE_TRY(scree_surface_tree_make(&d->s, &d->tree, error));
+  return go_to_end(d);
+}
+
+void scree_fork_free(scree_fork *fork) {
+  scree_halfmesh_free(&fork->s);
+  scree_samples_free(&fork->samples);
+}
+
 void scree_decimator_free(scree_decimator *d) {
+  scree_fork_free(&d->fork);
   scree_halfmesh_free(&d->s);
   scree_collapse_record_free(&d->record);
   scree_surface_tree_free(&d->tree);
@@ -218,10 +257,7 @@ static void try_place(const scree_decimator *d, const scree_candidate *c, double
   v->error = c->error;
 }
 
-static int by_cost(const void *a, const void *b) {
-  const scree_candidate *x = a, *y = b;
-  return (x->cost > y->cost) - (x->cost < y->cost);
-}
+SCREE_ORDER_BY(by_cost, scree_candidate, cost)
 
 scree_verdict scree_decimate_judge(const scree_decimator *d, uint32_t h, double most,
                                    scree_fan *f) {

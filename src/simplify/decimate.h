@@ -1,12 +1,53 @@
 /* The engine: from a surface to the record of its collapses. */
 #pragma once
 
+#include "base/error.h"
 #include "base/progress.h"
+#include "base/vec.h"
 #include "simplify/cost/cost.h"
 #include "simplify/cost/deviation.h"
 #include "simplify/guard/apart.h"
-#include "simplify/guard/shape.h"
-#include "simplify/record.h"
+
+/* The collapses in their order: a progressive mesh (Hoppe 1996). Every prefix is a level. One array
+ * per field. Positions and measures are in metres. */
+typedef struct scree_collapse_record {
+  size_t count, capacity;
+  uint32_t *kept,
+      *gone;      /* vertices of the mesh given; bit 31 of kept: one triangle goes, not two */
+  vec3 *position; /* where kept lies afterwards */
+  double *area, *volume; /* while decimating: change of the collapse; then: the level's value */
+  float *error;          /* mean square move, unit box; then: running maximum, metres */
+} scree_collapse_record;
+
+#define SCREE_ONE_TRIANGLE UINT32_C(0x80000000)
+
+/* Room for so many collapses. */
+scree_status scree_collapse_record_allocate(scree_collapse_record *record, size_t capacity,
+                                            scree_error *error);
+void scree_collapse_record_free(scree_collapse_record *record);
+/* Gives back what is worth copying the rest. */
+scree_status scree_collapse_record_shrink(scree_collapse_record *record, scree_error *error);
+/* to[at ...] becomes from[begin ...]. */
+scree_status scree_collapse_record_put(scree_collapse_record *to, size_t at,
+                                       const scree_collapse_record *from, size_t begin,
+                                       scree_error *error);
+
+static inline uint32_t scree_collapse_record_triangles(const scree_collapse_record *r,
+                                                       size_t index) {
+  return r->kept[index] & SCREE_ONE_TRIANGLE ? 1 : 2;
+}
+static inline uint32_t scree_collapse_record_kept(const scree_collapse_record *r, size_t index) {
+  return r->kept[index] & ~SCREE_ONE_TRIANGLE;
+}
+
+/* The surface at SCREE_FORK_MOST triangles, and its samples: from here on the collapses may go in
+ * several orders. Without vertices where there are none. */
+typedef struct scree_fork {
+  scree_halfmesh s;
+  scree_samples samples;
+  size_t collapse_count;
+} scree_fork;
+void scree_fork_free(scree_fork *fork);
 
 typedef struct scree_decimator {
   scree_halfmesh s;
@@ -22,6 +63,8 @@ typedef struct scree_decimator {
   double usual_cost;       /* a tenth of the edges cost no more, without deviations */
   double usual_far;        /* the deviation that adds as much; INFINITY: none is usual yet */
   int leniency;            /* of the guards */
+  int order;               /* 0: by the costs as they are */
+  scree_fork fork;
   scree_ticker ticker;
   scree_error *error;
 } scree_decimator;
@@ -34,6 +77,11 @@ void scree_decimator_free(scree_decimator *d);
 
 /* The whole run: see decimate.c. */
 scree_status scree_decimate(scree_decimator *d);
+
+/* In place of both: from the fork to the end in another order. The record is of what is done from
+ * there. Serial but for loops that are the same bits for any number of threads. */
+scree_status scree_decimate_from(scree_decimator *d, const scree_fork *fork, int order,
+                                 const scree_simplify_options *options, scree_error *error);
 
 /* ---- For the driver's two parts, order/pass.c and order/queue.c ---- */
 

@@ -9,7 +9,7 @@ enum { SCREE_FAN_MAX = 128 };
 /* The edge (a, b) and the triangles around it that stay: triangle i has the half-edge edge[i]
  * across from a (i < a_count) or from b. Around a, then around b, counter-clockwise each: a closed
  * loop from apex c over a's side to apex d and over b's side back, unless a boundary interrupts it.
- * Of a fan about one vertex both ends are this vertex, and no triangle goes. */
+ * A fan about one vertex has this vertex as both ends, and no triangle goes. */
 typedef struct scree_fan {
   uint32_t half_edge, a, b, c, d; /* d NONE: the edge is boundary */
   uint32_t a_count, count;

@@ -14,7 +14,6 @@
 #include "simplify/cost/deviation.h"
 #include "simplify/curve.h"
 #include "simplify/guard/apart.h"
-#include "simplify/guard/shape.h"
 #include "simplify/tuning.h"
 
 #include <string.h>
@@ -262,21 +261,20 @@ typedef struct summing {
 
 enum { BLOCK = 4096 };
 
-static void sum_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void sum_block(void *context, scree_block block) {
   const summing *m = context;
   const fit *f = m->f;
   const scree_halfmesh *scan = &f->samples.scan;
   uint32_t nearest = SCREE_NONE;
   double sum = 0;
-  for (size_t t = begin; t < end; t++) {
+  for (size_t t = block.begin; t < block.end; t++) {
     vec3 at[3];
     scree_corners(scan, t, at);
     vec3 middle = vec3_scale(vec3_add(vec3_add(at[0], at[1]), at[2]), 1.0 / 3);
     double d2 = scree_surface_tree_distance(&f->tree, &f->s, middle, 0, &nearest);
     sum += vec3_norm(vec3_triangle_normal(at[0], at[1], at[2])) * sqrt(d2);
   }
-  m->blocks[block] = sum;
+  m->blocks[block.index] = sum;
 }
 
 /* The sum over the scan, by area: of the middles of its triangles, which the fit does not see, so

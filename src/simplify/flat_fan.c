@@ -8,13 +8,13 @@
 #include "base/alloc.h"
 #include "base/radix.h"
 #include "mesh/adjacency.h"
-#include "mesh/measure/measure.h"
+#include "mesh/measure/bounds.h"
 #include "mesh/mesh.h"
 #include "simplify/fan.h"
 
 #include <string.h>
 
-/* Of the box's diagonal: what four points may lie out of a plane. */
+/* Share of the box's diagonal by which four points may lie out of a plane. */
 static const double ROUNDING = 1e-7;
 
 typedef struct corner {

@@ -48,7 +48,7 @@ void scree_halfmesh_free(scree_halfmesh *s) {
   *s = (scree_halfmesh){0};
 }
 
-/* Of a part of the mesh: its box, and whether something in it is wrong. */
+/* What is found of a part of the mesh: its box, and whether something in it is wrong. */
 typedef struct part {
   vec3 low, high;
   bool bad;
@@ -61,12 +61,11 @@ typedef struct checking {
   part parts[PARTS];
 } checking;
 
-static void check_parts(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void check_parts(void *context, scree_block block) {
   checking *c = context;
   const scree_mesh *mesh = c->mesh;
   const size_t triangles = mesh->triangle_count, vertices = mesh->vertex_count;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     part found = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, false};
     for (size_t t = triangles * i / PARTS; t < triangles * (i + 1) / PARTS; t++) {
       const uint32_t *v = mesh->triangles + 3 * t;
@@ -176,18 +175,17 @@ static uint32_t lowest_corner(const builder *b, size_t triangle) {
   return least_of(b->rank[corner[0]], b->rank[corner[1]], b->rank[corner[2]]);
 }
 
-static void count_triangles(void *context, size_t begin, size_t end, size_t half, int worker) {
-  (void)worker;
+static void count_triangles(void *context, scree_block block) {
   const builder *b = context;
-  for (size_t t = begin; t < end; t++) b->next[half][lowest_corner(b, t)]++;
+  for (size_t t = block.begin; t < block.end; t++) b->next[block.index][lowest_corner(b, t)]++;
 }
 
-static void fill_triangles(void *context, size_t begin, size_t end, size_t half, int worker) {
-  (void)worker;
+static void fill_triangles(void *context, scree_block block) {
   const builder *b = context;
-  for (size_t t = begin; t < end; t++) {
+  for (size_t t = block.begin; t < block.end; t++) {
     const uint32_t *corner = b->mesh->triangles + 3 * t;
-    scree_half_edge *made = b->surface->half + 3 * (size_t)b->next[half][lowest_corner(b, t)]++;
+    scree_half_edge *made =
+        b->surface->half + 3 * (size_t)b->next[block.index][lowest_corner(b, t)]++;
     for (int i = 0; i < 3; i++) made[i] = (scree_half_edge){b->rank[corner[i]], SCREE_NONE};
   }
 }
@@ -197,19 +195,18 @@ static void place_triangles(builder *b) {
   sort_by_vertex(b, count_triangles, fill_triangles);
 }
 
-static void count_fans(void *context, size_t begin, size_t end, size_t half, int worker) {
-  (void)worker;
+static void count_fans(void *context, scree_block block) {
   const builder *b = context;
-  for (size_t h = 3 * begin; h < 3 * end; h++) b->next[half][b->surface->half[h].from]++;
+  for (size_t h = 3 * block.begin; h < 3 * block.end; h++)
+    b->next[block.index][b->surface->half[h].from]++;
 }
 
-static void fill_fans(void *context, size_t begin, size_t end, size_t half, int worker) {
-  (void)worker;
+static void fill_fans(void *context, scree_block block) {
   const builder *b = context;
   const scree_half_edge *edge = b->surface->half;
-  for (size_t h = 3 * begin; h < 3 * end; h += 3)
+  for (size_t h = 3 * block.begin; h < 3 * block.end; h += 3)
     for (size_t i = 0; i < 3; i++) {
-      uint32_t at = b->next[half][edge[h + i].from]++;
+      uint32_t at = b->next[block.index][edge[h + i].from]++;
       b->fan[at] = (uint32_t)(h + i);
       b->fan_to[at] = edge[i < 2 ? h + i + 1 : h].from;
     }
@@ -220,10 +217,9 @@ static void sort_fans(builder *b) {
   sort_by_vertex(b, count_fans, fill_fans);
 }
 
-static void rank_vertices(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void rank_vertices(void *context, scree_block block) {
   const builder *b = context;
-  for (size_t v = begin; v < end; v++) b->rank[b->order[v]] = (uint32_t)v;
+  for (size_t v = block.begin; v < block.end; v++) b->rank[b->order[v]] = (uint32_t)v;
 }
 
 /* Neighbours are near in memory. */
@@ -253,11 +249,10 @@ static void lock(scree_halfmesh *s, uint32_t v) {
 }
 
 /* An edge is looked at from its lower end if a half-edge leaves from there, else from the other. */
-static void find_twins(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void find_twins(void *context, scree_block block) {
   builder *b = context;
   scree_halfmesh *s = b->surface;
-  for (uint32_t u = (uint32_t)begin; u < end; u++)
+  for (uint32_t u = (uint32_t)block.begin; u < block.end; u++)
     for (uint32_t i = b->start[u]; i < b->start[u + 1]; i++) {
       uint32_t h = b->fan[i], v = b->fan_to[i], twin = SCREE_NONE, self;
       uint32_t back = count_from_to(b, v, u, &twin);
@@ -304,11 +299,10 @@ static void cut_vertex(builder *b, uint32_t v) {
 }
 
 /* Marks the vertices of several fans. */
-static void find_cuts(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void find_cuts(void *context, scree_block block) {
   builder *b = context;
   scree_halfmesh *s = b->surface;
-  for (uint32_t v = (uint32_t)begin; v < end; v++) {
+  for (uint32_t v = (uint32_t)block.begin; v < block.end; v++) {
     uint32_t valence = b->start[v + 1] - b->start[v];
     if (valence > 0 && name_fan(s, first_of_fan(s, b->fan[b->start[v]]), v) < valence)
       s->flags[v] = SCREE_VERTEX_LOCKED | SEVERAL_FANS;
@@ -316,11 +310,10 @@ static void find_cuts(void *context, size_t begin, size_t end, size_t block, int
 }
 
 /* Vertex v of the mesh: its first fan keeps the number. */
-static void place_vertices(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void place_vertices(void *context, scree_block block) {
   builder *b = context;
   scree_halfmesh *s = b->surface;
-  for (uint32_t v = (uint32_t)begin; v < end; v++) {
+  for (uint32_t v = (uint32_t)block.begin; v < block.end; v++) {
     scree_vertex *made = &s->vertex[v];
     *made = (scree_vertex){.outgoing = SCREE_NONE, .origin = b->order[v]};
     if (b->start[v] == b->start[v + 1]) continue;
@@ -372,12 +365,11 @@ static void add_to(size_t *sum, size_t count) {
   __atomic_fetch_add(sum, count, __ATOMIC_RELAXED);
 }
 
-static void join_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void join_block(void *context, scree_block block) {
   builder *b = context;
   scree_halfmesh *s = b->surface;
   size_t boundary = 0, joined = 0;
-  for (uint32_t h = (uint32_t)(3 * begin); h < 3 * end; h++) {
+  for (uint32_t h = (uint32_t)(3 * block.begin); h < 3 * block.end; h++) {
     uint32_t twin = s->half[h].twin;
     boundary += twin == SCREE_NONE;
     if (twin > h) joined += join(b->root, s->half[h].from, scree_to(s, h));
@@ -386,12 +378,11 @@ static void join_block(void *context, size_t begin, size_t end, size_t block, in
   add_to(&b->joined, joined);
 }
 
-static void count_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void count_block(void *context, scree_block block) {
   builder *b = context;
   scree_halfmesh *s = b->surface;
   size_t vertices = 0, locked = 0;
-  for (size_t v = begin; v < end; v++) {
+  for (size_t v = block.begin; v < block.end; v++) {
     if (s->vertex[v].outgoing == SCREE_NONE) continue;
     vertices++;
     locked += s->flags[v] & SCREE_VERTEX_LOCKED;
@@ -492,10 +483,9 @@ typedef struct compaction {
 } compaction;
 
 /* Entries get the new numbers where they are. */
-static void renumber_triangles(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void renumber_triangles(void *context, scree_block block) {
   const compaction *c = context;
-  for (size_t h = 3 * begin; h < 3 * end; h++) {
+  for (size_t h = 3 * block.begin; h < 3 * block.end; h++) {
     scree_half_edge *half = &c->s->half[h];
     if (half->from == SCREE_NONE) continue;
     half->from = c->vertex[half->from];
@@ -509,10 +499,9 @@ static void renumber_edge(const compaction *c, uint32_t *h) {
   *h = stays ? 3 * c->triangle[*h / 3] + *h % 3 : SCREE_NONE;
 }
 
-static void renumber_vertices(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void renumber_vertices(void *context, scree_block block) {
   const compaction *c = context;
-  for (size_t v = begin; v < end; v++) {
+  for (size_t v = block.begin; v < block.end; v++) {
     if (c->s->vertex[v].outgoing == SCREE_NONE) continue;
     renumber_edge(c, &c->s->vertex[v].outgoing);
     if (c->s->best) renumber_edge(c, &c->s->best[v]);
@@ -551,17 +540,15 @@ static void move_vertices(scree_halfmesh *s) {
 }
 
 /* Block 0: triangles, block 1: vertices. */
-static void number_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)end, (void)block, (void)worker;
-  if (begin == 0)
+static void number_block(void *context, scree_block block) {
+  if (block.begin == 0)
     number_triangles(context);
   else
     number_vertices(context);
 }
 
-static void move_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)end, (void)block, (void)worker;
-  if (begin == 0)
+static void move_block(void *context, scree_block block) {
+  if (block.begin == 0)
     move_triangles(((compaction *)context)->s);
   else
     move_vertices(((compaction *)context)->s);

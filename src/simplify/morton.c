@@ -10,13 +10,17 @@
 #include "base/eigen.h"
 #include "base/parallel.h"
 #include "base/radix.h"
-#include "base/sym3.h"
 
 enum { STEPS = 1 << SCREE_MORTON_BITS, BLOCK = 1 << 14 };
 /* Vertices within the same steps, of more of which the order stays as it was. */
 enum { MOST_TOGETHER = 64 };
 
-/* Of a block of vertices. */
+/* A symmetric matrix. */
+typedef struct sym3 {
+  double xx, xy, xz, yy, yz, zz;
+} sym3;
+
+/* Sums over a block of vertices. */
 typedef struct block_sums {
   vec3 first, low, high, third; /* first and third moments */
   sym3 second;
@@ -28,34 +32,42 @@ typedef struct framing {
   block_sums *blocks;
 } framing;
 
+/* m + weight g g^T. */
+static void add_square(sym3 *m, vec3 g, double weight) {
+  m->xx += weight * g.x * g.x;
+  m->xy += weight * g.x * g.y;
+  m->xz += weight * g.x * g.z;
+  m->yy += weight * g.y * g.y;
+  m->yz += weight * g.y * g.z;
+  m->zz += weight * g.z * g.z;
+}
+
 static vec3 place(const scree_positions *p, size_t index) {
   return vec3_load(p->at + p->stride * index);
 }
 
-static void measure_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void measure_block(void *context, scree_block block) {
   const framing *f = context;
   block_sums sums = {.first = {0, 0, 0}};
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     vec3 p = vec3_sub(place(f->places, i), f->frame->centre);
     sums.first = vec3_add(sums.first, p);
-    sym3_add_square(&sums.second, p, 1);
+    add_square(&sums.second, p, 1);
   }
-  f->blocks[block] = sums;
+  f->blocks[block.index] = sums;
 }
 
-static void look_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void look_block(void *context, scree_block block) {
   const framing *f = context;
-  vec3 p = scree_principal_frame_into(f->frame, place(f->places, begin));
+  vec3 p = scree_principal_frame_into(f->frame, place(f->places, block.begin));
   block_sums sums = {.low = p, .high = p, .third = {0, 0, 0}};
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     p = scree_principal_frame_into(f->frame, place(f->places, i));
     sums.low = vec3_min(sums.low, p);
     sums.high = vec3_max(sums.high, p);
     sums.third = vec3_add(sums.third, (vec3){p.x * p.x * p.x, p.y * p.y * p.y, 0});
   }
-  f->blocks[block] = sums;
+  f->blocks[block.index] = sums;
 }
 
 /* Mean and principal axes. */
@@ -71,7 +83,7 @@ static void find_axes(framing *f, size_t blocks) {
     second.yy += b->second.yy, second.yz += b->second.yz, second.zz += b->second.zz;
   }
   vec3 mean = vec3_scale(first, 1 / count);
-  sym3_add_square(&second, mean, -count);
+  add_square(&second, mean, -count);
   mat3 matrix = {{{second.xx, second.xy, second.xz},
                   {second.xy, second.yy, second.yz},
                   {second.xz, second.yz, second.zz}}};
@@ -151,10 +163,9 @@ static vec3 steps_of(const coding *c, size_t v) {
   return scree_principal_frame_steps(&c->frame, STEPS, place(&c->places, v));
 }
 
-static void code_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void code_block(void *context, scree_block block) {
   const coding *c = context;
-  for (size_t v = begin; v < end; v++)
+  for (size_t v = block.begin; v < block.end; v++)
     c->items[v] = (scree_keyed){scree_morton_code(steps_of(c, v)), (uint32_t)v};
 }
 

@@ -2,8 +2,6 @@
 
 #include "base/parallel.h"
 
-#include <float.h>
-
 enum { LEAF = 8, BLOCK = 1024, DEPTH_MOST = 64 };
 /* Above half a unit in the last place of a float of size 1, within which positions are. */
 #define OUTWARD 1e-7f
@@ -105,10 +103,9 @@ static void add_triangle(scree_bounds *bounds, scree_facing *facing, const fitti
   if (moved == 1) scree_facing_add(facing, vec3_triangle_normal(at[0], at[1], at[2]));
 }
 
-static void fit_leaves(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void fit_leaves(void *context, scree_block block) {
   const fitting *f = context;
-  for (size_t leaf = begin; leaf < end; leaf++) {
+  for (size_t leaf = block.begin; leaf < block.end; leaf++) {
     scree_bounds bounds = scree_bounds_empty();
     scree_facing facing = scree_facing_all();
     for (size_t t = LEAF * leaf; t < LEAF * leaf + LEAF && t < f->s->triangle_count; t++)
@@ -118,11 +115,10 @@ static void fit_leaves(void *context, size_t begin, size_t end, size_t block, in
   }
 }
 
-static void fit_level(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void fit_level(void *context, scree_block block) {
   const fitting *f = context;
   scree_surface_node *node = f->tree->node;
-  for (size_t i = f->first + begin; i < f->first + end; i++) {
+  for (size_t i = f->first + block.begin; i < f->first + block.end; i++) {
     node[i] = node[2 * i];
     join(&node[i], &node[2 * i + 1]);
   }

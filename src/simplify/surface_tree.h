@@ -52,7 +52,7 @@ typedef struct scree_facing {
   double least[SCREE_FACING_LINES], most[SCREE_FACING_LINES];
 } scree_facing;
 
-/* Of no triangle: none is averse to any direction. */
+/* The facing of no triangle at all: none is averse to any direction. */
 static inline scree_facing scree_facing_all(void) {
   scree_facing f;
   for (int k = 0; k < SCREE_FACING_LINES; k++) f.least[k] = INFINITY, f.most[k] = -INFINITY;

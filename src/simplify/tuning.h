@@ -27,6 +27,8 @@ typedef struct scree_tuning {
   /* order */
   double batch;   /* share of the vertices whose cheapest edge a pass may take: more, and the order
                      of the costs is lost; less, and each pass finds them all for little. */
+  double shift;   /* the most that another order than the first adds to the cost of an edge, as a
+                     share: far below what the noise of a scan changes it by. */
   double refresh; /* share of the triangles after which costs, boxes and what is usual are found
                      anew. */
   /* samples */
@@ -49,6 +51,7 @@ static const scree_tuning scree_tune = {.stiff = 1e-5,
                                         .shape = {0.05, 0.01, 0},
                                         .spike = 0.5,
                                         .batch = 0.5,
+                                        .shift = 0.02,
                                         .refresh = 0.75,
                                         .crowd = 48,
                                         .sweeps = 3,
@@ -62,5 +65,8 @@ enum {
   /* Passes of independent collapses go on while a pass has enough for all threads: a size of blocks
    * of parallel loops. Below, one collapse follows the other, which is better, and takes some
    * tenths of a second. */
-  SCREE_PASS_LEAST = 16384
+  SCREE_PASS_LEAST = 16384,
+  /* Below so many triangles a curve may go on in several orders: well above what is chosen, so that
+   * they part in time. */
+  SCREE_FORK_MOST = 7000
 };

@@ -1,29 +1,27 @@
 /* From the database to what a study says: every point's statistics; where the angle has converged;
  * time against Rp. docs/reference/study.md has the reasons. */
 #include "base/array.h"
+#include "base/file.h"
 #include "base/number.h"
 #include "study/database.h"
+#include "study/record.h"
 #include "study/study.h"
 
 #include <math.h>
 #include <sqlite3.h>
 #include <string.h>
 
-/* Numbers of a run; of the first of them a point has a summary. */
+/* Numbers of a run; behind these stand those that a record tells (study/record.h). */
 enum {
   ANGLE,
   SECONDS,
-  HEIGHT,
-  RUN_OUT,
-  COORDINATION,
-  PACKING,
   LEFT,
   PEAK_ROTATION, /* from its series */
-  SUMMARIES,
-  TRIANGLES = SUMMARIES,
+  TRIANGLES,
   WALL,
   FRACTION,
-  NUMBERS
+  FIRST_TOLD,
+  NUMBERS = FIRST_TOLD + SCREE_RECORD_TOLD
 };
 
 /* A run's row. */
@@ -36,6 +34,8 @@ typedef struct row {
   double *answers;         /* of a scene */
   double *time, *rotation; /* since the lift began */
   size_t series_count;
+  double started, ended; /* s since 1970; NaN: it has not */
+  const char *machine;
 } row;
 
 typedef struct analysis {
@@ -64,6 +64,7 @@ static void text_of(sqlite3_stmt *s, int column, char *text, size_t size) {
 
 static scree_status read_row(analysis *a, sqlite3_stmt *s, row *r) {
   const unsigned char *reason = sqlite3_column_text(s, 4);
+  char machine[160];
   r->point = (size_t)sqlite3_column_int64(s, 0);
   r->replicate = (size_t)sqlite3_column_int64(s, 1);
   text_of(s, 2, r->key, sizeof r->key);
@@ -72,20 +73,26 @@ static scree_status read_row(analysis *a, sqlite3_stmt *s, row *r) {
   text_of(s, 5, r->version, sizeof r->version);
   r->still = sqlite3_column_int64(s, 6) != 0;
   for (int i = 0; i < NUMBERS; i++) r->number[i] = real_of(s, 7 + i);
-  return r->reason ? SCREE_OK : no_memory(a);
+  r->started = real_of(s, 7 + NUMBERS);
+  r->ended = real_of(s, 8 + NUMBERS);
+  text_of(s, 9 + NUMBERS, machine, sizeof machine);
+  r->machine = scree_arena_text(a->arena, machine);
+  return r->reason && r->machine ? SCREE_OK : no_memory(a);
 }
 
 static scree_status read_rows(analysis *a) {
-  char sql[512];
+  char sql[1024];
   SCREE_STATEMENT s = NULL;
   size_t most = scree_study_run_count(a->study);
   SCREE_TRY_TAKE(a->rows, a->arena, most, a->error);
   snprintf(sql, sizeof sql,
            "SELECT point, replicate, key, state, reason, version, still, %s_deg, "
-           "processor_seconds, height, run_out, coordination, packing_fraction, "
-           "CAST(left_count AS REAL) / (body_count + left_count), NULL, triangle_count, "
-           "wall_seconds, fraction FROM run WHERE planned = 1 ORDER BY run",
+           "processor_seconds, CAST(left_count AS REAL) / (body_count + left_count), NULL, "
+           "triangle_count, wall_seconds, fraction",
            a->study->analysis_angle);
+  for (size_t i = 0; i < SCREE_RECORD_FIELDS; i++)
+    if (scree_record_fields[i].is_told) SCREE_ADD_TEXT(sql, ", %s", scree_record_fields[i].key);
+  SCREE_ADD_TEXT(sql, ", started, ended, machine FROM run WHERE planned = 1 ORDER BY run");
   SCREE_TRY(scree_database_prepare(&a->database, sql, &s, a->error));
   for (bool more; a->row_count < most;) {
     row *r = &a->rows[a->row_count];
@@ -174,8 +181,26 @@ static scree_status read_answers(analysis *a) {
   return SCREE_OK;
 }
 
+/* Where a row has number `index` of those that points have. */
+static size_t number_at(size_t index) {
+  return index < SCREE_RECORD_TOLD    ? FIRST_TOLD + index
+         : index == SCREE_RECORD_TOLD ? LEFT
+                                      : PEAK_ROTATION;
+}
+
+static scree_status name_numbers(const analysis *a) {
+  scree_study_result *r = a->result;
+  SCREE_TRY_TAKE(r->numbers, a->arena, SCREE_RECORD_TOLD + 2, a->error);
+  for (size_t i = 0; i < SCREE_RECORD_FIELDS; i++)
+    if (scree_record_fields[i].is_told) r->numbers[r->number_count++] = scree_record_fields[i].key;
+  r->numbers[r->number_count++] = "left";
+  r->numbers[r->number_count++] = "peak_rotation";
+  return SCREE_OK;
+}
+
 static scree_status name_columns(const analysis *a) {
   scree_study_result *r = a->result;
+  SCREE_TRY(name_numbers(a));
   r->answer_count = a->study->answer_count;
   SCREE_TRY_TAKE(r->answers, a->arena, r->answer_count, a->error);
   SCREE_TRY_TAKE(r->units, a->arena, r->answer_count, a->error);
@@ -232,7 +257,7 @@ static double series_at(const row *r, double time) {
 
 /* Times at which runs are averaged: a run saves some thousands, a damaged record may ask for any
  * number. */
-static const double MOST_TIMES = 100000;
+static const double MOST_TIMES = 10000;
 
 static scree_status average_rotation(const analysis *a, size_t point, scree_point_result *p,
                                      double *scratch) {
@@ -258,7 +283,7 @@ static scree_status average_rotation(const analysis *a, size_t point, scree_poin
     p->time[t] = first + step * (double)t;
     for (size_t i = 0; i < a->row_count; i++)
       if (a->rows[i].point == point) scratch[n++] = series_at(&a->rows[i], p->time[t]);
-    scree_summary s = scree_summarise(scratch, n, 0.95);
+    scree_summary s = scree_summarise(scratch, n, 0);
     double sd = isnan(s.sd) ? 0 : s.sd;
     p->rotation[t] = s.mean;
     p->rotation_low[t] = fmax(0, s.mean - sd);
@@ -293,6 +318,7 @@ static scree_status make_point(const analysis *a, size_t index, double *scratch)
   p->shapes = scree_arena_text(a->arena, a->study->sets[point->set].label);
   SCREE_TRY_TAKE(p->values, a->arena, a->study->factor_count, a->error);
   SCREE_TRY_TAKE(p->answers, a->arena, a->study->answer_count, a->error);
+  SCREE_TRY_TAKE(p->numbers, a->arena, a->result->number_count, a->error);
   if (!p->label || !p->rp || !p->shapes) return no_memory(a);
   for (size_t k = 0; k < a->study->factor_count; k++)
     if (!(p->values[k] = scree_arena_text(a->arena, point->values[k]))) return no_memory(a);
@@ -305,10 +331,10 @@ static scree_status make_point(const analysis *a, size_t index, double *scratch)
     p->pile = scree_arena_text(a->arena, r->key);
     if (!p->pile) return no_memory(a);
   }
-  scree_summary *const summaries[SUMMARIES] = {&p->angle_deg, &p->seconds,      &p->height,
-                                               &p->run_out,   &p->coordination, &p->packing,
-                                               &p->left,      &p->peak_rotation};
-  for (size_t k = 0; k < SUMMARIES; k++) *summaries[k] = summarise(a, index, false, k, scratch);
+  p->angle_deg = summarise(a, index, false, ANGLE, scratch);
+  p->seconds = summarise(a, index, false, SECONDS, scratch);
+  for (size_t k = 0; k < a->result->number_count; k++)
+    p->numbers[k] = summarise(a, index, false, number_at(k), scratch);
   p->triangle_count = summarise(a, index, false, TRIANGLES, scratch).mean;
   p->heap_count = p->angle_deg.count;
   for (size_t k = 0; k < a->study->answer_count; k++)
@@ -382,8 +408,8 @@ static scree_in_range in_range(const analysis *a, const scree_family_result *fam
   return low >= from * (1 - 1e-4) ? SCREE_IN_RANGE_YES : SCREE_IN_RANGE_NO;
 }
 
-/* Of the shapes' chosen Rp, each a double at an offset in scree_study_shape; NaN where some are not
- * made yet. */
+/* The mean of the shapes' chosen Rp, each a double at an offset in scree_study_shape; NaN where
+ * some are not made yet. */
 static scree_rp_pick gather_pick(const analysis *a, size_t point, size_t offset,
                                  const scree_family_result *family) {
   const scree_shape_set *set = &a->study->sets[a->study->points[point].set];
@@ -481,12 +507,32 @@ static scree_status make_whole(analysis *a) {
     r->seconds_spent += w->number[SECONDS];
     if (version && strcmp(version, w->version) != 0) r->mixed_versions = true;
     version = w->version;
+    if (!(r->origin.started <= w->started && r->origin.started > 0)) r->origin.started = w->started;
+    if (w->ended >= r->origin.ended) r->origin.ended = w->ended, r->origin.machine = w->machine;
   }
   r->worker_count = r->counts.leased + r->counts.running;
   double workers = r->worker_count > 0 ? (double)r->worker_count : 1;
   r->seconds_left = left == 0        ? 0
                     : r->counts.done ? left * wall / (double)r->counts.done / workers
                                      : NAN;
+  return SCREE_OK;
+}
+
+static scree_status add_input(analysis *a, const char *path, scree_checksum checksum) {
+  scree_input *out = &a->result->origin.inputs[a->result->origin.input_count++];
+  *out = (scree_input){scree_arena_text(a->arena, path), checksum};
+  return out->path ? SCREE_OK : no_memory(a);
+}
+
+/* The study's own text, its scene's and its shapes. */
+static scree_status list_inputs(analysis *a) {
+  const scree_study *s = a->study;
+  SCREE_TRY_TAKE(a->result->origin.inputs, a->arena, 2 + s->shape_count, a->error);
+  SCREE_TRY(add_input(a, s->path, scree_checksum_of(s->text, s->text_size)));
+  if (s->scene_text && s->scene_is_file)
+    SCREE_TRY(add_input(a, s->scene_path, scree_checksum_of(s->scene_text, strlen(s->scene_text))));
+  for (size_t i = 0; i < s->shape_count; i++)
+    if (s->shapes[i].known) SCREE_TRY(add_input(a, s->shapes[i].word, s->shapes[i].checksum));
   return SCREE_OK;
 }
 
@@ -514,6 +560,7 @@ static scree_status make_result(analysis *a) {
   SCREE_TRY(name_columns(a));
   for (size_t p = 0; p < s->point_count; p++) SCREE_TRY(make_point(a, p, scratch));
   SCREE_TRY(make_families(a));
+  SCREE_TRY(list_inputs(a));
   return make_whole(a);
 }
 

@@ -2,7 +2,7 @@
  * the plan is written anew and records that are not in yet are added, in one transaction. */
 #include "base/number.h"
 #include "base/platform.h"
-#include "scene/scene.h"
+#include "scene/file.h"
 #include "study/database.h"
 #include "study/lease.h"
 #include "study/record.h"
@@ -149,10 +149,14 @@ static scree_status put_points(writer *w) {
 
 /* ---- runs ---- */
 
+static value count_value(uint64_t count) {
+  return count == SCREE_UNKNOWN_COUNT ? real_value(NAN) : whole_value(count);
+}
+
 static value field_value(const scree_record_field *f, const scree_study_record *r) {
   const void *at = (const char *)r + f->offset;
   return f->kind == SCREE_RECORD_REAL    ? real_value(*(const double *)at)
-         : f->kind == SCREE_RECORD_WHOLE ? whole_value(*(const uint64_t *)at)
+         : f->kind == SCREE_RECORD_WHOLE ? count_value(*(const uint64_t *)at)
          : f->kind == SCREE_RECORD_FLAG  ? whole_value(*(const bool *)at)
                                          : text_value(at);
 }
@@ -175,10 +179,10 @@ static scree_status put_result(writer *w, const char *key, const scree_study_rec
 
 static scree_status put_series(writer *w, const char *key, const scree_study_record *r) {
   SCREE_STATEMENT statement = NULL;
-  SCREE_TRY(make(w,
-                 "INSERT OR REPLACE INTO series VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, "
-                 "?11, ?12, ?13, ?14)",
-                 &statement));
+  char sql[256] = "INSERT OR REPLACE INTO series VALUES(?1, ?2, ?3";
+  for (int i = 3; i < 3 + SCREE_RECORD_COLUMNS; i++) SCREE_ADD_TEXT(sql, ", ?%d", i + 1);
+  SCREE_ADD_TEXT(sql, ")");
+  SCREE_TRY(make(w, sql, &statement));
   for (size_t i = 0; i < r->series_count; i++) {
     const scree_record_point *p = &r->series[i];
     value values[3 + SCREE_RECORD_COLUMNS] = {

@@ -1,12 +1,13 @@
 #include "study/database.h"
 
+#include "base/file.h"
 #include "base/platform.h"
 #include "study/record.h"
 
 #include <sqlite3.h>
+#include <string.h>
 
-/* "scrS" and the version of the tables */
-enum { APPLICATION = 0x73637253, SCHEMA = 2, BUSY_MS = 60000 };
+enum { APPLICATION = 0x73637253 /* "scrS" */, BUSY_MS = 60000 };
 
 /* The columns of runs and of the series go on with the fields of records. */
 static const char tables[] =
@@ -26,20 +27,34 @@ static const char runs[] =
 enum { OF_RUNS = 3 }; /* fields that stand there already, or are no column */
 static const char series[] = "CREATE TABLE series(key TEXT, time REAL, phase TEXT, bodies INTEGER";
 
+/* The tables; their version is the checksum of this text, for their columns are rows elsewhere. */
 static void write_schema(char sql[4096]) {
   static const char *const types[] = {"REAL", "INTEGER", "INTEGER", "TEXT"};
-  snprintf(sql, 4096, "BEGIN IMMEDIATE; PRAGMA application_id = %d; PRAGMA user_version = %d; %s%s",
-           APPLICATION, SCHEMA, tables, runs);
+  snprintf(sql, 4096, "%s%s", tables, runs);
   for (size_t i = OF_RUNS; i + 1 < SCREE_RECORD_FIELDS; i++)
     scree_add_text(sql, 4096, ", %s %s", scree_record_fields[i].key,
                    types[scree_record_fields[i].kind]);
   scree_add_text(sql, 4096, ");%s", series);
   for (size_t i = 1; i < SCREE_RECORD_COLUMNS; i++)
     scree_add_text(sql, 4096, ", %s REAL", scree_record_columns[i].key);
-  scree_add_text(sql, 4096, ", PRIMARY KEY(key, time)) WITHOUT ROWID; COMMIT;");
+  scree_add_text(sql, 4096, ", PRIMARY KEY(key, time)) WITHOUT ROWID;");
 }
 
-/* Of studies of scenes. */
+static int32_t version_of(const char *sql) {
+  return (int32_t)(scree_checksum_of(sql, strlen(sql)).low & INT32_MAX);
+}
+
+static scree_status make_tables(scree_database *d, const char *sql, scree_error *error) {
+  char begin[128];
+  snprintf(begin, sizeof begin,
+           "BEGIN IMMEDIATE; PRAGMA application_id = %d; PRAGMA user_version = %d;", APPLICATION,
+           version_of(sql));
+  SCREE_TRY(scree_database_run(d, begin, error));
+  SCREE_TRY(scree_database_run(d, sql, error));
+  return scree_database_run(d, "COMMIT", error);
+}
+
+/* The table of answers, of studies of scenes. */
 static const char answers_table[] =
     "CREATE TABLE IF NOT EXISTS answer(key TEXT, number INTEGER, name TEXT, value REAL,"
     " PRIMARY KEY(key, number))";
@@ -93,19 +108,16 @@ static scree_status adopt(scree_database *d, bool writing, scree_error *error) {
   SCREE_TRY(ask_number(d, "PRAGMA application_id", &application, error));
   SCREE_TRY(ask_number(d, "PRAGMA user_version", &version, error));
   SCREE_TRY(ask_number(d, "SELECT count(*) FROM sqlite_master", &table_count, error));
-  if (writing && application == 0 && table_count == 0) {
-    char sql[4096];
-    write_schema(sql);
-    return scree_database_run(d, sql, error);
-  }
+  char sql[4096];
+  write_schema(sql);
+  if (writing && application == 0 && table_count == 0) return make_tables(d, sql, error);
   if (application != APPLICATION)
     return scree_fail(error, SCREE_BAD_FILE, "%s: is a database, but not one of a study", d->path);
-  if (version != SCHEMA)
-    return scree_fail(
-        error, SCREE_BAD_FILE,
-        "%s: has tables of version %lld, this scree knows %d; delete it, and the same "
-        "command makes it again from the results beside it",
-        d->path, (long long)version, SCHEMA);
+  if (version != version_of(sql))
+    return scree_fail(error, SCREE_BAD_FILE,
+                      "%s: has the tables of another version of scree; delete it, and the same "
+                      "command makes it again from the results beside it",
+                      d->path);
   return SCREE_OK;
 }
 

@@ -11,7 +11,6 @@
 #include "study/lease.h"
 
 #include "base/alloc.h"
-#include "base/file.h"
 #include "base/platform.h"
 
 #include <errno.h>

@@ -74,13 +74,6 @@ typedef struct reader {
   scree_fail_place(&(const scree_reader){(r)->name, NULL, (r)->error, ""},                         \
                    &(const scree_place){NULL, "", (node)->line, (node)->column}, __VA_ARGS__)
 
-const char *scree_arena_text(scree_arena *arena, const char *text) {
-  size_t size = strlen(text) + 1;
-  char *copy = scree_arena_take(arena, size, 1);
-  if (copy) memcpy(copy, text, size);
-  return copy;
-}
-
 static scree_status fail_memory(const reader *r) {
   return scree_fail_memory(r->error, 0, r->name);
 }
@@ -181,9 +174,14 @@ static scree_status read_base(const reader *r, const scree_yaml *base) {
   scree_error error;
   if (base->kind != SCREE_YAML_MAPPING)
     return fail_at(r, base, "base: must be `key: value` lines of a scene");
-  const scree_yaml *command = scree_yaml_find(base, "command");
-  if (command && base->item_count > 1)
-    return fail_at(r, base, "command: stands alone; its values are factors");
+  const scree_yaml *command = scree_yaml_find(base, "command"),
+                   *timeout = command ? scree_yaml_find(base, "timeout") : NULL;
+  if (command && base->item_count > (timeout ? 2 : 1))
+    return fail_at(r, base, "command: stands alone, but for timeout; its values are factors");
+  study->timeout = INFINITY;
+  if (timeout && (!timeout->text || !scree_number_read(timeout->text, &study->timeout) ||
+                  !(study->timeout > 0)))
+    return fail_at(r, timeout, "timeout: must be seconds, above 0");
   study->seed = 1;
   if (command)
     return place_error(r, command, scree_study_read_command(study, command, &error), &error);
@@ -491,7 +489,7 @@ static scree_status read_factors(const reader *r, const scree_yaml *node) {
 
 /* ---- the whole ---- */
 
-/* Of design list: every factor has as many levels. */
+/* Checks the design `list`: every factor has as many levels. */
 static scree_status check_list(const reader *r, const scree_yaml *root) {
   const scree_study *study = r->study;
   if (study->wanted_points)
@@ -520,6 +518,14 @@ static scree_status check_whole(const reader *r, const scree_yaml *root) {
   if (!study->has_pile && !study->answer_count)
     return fail_at(
         r, root, "a study of a command, or of a scene without a pile, needs answers: [NAME, ...]");
+  const scree_yaml *replicates = scree_yaml_find(root, "replicates");
+  bool alike = study->command.count && !scree_command_has(&study->command, "seed");
+  if (alike && replicates && study->replicate_count > 1)
+    return fail_at(r, replicates,
+                   "replicates: %zu runs of a command without {seed} would all be alike: give it a "
+                   "word with {seed}",
+                   study->replicate_count);
+  if (alike) study->replicate_count = 1;
   if (varied && scree_yaml_find(root, "shapes"))
     return fail_at(r, root, "shapes stands both by itself and as a factor");
   bool named = study->scene_is_file || study->command.count;

@@ -1,21 +1,14 @@
-/* From factors to points, from points to runs. Run r is point r mod P in replicate r / P, so that
- * every point has its first replicate before any has its second; its seed is the study's plus the
- * replicate's number: one run can be repeated by `seed` alone, more replicates leave the earlier
- * ones as they were, and the same seeds at all points only matter before the first contact. */
+/* From factors to points, and what names the runs of these. */
 #include "base/file.h"
 #include "base/number.h"
 #include "base/platform.h"
-#include "scene/scene.h"
+#include "scene/file.h"
 #include "study/design.h"
 #include "study/study.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-bool scree_study_is_own(const scree_study *study, const char *key) {
-  return study->own_shapes && (!strcmp(key, "rp") || !strcmp(key, "shapes"));
-}
 
 /* ---- values ---- */
 
@@ -115,14 +108,6 @@ scree_status scree_study_make_points(scree_study *study, scree_error *error) {
 
 /* ---- runs ---- */
 
-uint64_t scree_study_run_seed(const scree_study *study, size_t run) {
-  const scree_study_point *point = &study->points[scree_study_run_point(study, run)];
-  uint64_t seed = study->seed;
-  for (size_t f = 0; f < study->factor_count; f++)
-    if (!strcmp(study->factors[f].key, "seed")) seed = strtoull(point->values[f], NULL, 10);
-  return seed + scree_study_run_replicate(study, run);
-}
-
 /* Whether a path is that of one of the study's own shapes, which their checksums name. */
 static bool is_own_file(const scree_study *study, const char *path) {
   for (size_t i = 0; i < study->shape_count; i++)
@@ -206,10 +191,6 @@ scree_status scree_study_make_keys(scree_study *study, scree_error *error) {
   study->keys = keys;
   keys = NULL;
   return SCREE_OK;
-}
-
-size_t scree_study_run_count(const scree_study *study) {
-  return study->point_count * study->replicate_count;
 }
 
 scree_status scree_study_get_run(const scree_study *study, size_t index, scree_study_run *run,

@@ -3,72 +3,21 @@
 
 #include "base/file.h"
 #include "base/number.h"
+#include "base/quote.h"
 #include "base/yaml.h"
-#include "heap/repose.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define AT(key, kind, member)                                                                      \
-  {                                                                                                \
-    key, SCREE_RECORD_##kind, offsetof(scree_study_record, member),                                \
-        sizeof(((scree_study_record *)0)->member)                                                  \
-  }
+#define FIELD(key, kind, member, is_told)                                                          \
+  {#key, SCREE_RECORD_##kind, offsetof(scree_study_record, member),                                \
+   sizeof(((scree_study_record *)0)->member), is_told},
+const scree_record_field scree_record_fields[SCREE_RECORD_FIELDS] = {SCREE_RUN_ROWS(FIELD)};
 
-const scree_record_field scree_record_fields[SCREE_RECORD_FIELDS] = {
-    AT("failed", FLAG, failed),
-    AT("reason", TEXT, reason),
-    AT("worker", TEXT, worker),
-    AT("machine", TEXT, machine),
-    AT("version", TEXT, version),
-    AT("started", REAL, started),
-    AT("ended", REAL, ended),
-    AT("triangle_count", REAL, triangle_count),
-    AT("time_step", REAL, costs.time_step),
-    AT("step_count", WHOLE, costs.step_count),
-    AT("particle_steps", WHOLE, costs.particle_steps),
-    AT("wall_seconds", REAL, costs.wall_seconds),
-    AT("processor_seconds", REAL, costs.processor_seconds),
-    AT("piece_count", WHOLE, costs.piece_count),
-    AT("largest_overlap", REAL, costs.largest_overlap),
-    AT("heap", FLAG, result.repose.heap),
-    AT("heap_reason", TEXT, result.repose.reason),
-    AT("sector_deg", REAL, result.repose.sector_deg),
-    AT("sector_sd_deg", REAL, result.repose.sector_sd_deg),
-    AT("cone_deg", REAL, result.repose.cone_deg),
-    AT("silhouette_deg", REAL, result.repose.silhouette_deg),
-    AT("silhouette_sd_deg", REAL, result.repose.silhouette_sd_deg),
-    AT("height", REAL, result.repose.height),
-    AT("base_radius", REAL, result.repose.base_radius),
-    AT("run_out", REAL, result.repose.run_out),
-    AT("body_count", WHOLE, result.body_count),
-    AT("left_count", WHOLE, result.left_count),
-    AT("packing_fraction", REAL, result.packing_fraction),
-    AT("coordination", REAL, result.coordination),
-    AT("particle_size", REAL, result.particle_size),
-    AT("kinetic", REAL, result.kinetic),
-    AT("time", REAL, result.time),
-    AT("still", FLAG, result.still),
-    AT("hash", TEXT, hash),
-    AT("answered", TEXT, answered),
-};
-
-#undef AT
-#define AT(member) offsetof(scree_record_point, member)
-const scree_record_column scree_record_columns[SCREE_RECORD_COLUMNS] = {
-    {"time", "time", AT(time)},
-    {"mean_rotation", "mean_rotation", AT(mean_rotation)},
-    {"kinetic", "kinetic", AT(kinetic)},
-    {"highest_speed", "highest_speed", AT(highest_speed)},
-    {"largest_overlap", "largest_overlap", AT(largest_overlap)},
-    {"coordination", "coordination", AT(coordination)},
-    {"cylinder_height", "cylinder.z", AT(cylinder_height)},
-    {"sector_deg", "*.sector_deg", AT(sector_deg)},
-    {"cone_deg", "*.cone_deg", AT(cone_deg)},
-    {"silhouette_deg", "*.silhouette_deg", AT(silhouette_deg)},
-    {"height", "*.height", AT(height)},
-};
+#define COLUMN(key, of_scene) {#key, of_scene, offsetof(scree_record_point, key)},
+const scree_record_column scree_record_columns[SCREE_RECORD_COLUMNS] = {SCREE_SERIES_ROWS(COLUMN)};
 
 void scree_study_record_free(scree_study_record *record) {
   scree_free(record->series);
@@ -79,8 +28,7 @@ void scree_study_record_free(scree_study_record *record) {
 }
 
 scree_record_result scree_no_result(void) {
-  return (scree_record_result){
-      .repose = scree_no_repose(), .packing_fraction = NAN, .particle_size = NAN};
+  return (scree_record_result){.pile = scree_no_pile()};
 }
 
 /* ---- writing ---- */
@@ -95,18 +43,6 @@ static void write_real(FILE *stream, double value) {
   fputs(text, stream);
 }
 
-static void write_text(FILE *stream, const char *text) {
-  putc('"', stream);
-  for (; *text; text++) {
-    unsigned char c = (unsigned char)*text;
-    if (c == '"' || c == '\\')
-      fprintf(stream, "\\%c", c);
-    else
-      putc(c < 0x20 ? ' ' : c > 0x7e ? '?' : c, stream);
-  }
-  putc('"', stream);
-}
-
 static void write_field(FILE *stream, const scree_record_field *f,
                         const scree_study_record *record) {
   const void *value = (const char *)record + f->offset;
@@ -116,13 +52,16 @@ static void write_field(FILE *stream, const scree_record_field *f,
     write_real(stream, *(const double *)value);
     break;
   case SCREE_RECORD_WHOLE:
-    fprintf(stream, "%llu", (unsigned long long)*(const uint64_t *)value);
+    if (*(const uint64_t *)value == SCREE_UNKNOWN_COUNT)
+      fputs("null", stream);
+    else
+      fprintf(stream, "%llu", (unsigned long long)*(const uint64_t *)value);
     break;
   case SCREE_RECORD_FLAG:
     fputs(*(const bool *)value ? "true" : "false", stream);
     break;
   case SCREE_RECORD_TEXT:
-    write_text(stream, value);
+    scree_quote(stream, SCREE_QUOTE_JSON, value);
     break;
   }
 }
@@ -177,6 +116,8 @@ static bool parse_real(const char *text, double *value) {
 
 static bool parse_whole(const char *text, uint64_t *value) {
   char *end;
+  *value = SCREE_UNKNOWN_COUNT;
+  if (!strcmp(text, "null")) return true;
   *value = strtoull(text, &end, 10);
   return *text >= '0' && *text <= '9' && !*end;
 }
@@ -198,11 +139,22 @@ static bool parse_field(const scree_record_field *f, const char *text, scree_stu
   return false;
 }
 
+/* What a record made by another version has no row of is not known. */
+static void set_unknown(const scree_record_field *f, scree_study_record *record) {
+  void *value = (char *)record + f->offset;
+  if (f->kind == SCREE_RECORD_REAL) *(double *)value = NAN;
+  if (f->kind == SCREE_RECORD_WHOLE) *(uint64_t *)value = SCREE_UNKNOWN_COUNT;
+}
+
 static scree_status read_fields(const char *path, const scree_yaml *root,
                                 scree_study_record *record, scree_error *error) {
   for (int i = 0; i < SCREE_RECORD_FIELDS; i++) {
     const scree_record_field *f = &scree_record_fields[i];
     const scree_yaml *node = scree_yaml_find(root, f->key);
+    if (i > 0 && !node) {
+      set_unknown(f, record);
+      continue;
+    }
     if (!node || node->kind != SCREE_YAML_SCALAR || !parse_field(f, node->text, record))
       return scree_fail(error, SCREE_BAD_FILE, "%s: is no record of a run: no good '%s'", path,
                         f->key);
@@ -234,14 +186,15 @@ static bool read_columns(const scree_yaml *root, scree_study_record *record) {
     char name[64];
     snprintf(name, sizeof name, "series_%s", scree_record_columns[c].key);
     const scree_yaml *list = find_list(root, name, count);
-    good = list != NULL;
+    good = list || !scree_yaml_find(root, name);
     for (size_t i = 0; good && i < count; i++)
-      good = parse_real(list->items[i].text, scree_record_number(&record->series[i], c));
+      good = parse_real(list ? list->items[i].text : "null",
+                        scree_record_number(&record->series[i], c));
   }
   return good;
 }
 
-/* Of a record made before there were any, none. */
+/* Reads the answers of a record; one made before there were any has none. */
 static scree_status read_answers(const char *path, const scree_yaml *root,
                                  scree_study_record *record, scree_error *error) {
   const scree_yaml *list = scree_yaml_find(root, "answers");

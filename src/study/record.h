@@ -11,12 +11,12 @@ typedef struct scree_record_costs {
   double largest_overlap; /* m */
 } scree_record_costs;
 
-/* Of a scene with a pile its heap; else NaN. */
+/* The heap of a scene with a pile; else NaN. */
 typedef struct scree_record_result {
-  scree_repose repose;
+  scree_pile pile;
   uint64_t body_count, left_count; /* in the heap, or inside; and not */
-  double packing_fraction, coordination;
-  double particle_size, kinetic, time; /* m, J, s */
+  double coordination;
+  double kinetic, time; /* J, s */
   bool still;
 } scree_record_result;
 
@@ -49,24 +49,79 @@ typedef struct scree_record_field {
   const char *key;
   enum { SCREE_RECORD_REAL, SCREE_RECORD_WHOLE, SCREE_RECORD_FLAG, SCREE_RECORD_TEXT } kind;
   size_t offset, size;
+  bool is_told; /* of every point's runs a study tells its mean and limits */
 } scree_record_field;
-/* The database has those between the first and the last. A run that failed has but some. */
-enum { SCREE_RECORD_FIELDS = 35, SCREE_RECORD_OF_FAILED = 8 };
+/* The rows, as X(key, kind, member of scree_study_record, is_told): a new one is unknown in records
+ * that were made before. The database has those between the first and the last. A run that failed
+ * has the first SCREE_RECORD_OF_FAILED. */
+#define SCREE_RUN_ROWS(X)                                                                          \
+  X(failed, FLAG, failed, 0)                                                                       \
+  X(reason, TEXT, reason, 0)                                                                       \
+  X(worker, TEXT, worker, 0)                                                                       \
+  X(machine, TEXT, machine, 0)                                                                     \
+  X(version, TEXT, version, 0)                                                                     \
+  X(started, REAL, started, 0)                                                                     \
+  X(ended, REAL, ended, 0)                                                                         \
+  X(triangle_count, REAL, triangle_count, 0)                                                       \
+  X(time_step, REAL, costs.time_step, 0)                                                           \
+  X(step_count, WHOLE, costs.step_count, 0)                                                        \
+  X(particle_steps, WHOLE, costs.particle_steps, 0)                                                \
+  X(wall_seconds, REAL, costs.wall_seconds, 0)                                                     \
+  X(processor_seconds, REAL, costs.processor_seconds, 0)                                           \
+  X(piece_count, WHOLE, costs.piece_count, 0)                                                      \
+  X(largest_overlap, REAL, costs.largest_overlap, 0)                                               \
+  X(heap, FLAG, result.pile.repose.heap, 0)                                                        \
+  X(heap_reason, TEXT, result.pile.repose.reason, 0)                                               \
+  X(sector_deg, REAL, result.pile.repose.sector_deg, 0)                                            \
+  X(sector_sd_deg, REAL, result.pile.repose.sector_sd_deg, 0)                                      \
+  X(cone_deg, REAL, result.pile.repose.cone_deg, 0)                                                \
+  X(silhouette_deg, REAL, result.pile.repose.silhouette_deg, 0)                                    \
+  X(silhouette_sd_deg, REAL, result.pile.repose.silhouette_sd_deg, 0)                              \
+  X(height, REAL, result.pile.repose.height, 1)                                                    \
+  X(base_radius, REAL, result.pile.repose.base_radius, 0)                                          \
+  X(run_out, REAL, result.pile.repose.run_out, 1)                                                  \
+  X(body_count, WHOLE, result.body_count, 0)                                                       \
+  X(left_count, WHOLE, result.left_count, 0)                                                       \
+  X(coordination, REAL, result.coordination, 1)                                                    \
+  X(packing_fraction, REAL, result.pile.packing_fraction, 1)                                       \
+  X(particle_size, REAL, result.pile.size, 0)                                                      \
+  X(kinetic, REAL, result.kinetic, 0)                                                              \
+  X(time, REAL, result.time, 0)                                                                    \
+  X(still, FLAG, result.still, 0)                                                                  \
+  X(hash, TEXT, hash, 0)                                                                           \
+  X(answered, TEXT, answered, 0)
+#define SCREE_RECORD_ONE(...)                          +1
+#define SCREE_RECORD_TELLS(key, kind, member, is_told) +is_told
+enum {
+  SCREE_RECORD_FIELDS = SCREE_RUN_ROWS(SCREE_RECORD_ONE),
+  SCREE_RECORD_TOLD = SCREE_RUN_ROWS(SCREE_RECORD_TELLS),
+  SCREE_RECORD_OF_FAILED = 8
+};
 extern const scree_record_field scree_record_fields[SCREE_RECORD_FIELDS];
+/* A whole number that is not known; a real one is NaN. */
+#define SCREE_UNKNOWN_COUNT UINT64_MAX
 /* Numbers of a row of the series; the column of the scene that each is, * being its pile. */
 typedef struct scree_record_column {
   const char *key, *of_scene;
   size_t offset;
 } scree_record_column;
-enum { SCREE_RECORD_COLUMNS = 11 };
+#define SCREE_SERIES_ROWS(X)                                                                       \
+  X(time, "time")                                                                                  \
+  X(mean_rotation, "mean_rotation")                                                                \
+  X(kinetic, "kinetic")                                                                            \
+  X(highest_speed, "highest_speed")                                                                \
+  X(largest_overlap, "largest_overlap")                                                            \
+  X(coordination, "coordination")                                                                  \
+  X(cylinder_height, "cylinder.z")                                                                 \
+  X(sector_deg, "*.sector_deg")                                                                    \
+  X(cone_deg, "*.cone_deg")                                                                        \
+  X(silhouette_deg, "*.silhouette_deg")                                                            \
+  X(height, "*.height")
+enum { SCREE_RECORD_COLUMNS = SCREE_SERIES_ROWS(SCREE_RECORD_ONE) };
 extern const scree_record_column scree_record_columns[SCREE_RECORD_COLUMNS];
 static inline double *scree_record_number(scree_record_point *point, size_t column) {
   return (double *)(void *)((char *)point + scree_record_columns[column].offset);
 }
-
-/* Which answers the study asks for. They are not among what names a run: other answers go on with
- * the runs that were made, and take theirs from what these left. */
-void scree_study_answers_mark(const scree_study *study, char mark[SCREE_CHECKSUM_TEXT]);
 
 /* scene_base.c: what is kept of a scene that has ended; its answers alone. */
 scree_status scree_study_record_scene(const scree_study *study, const scree_scene *scene,
@@ -84,7 +139,7 @@ scree_status scree_study_record_command(const scree_study *study, size_t run, co
 scree_status scree_study_answer_command(const scree_study *study, const char *folder,
                                         scree_study_record *record, scree_error *error);
 
-/* Of a run without a pile: no number is known. */
+/* The result of a run without a pile: no number is known. */
 scree_record_result scree_no_result(void);
 
 /* FOLDER/results/KEY.yaml, which is JSON too. */

@@ -4,15 +4,71 @@
 #include "base/file.h"
 #include "base/platform.h"
 #include "base/schema.h"
-#include "study/outline.h"
 #include "study/record.h"
 
+#include "base/error.h"
+#include "base/vec.h"
 #include "particle/shape.h"
 #include "scene/scene.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
+
+/* The highest point of a triangle at x lies on one of its edges: edges that cross x are enough. */
+
+static double mesh_height(const scree_mesh *mesh, const scree_body *body, double x) {
+  const double *q = body->orientation;
+  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  double best = -INFINITY;
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    vec3 p[3];
+    for (size_t k = 0; k < 3; k++) {
+      vec3 local = vec3_load(mesh->positions + 3 * (size_t)mesh->triangles[3 * t + k]);
+      p[k] = vec3_add(mat3_mul_vec(&turn, local), vec3_load(body->position));
+    }
+    for (size_t k = 0; k < 3; k++) {
+      vec3 a = p[k], b = p[(k + 1) % 3];
+      if (fmin(a.x, b.x) > x || fmax(a.x, b.x) < x) continue;
+      double part = a.x == b.x ? 0 : (x - a.x) / (b.x - a.x);
+      best = fmax(best, fmax(a.z + part * (b.z - a.z), a.x == b.x ? b.z : -INFINITY));
+    }
+  }
+  return best;
+}
+
+static double spheres_height(scree_particle *particle, size_t count, const scree_body *body,
+                             double x) {
+  const double *q = body->orientation;
+  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  double best = -INFINITY;
+  for (size_t i = 0; i < count; i++) {
+    double local[3], radius;
+    scree_particle_point(particle, i, local, &radius);
+    vec3 centre = vec3_add(mat3_mul_vec(&turn, vec3_load(local)), vec3_load(body->position));
+    double left = radius * radius - (x - centre.x) * (x - centre.x);
+    if (left >= 0) best = fmax(best, centre.z + sqrt(left));
+  }
+  return best;
+}
+
+/* The greatest z of all bodies' surfaces where x is this, m; 0 where there are none: the floor. */
+static double outline_height(const scree_world *world, double x) {
+  double best = -INFINITY;
+  for (size_t b = 0; b < scree_world_body_count(world); b++) {
+    scree_body body;
+    scree_particle_measures m;
+    if (scree_world_body_removed(world, b)) continue;
+    scree_particle *particle = scree_world_body_particle(world, b);
+    scree_world_get_body(world, b, &body);
+    scree_particle_measure(particle, &m);
+    if (fabs(body.position[0] - x) > m.bounding_radius) continue;
+    best = fmax(best, m.kind == SCREE_PARTICLE_MESH
+                          ? mesh_height(scree_particle_mesh(particle), &body, x)
+                          : spheres_height(particle, m.point_count, &body, x));
+  }
+  return best > -INFINITY ? best : 0;
+}
 
 static const char copy_name[] = "scene.yaml";
 
@@ -262,7 +318,7 @@ static double at_time(const double *series, size_t rows, size_t columns, size_t 
 static double answer_of(const scree_answer *answer, const scree_scene *scene) {
   size_t rows, columns = scree_scene_column_count(scene), k = column_of(scene, answer->column);
   const double *series = scree_scene_series(scene, &rows);
-  if (answer->outline) return scree_outline_height(scree_scene_view(scene), answer->at);
+  if (answer->outline) return outline_height(scree_scene_view(scene), answer->at);
   if (k == columns || rows == 0) return NAN;
   if (!isnan(answer->at)) return at_time(series, rows, columns, k, answer->at);
   scree_scene_summary s = scree_scene_summarise(scene, k, answer->from, answer->until);
@@ -286,7 +342,7 @@ static size_t column_in(const scree_scene *scene, const char *of_scene) {
   return column_of(scene, name);
 }
 
-/* Of scenes in phases: what turns how fast while something moves. */
+/* Records of scenes in phases how fast bodies turn while something moves. */
 static scree_status record_series(const scree_study *study, const scree_scene *scene,
                                   scree_study_record *record, scree_error *error) {
   size_t rows, columns = scree_scene_column_count(scene);
@@ -352,9 +408,7 @@ scree_status scree_study_record_scene(const scree_study *study, const scree_scen
   const scree_world *world = scree_scene_view(scene);
   scree_scene_book book;
   scree_observation o;
-  const scree_record_result none = scree_no_result();
-  scree_pile pile = {
-      .repose = none.repose, .packing_fraction = none.packing_fraction, .size = none.particle_size};
+  scree_pile pile = scree_no_pile();
   if (scree_scene_pile_name(scene, 0))
     SCREE_TRY(scree_scene_measure_pile(scene, 0, NULL, &pile, error));
   scree_scene_get_book(scene, &book);
@@ -363,12 +417,10 @@ scree_status scree_study_record_scene(const scree_study *study, const scree_scen
   SCREE_TRY(scree_study_answer_scene(study, scene, record, error));
   record_costs(scene, &record->costs);
   size_t bodies = scree_scene_pile_name(scene, 0) ? pile.body_count : book.inside_count;
-  record->result = (scree_record_result){.repose = pile.repose,
+  record->result = (scree_record_result){.pile = pile,
                                          .body_count = bodies,
                                          .left_count = book.entered_count - bodies,
-                                         .packing_fraction = pile.packing_fraction,
                                          .coordination = o.coordination,
-                                         .particle_size = pile.size,
                                          .kinetic = o.kinetic + o.rotational,
                                          .time = o.time,
                                          .still = ends_still(scene, &o)};

@@ -2,19 +2,17 @@
  * levels go to files which every worker, the one that made them too, reads back: all have the same
  * bits. One process makes a shape, under a lease; the others wait for it. */
 #include "base/file.h"
-#include "base/math.h"
 #include "base/number.h"
 #include "base/platform.h"
-#include "base/progress.h"
+#include "base/quote.h"
 #include "base/yaml.h"
+#include "choice/criterion.h"
 #include "study/lease.h"
 #include "study/study.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double pi = 3.14159265358979324;
 
 /* ---- what is known ---- */
 
@@ -68,48 +66,6 @@ scree_status scree_study_know_shapes(scree_study *study, scree_error *error) {
   return all ? scree_study_make_keys(study, error) : SCREE_OK;
 }
 
-/* ---- levels ---- */
-
-enum { MOST_SPHERES = 300 };
-
-size_t scree_study_spheres(const char *rp) {
-  static const char prefix[] = "clump:";
-  double count;
-  if (strncmp(rp, prefix, sizeof prefix - 1) != 0) return 0;
-  bool good = scree_number_read(rp + sizeof prefix - 1, &count) && count >= 1 &&
-              count <= MOST_SPHERES && count == floor(count);
-  return good ? (size_t)count : 0;
-}
-
-/* Of a text that the plan has found to be one of the shape's levels. */
-static double rp_of(const scree_study_shape *shape, const char *text) {
-  double rp = NAN, factor;
-  if (!strcmp(text, "scan")) return 1;
-  if (scree_choice_is_recommended(text, &factor)) return fmin(1, factor * shape->recommended_rp);
-  scree_number_read(text, &rp);
-  return rp;
-}
-
-/* The file of a shape at an Rp text. */
-static const char *level_path(const scree_study *study, const scree_study_shape *shape,
-                              const char *rp, char path[SCREE_PATH_BYTES]) {
-  char ending[64], number[SCREE_NUMBER_SIZE];
-  double factor;
-  if (!strcmp(rp, "scan")) {
-    snprintf(ending, sizeof ending, "-scan.ply");
-  } else if (scree_study_spheres(rp)) {
-    snprintf(ending, sizeof ending, "-clump%zu.csv", scree_study_spheres(rp));
-  } else if (scree_choice_is_recommended(rp, &factor)) {
-    scree_number_format_digits(factor, 9, number);
-    snprintf(ending, sizeof ending, "-%s-recommended.ply", number);
-  } else {
-    scree_number_format_digits(rp_of(shape, rp), 9, number);
-    snprintf(ending, sizeof ending, "-rp%s.ply", number);
-  }
-  return scree_study_path(study, "shapes", shape->name, ending, path);
-}
-#define LEVEL_PATH(study, shape, rp) level_path(study, shape, rp, (char[SCREE_PATH_BYTES]){0})
-
 static bool uses(const scree_study *study, size_t point, size_t shape) {
   const scree_shape_set *set = &study->sets[study->points[point].set];
   for (size_t i = 0; i < set->count; i++)
@@ -122,7 +78,8 @@ static bool is_complete(const scree_study *study, size_t shape) {
   bool complete = study->shapes[shape].known;
   for (size_t p = 0; complete && p < study->point_count; p++)
     if (uses(study, p, shape) && strcmp(study->points[p].rp, "spheres") != 0)
-      complete = scree_path_exists(LEVEL_PATH(study, &study->shapes[shape], study->points[p].rp));
+      complete =
+          scree_path_exists(SCREE_LEVEL_PATH(study, &study->shapes[shape], study->points[p].rp));
   return complete;
 }
 
@@ -199,7 +156,7 @@ static size_t find_level(const scree_study_shape *shape, const scree_curve *curv
   double count = (double)shape->triangle_count;
   if (!strcmp(rp, "scan")) return 0;
   double share =
-      scree_study_spheres(rp) ? fmin(1, SCREE_CLUMP_TRIANGLES / count) : rp_of(shape, rp);
+      scree_study_spheres(rp) ? fmin(1, SCREE_CLUMP_TRIANGLES / count) : scree_study_rp(shape, rp);
   return scree_curve_find(curve, scree_choice_target(share, shape->triangle_count));
 }
 
@@ -207,7 +164,7 @@ static scree_status write_level(const scree_study *study, const scree_study_shap
                                 const char *rp, const scree_curve *curve,
                                 const scree_progress *progress, scree_error *error) {
   SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
-  const char *path = LEVEL_PATH(study, shape, rp);
+  const char *path = SCREE_LEVEL_PATH(study, shape, rp);
   size_t spheres = scree_study_spheres(rp);
   if (scree_path_exists(path)) return SCREE_OK;
   SCREE_TRY(scree_curve_mesh(curve, find_level(shape, curve, rp), &mesh, error));
@@ -230,9 +187,9 @@ static scree_status write_facts(const scree_study *study, const scree_study_shap
   SCREE_TRY(scree_output_open(SCREE_STUDY_PATH(study, "shapes", shape->name, ".yaml"), true,
                               &output, error));
   scree_checksum_text(shape->checksum, sum);
-  fputs("source: '", output.stream);
-  for (const char *c = shape->word; *c; c++) fprintf(output.stream, *c == '\'' ? "''" : "%c", *c);
-  fprintf(output.stream, "'\nchecksum: '%s'\ntriangle_count: %llu\n", sum,
+  fputs("source: ", output.stream);
+  scree_quote(output.stream, SCREE_QUOTE_YAML, shape->word);
+  fprintf(output.stream, "\nchecksum: '%s'\ntriangle_count: %llu\n", sum,
           (unsigned long long)shape->triangle_count);
   for (size_t i = 0; i < sizeof facts / sizeof *facts; i++) {
     char number[SCREE_NUMBER_SIZE];
@@ -261,8 +218,12 @@ static scree_status decimate(const scree_study *study, size_t index, scree_mesh 
     return scree_fail(error, SCREE_BAD_MESH, "%s: the volume is %g m3: not an outward surface",
                       made->word, made->volume);
   for (size_t p = 0; p < study->point_count; p++)
-    if (uses(study, p, index) && strcmp(study->points[p].rp, "spheres") != 0)
+    if (uses(study, p, index) && strcmp(study->points[p].rp, "spheres") != 0) {
+      double factor;
+      bool chosen = scree_choice_is_recommended(study->points[p].rp, &factor);
+      SCREE_TRY(scree_curve_reorder(curve, chosen ? choice.order : 0, error));
       SCREE_TRY(write_level(study, made, study->points[p].rp, curve, progress, error));
+    }
   return SCREE_OK;
 }
 
@@ -341,45 +302,4 @@ scree_status scree_study_prepare(scree_study *study, const scree_study_options *
     SCREE_TRY(prepare_shape(study, i, options, progress, error));
   }
   return scree_study_make_keys(study, error);
-}
-
-/* ---- particles ---- */
-
-static scree_status read_mesh_particle(const char *path, scree_particle **particle,
-                                       scree_error *error) {
-  scree_read_options read = scree_default_read_options();
-  SCREE_CLEANUP(scree_scan_free) scree_scan scan = {0};
-  read.unit_m = 1;
-  SCREE_TRY(scree_scan_read(path, &read, &scan, error));
-  return scree_particle_from_mesh(&scan.mesh, NULL, particle, error);
-}
-
-static scree_status make_particle(const scree_study *study, const scree_study_shape *shape,
-                                  const char *rp, scree_particle **particle, scree_error *error) {
-  if (!strcmp(rp, "spheres"))
-    return scree_particle_sphere(scree_cbrt(0.75 * shape->volume / pi), particle, error);
-  scree_read_options read = scree_default_read_options();
-  read.unit_m = 1;
-  const char *path = LEVEL_PATH(study, shape, rp);
-  scree_status status = scree_study_spheres(rp)
-                            ? scree_particle_clump_read(path, &read, particle, error)
-                            : read_mesh_particle(path, particle, error);
-  if (status == SCREE_OK || !error) return status;
-  scree_error inner = *error;
-  return scree_fail(error, status, "%s at rp %s: %.700s", shape->name, rp, inner.message);
-}
-
-scree_status scree_study_make_shape(const scree_study *study, size_t shape, const char *rp,
-                                    scree_shape_made *made, scree_error *error) {
-  const scree_study_shape *known = &study->shapes[shape];
-  scree_shape_made result = {.scan_triangle_count = (size_t)known->triangle_count,
-                             .scan_volume = known->volume,
-                             .recommended = known->recommended_rp,
-                             .checksum = known->checksum};
-  scree_particle_measures m;
-  SCREE_TRY(make_particle(study, known, rp, &result.particle, error));
-  scree_particle_measure(result.particle, &m);
-  result.triangle_count = m.triangle_count;
-  *made = result;
-  return SCREE_OK;
 }

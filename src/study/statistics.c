@@ -23,6 +23,7 @@ scree_summary scree_summarise(const double *values, size_t count, double confide
     if (!isnan(values[i])) scree_sum_add(&squares, (values[i] - s.mean) * (values[i] - s.mean));
   s.sd = sqrt(scree_sum_value(squares) / (n - 1));
   s.cv = s.sd / fabs(s.mean);
+  if (confidence == 0) return s;
   double half = -scree_student_quantile(tail, n - 1) * s.sd / sqrt(n);
   s.mean_low = s.mean - half;
   s.mean_high = s.mean + half;

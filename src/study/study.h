@@ -74,6 +74,8 @@ struct scree_study {
   const char *(*settings)[2]; /* its fields that the base changes, and their values */
   size_t setting_count;
   scree_texts command; /* where the base is one: its words; else none */
+  const char *here;    /* the folder of the file */
+  double timeout;      /* s, of a run of the command */
   scree_answer *answers;
   size_t answer_count;
   const char **phases; /* of the scene, and the first in which something moves */
@@ -106,8 +108,14 @@ static inline size_t scree_study_run_replicate(const scree_study *study, size_t 
   return run / study->point_count;
 }
 
-/* Copies into the arena; NULL when memory is out. */
-const char *scree_arena_text(scree_arena *arena, const char *text);
+/* runs.c: whether the key is no field of the scene but of the study's own shapes: "shapes", "rp".
+ */
+bool scree_study_is_own(const scree_study *study, const char *key);
+/* The seed of a run: the study's, or its point's where seed is a factor, and the replicate. */
+uint64_t scree_study_run_seed(const scree_study *study, size_t run);
+/* Which answers the study asks for. They are not among what names a run: other answers go on with
+ * the runs that were made, and take theirs from what these left. */
+void scree_study_answers_mark(const scree_study *study, char mark[SCREE_CHECKSUM_TEXT]);
 
 /* folder.c: waits for as long as others are to be waited for; SCREE_CANCELLED. */
 scree_status scree_study_pause(const scree_study_options *options, const scree_progress *progress,
@@ -116,18 +124,20 @@ scree_status scree_study_pause(const scree_study_options *options, const scree_p
 const char *scree_study_design_name(const scree_study *study);
 /* points.c: the design's points with their labels; all values have been checked. */
 scree_status scree_study_make_points(scree_study *study, scree_error *error);
-/* The seed of a run: the study's, or its point's where seed is a factor, and the replicate. */
-uint64_t scree_study_run_seed(const scree_study *study, size_t run);
-/* Whether the key is no field of the scene but of the study's own shapes: "shapes", "rp". */
-bool scree_study_is_own(const scree_study *study, const char *key);
 /* Names every run by its content; all shapes must be known. */
 scree_status scree_study_make_keys(scree_study *study, scree_error *error);
 
 /* shapes.c: reads what the folder has on the shapes; where it has all, names the runs too. */
 scree_status scree_study_know_shapes(scree_study *study, scree_error *error);
-/* Spheres of the clumps that "clump:20" stands for, 1 to 300; 0 where it is none. */
+/* levels.c: spheres of the clumps that "clump:20" stands for, 1 to 300; 0 where it is none. */
 size_t scree_study_spheres(const char *rp);
-
+/* What an Rp text that the plan has found to be one of the shape's levels stands for. */
+double scree_study_rp(const scree_study_shape *shape, const char *rp);
+/* The file of a shape's level; by the macro until the end of the block. */
+const char *scree_study_level_path(const scree_study *study, const scree_study_shape *shape,
+                                   const char *rp, char path[SCREE_PATH_BYTES]);
+#define SCREE_LEVEL_PATH(study, shape, rp)                                                         \
+  scree_study_level_path(study, shape, rp, (char[SCREE_PATH_BYTES]){0})
 /* The particle of a shape at a level, from the folder; free it. */
 scree_status scree_study_make_shape(const scree_study *study, size_t shape, const char *rp,
                                     scree_shape_made *made, scree_error *error);
@@ -154,7 +164,8 @@ scree_status scree_study_stock(const scree_study *study, size_t run, const scree
                                scree_error *error);
 /* Whether the base has such a column, and its unit, known from its sensors and shapes. */
 bool scree_study_has_column(const scree_study *study, const char *column, const char **unit);
-/* Of a column that it has not: the one that was meant, or those that there are, to end a sentence.
+/* A hint for a column that it has not: the one that was meant, or those that there are, to end a
+ * sentence.
  */
 const char *scree_study_column_hint(scree_study *study, const char *column);
 /* The scene's text into the study's folder. */
@@ -181,7 +192,7 @@ const char *scree_study_path(const scree_study *study, const char *kind, const c
  */
 scree_status scree_study_keep_text(const char *text, const char *path, scree_error *error);
 
-/* confidence in (0, 1), for example 0.95: of normally distributed values. */
+/* confidence in (0, 1), for example 0.95: of normally distributed values; 0: without intervals. */
 scree_summary scree_summarise(const double *values, size_t count, double confidence);
 /* SCREE_BAD_ARGUMENT with fewer than two different x above zero. */
 scree_status scree_fit_power(const double *x, const double *y, size_t count, double confidence,

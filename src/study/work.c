@@ -6,8 +6,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/platform.h"
-#include "base/progress.h"
-#include "scene/scene.h"
+#include "scene/file.h"
 #include "study/lease.h"
 #include "study/record.h"
 
@@ -139,12 +138,26 @@ static scree_status write_record(const work *w, const scree_study_record *record
 static void record_failure(scree_study_record *record, const char *reason) {
   scree_study_record_free(record);
   record->failed = true;
-  record->result.repose = (scree_repose){.sector_deg = NAN,
-                                         .sector_sd_deg = NAN,
-                                         .cone_deg = NAN,
-                                         .silhouette_deg = NAN,
-                                         .silhouette_sd_deg = NAN};
+  record->result.pile.repose = (scree_repose){.sector_deg = NAN,
+                                              .sector_sd_deg = NAN,
+                                              .cone_deg = NAN,
+                                              .silhouette_deg = NAN,
+                                              .silhouette_sd_deg = NAN};
   snprintf(record->reason, sizeof record->reason, "%.500s", reason);
+}
+
+/* Whether a run has given what was asked: then names are right. */
+static bool any_succeeded(work *w) {
+  size_t run = w->run;
+  bool found = false;
+  for (w->run = 0; !found && w->run < scree_study_run_count(w->study); w->run++) {
+    SCREE_CLEANUP(scree_study_record_free) scree_study_record record = {0};
+    const char *path = RUN_FILE(w, "results", ".yaml");
+    found = scree_path_exists(path) && scree_study_record_read(path, &record, NULL) == SCREE_OK &&
+            !record.failed;
+  }
+  w->run = run;
+  return found;
 }
 
 /* Works on w->run, whose lease is ours. */
@@ -166,7 +179,8 @@ static scree_status do_run(work *w, scree_error *error) {
   else
     status = make_and_simulate(w, &record, &reason);
   record.ended = scree_calendar_time();
-  if (w->lost || is_machines_fault(status)) {
+  bool slip = w->study->command.count && status == SCREE_UNSUPPORTED && !any_succeeded(w);
+  if (w->lost || slip || is_machines_fault(status)) {
     if (w->lost) return SCREE_OK; /* whoever has it now goes on */
     if (w->renewal != SCREE_OK) reason = w->renewal_error;
     if (error) *error = reason;
@@ -223,17 +237,6 @@ static void reopen_failed(work *w) {
   }
 }
 
-void scree_study_answers_mark(const scree_study *study, char mark[SCREE_CHECKSUM_TEXT]) {
-  scree_checksum sum = {0};
-  for (size_t i = 0; i < study->answer_count; i++) {
-    const char *name = study->answers[i].name;
-    scree_checksum next = scree_checksum_of(name, strlen(name));
-    const uint64_t both[4] = {sum.high, sum.low, next.high, next.low};
-    sum = scree_checksum_of(both, sizeof both);
-  }
-  scree_checksum_text(sum, mark);
-}
-
 /* Takes the answers anew from the last frame, or what the command printed. SCREE_IO and
  * SCREE_BAD_FILE where these are gone: the run has to be made again. */
 static scree_status answer_again(const scree_study *study, size_t run, scree_study_record *record,
@@ -249,8 +252,8 @@ static scree_status answer_again(const scree_study *study, size_t run, scree_stu
   return status;
 }
 
-/* Of a run that ended before the study asked for what it asks now; SCREE_BAD_FILE where it has to
- * be made again. */
+/* Answers anew for a run that ended before the study asked for what it asks now; SCREE_BAD_FILE
+ * where it has to be made again. */
 static scree_status renew_answers(const work *w, const char *path, scree_study_record *record) {
   char mark[SCREE_CHECKSUM_TEXT];
   scree_study_answers_mark(w->study, mark);

@@ -15,7 +15,7 @@ if ! "$compiler" -m32 try.c -o try 2>/dev/null || ! ./try >/dev/null; then
 fi
 flags="-std=gnu17 -O1 -msse2 -mfpmath=sse -ffp-contract=off -w -Wno-psabi -ffunction-sections -I $root/src -I $root/include"
 base="alloc arena eigen error math parallel platform_posix platform_unix progress radix rng"
-mesh="mesh adjacency predicates index/closest index/intersect measure/extent measure/measure measure/minimum_box"
+mesh="mesh adjacency predicates index/closest index/intersect measure/bounds measure/extent measure/measure measure/minimum_box"
 # build BITS: the program of that kind in BITS/curve
 build() {
   mkdir "$1"

@@ -26,7 +26,7 @@ predict:
 budget: {runs: 34}
 END
 words() { sed -nE 's/^(friction|rolling) .* (identified|not identifiable)$/\1 \2/p; s/ (0\.[0-9]+) / N /g; /trade|would tell/p' | sed -E 's/ [0-9.]+( with| gives| of|$)/ N\1/g; s/[0-9]+ (times?|%)/N \1/g; s/ [0-9.]+,/ N,/g'; }
-"$SCREE" calibrate heap.yaml -o whole -q --jobs 2 >whole.txt 2>errors.txt || cat errors.txt
+"$SCREE" calibrate heap.yaml -o whole -q -v --jobs 2 >whole.txt 2>errors.txt || cat errors.txt
 words <whole.txt
 sed -nE '/^checked/,$s/ [0-9.]+/ N/gp' whole.txt | grep -v tell
 sed -n 1p whole.txt
@@ -43,13 +43,13 @@ done
 cmp whole/samples.csv killed/samples.csv && echo "the same samples"
 # another budget and the second test measured: it goes on
 sed -i 's/runs: 34/runs: 50/; s/answer: time, /answer: time, value: 3.5, /' heap.yaml
-"$SCREE" calibrate heap.yaml -o whole -q --jobs 2 >more.txt
+"$SCREE" calibrate heap.yaml -o whole -q -v --jobs 2 >more.txt 2>errors.txt
 sed -n 1p more.txt
 words <more.txt
-"$SCREE" calibrate status whole -q | sed -n 1p
+"$SCREE" calibrate status whole -q | sed -n "1p;\$p"
 # in a corner of the ranges their ends close the intervals
 sed 's/value: 30.5/value: 46/; s/value: 3.5, //; s/runs: 50/runs: 34/' heap.yaml >corner.yaml
-"$SCREE" calibrate corner.yaml -o corner -q --jobs 2 | sed -nE 's/^(friction|rolling) .* at (least|most) .*/\1 at \2/p; /range ends/p'
+"$SCREE" calibrate corner.yaml -o corner -q -v --jobs 2 2>errors.txt | sed -nE 's/^(friction|rolling) .* at (least|most) .*/\1 at \2/p; /range ends/p'
 # an interval that rests on where runs gave no answer tells nothing
 cat >low.sh <<'END'
 #!/bin/sh
@@ -63,7 +63,7 @@ chmod +x low.sh
 sed '/discharge/d; s/model.sh/low.sh/; s/runs: 50/runs: 34/' heap.yaml >low.yaml
 for LEAST in 0 0.5; do
   export LEAST
-  "$SCREE" calibrate low.yaml -o low-$LEAST -q --jobs 2 | sed -nE 's/^(friction|rolling) .* (identified|not identifiable)$/from '$LEAST': \1 \2/p'
+  "$SCREE" calibrate low.yaml -o low-$LEAST -q -v --jobs 2 2>errors.txt | sed -nE 's/^(friction|rolling) .* (identified|not identifiable)$/from '$LEAST': \1 \2/p'
 done
 # an answer that nobody asked for: taken from what the runs printed, none is made again
 calls=$(grep -c '' calls)
@@ -77,7 +77,7 @@ sed 's/seven: {answer: extra}/eight: {answer: extra}/; s/{answer: angle}/{answer
 # the least of an answer under a limit
 sed -e 's/^targets:/limits:/; /angle:.*value/d; s/discharge: .*/least: {answer: angle, at_least: 27}/; /^predict/d; /twice/d' \
   -e 's/^limits:/minimise: {answer: time}\nlimits:/; s/runs: 50/runs: 40/' heap.yaml >search.yaml
-"$SCREE" optimise search.yaml -o search -q | sed -nE '1p; 3p; s/^ *(0\.[0-9])[0-9]* .*best$/friction \1/p'
+"$SCREE" optimise search.yaml -o search -q -v 2>errors.txt | sed -nE '1p; /^the least/p; s/^ *(0\.[0-9])[0-9]* .*best$/friction \1/p'
 run calibrate search.yaml 2>&1 | lines 1,2
 # what is wrong
 wrong() {
@@ -92,3 +92,43 @@ wrong 's/runs: 50/runs: 12/'
 wrong 's/angle: {answer: angle/angle: {experiment: drum, answer: angle/'
 wrong 's/answer: angle}/answer: angle, at: 3}/'
 wrong 's/{friction}/{friction}x/; s/answer: angle}/answer: angel}/'
+# a target that no setting reaches is told first, and nothing is fitted, predicted or called identified
+sed 's/value: 30.5/value: 75/; s/runs: 50/runs: 24/' heap.yaml >far.yaml
+"$SCREE" calibrate far.yaml -o far -q --jobs 2 | sed -E 's/[0-9]+\.[0-9]+/N/g' | sed -n '1,4p'
+grep -cE 'identified|"low"|agrees with' far/calibration.txt
+grep -E '"fits"|"met"' far/calibration.json
+grep -oE '"(samples|trades|advice)": \[[^]]*\]' far/calibration.json
+ls far | grep -c samples.csv
+# of two that are at odds each is left out in turn
+sed 's/value: 30.5/value: 24/; s/value: 3.5, /value: 2.7, /; s/runs: 50/runs: 24/' heap.yaml >odds.yaml
+"$SCREE" calibrate odds.yaml -o odds -q -v --jobs 2 2>errors.txt | sed -nE '1d; 2p; s/^(without [a-z]+ the others [a-z ]+):.*/\1/p'
+# a decimal comma, a slip in a name at the first run, a command that hangs with its child, what it said of its error
+cat >say.sh <<'END'
+#!/bin/sh
+# say.sh FRICTION: as KIND says
+echo "asked" >>"${0%/*}/asked"
+case $KIND in
+comma) echo "mass: 0,2417" ;;
+slip) printf 'mas: 0.2\nother: 1\n' ;;
+hang) sleep 1000 & echo $! >>"${0%/*}/children"; sleep 1000 ;;
+fail) echo "no such grain" >&2; exit 3 ;;
+esac
+END
+chmod +x say.sh
+cat >say.yaml <<'END'
+experiments: {e: {command: ["{here}/say.sh", "{friction}"], timeout: 0.3}}
+parameters: {friction: {from: 0.1, to: 0.9}}
+targets: {mass: {answer: mass, value: 0.24, uncertainty: 0.01}}
+start: {points: 2}
+budget: {runs: 4}
+END
+for KIND in comma slip hang fail; do
+  export KIND
+  rm -rf say asked
+  "$SCREE" calibrate say.yaml -o say -q --jobs 1 2>&1 | tail -1
+  grep -c '' asked
+done
+for child in $(cat children); do # one that ended and that nobody has asked for yet is not left
+  grep -s '^State:' "/proc/$child/status" | grep -q -v 'Z (' && echo "$child is left"
+done
+ls say/e/runs/*/errors.txt | head -1 | grep -c errors.txt

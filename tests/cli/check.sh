@@ -35,17 +35,19 @@ run repair open.off
 run repair open.off -o closed.off
 run check -q closed.off
 run repair open.off -o closed.off
-run repair -q open.off -o closed.off -f --holes 2
+run repair -q open.off -o closed.off -f --holes 2%
 run repair -f --json open.off -o closed.stl | grep -v '"version"'
 ls
-# a hole too large to be filled unasked: what would fill it is said, and does
+# what is guessed is told, and what is too much of it is refused, with what would fill it, and does
 "$SCREE" sample icosphere-5 -o ball.off -q >/dev/null
 awk '/^[OF#]/ { next } !n { n = $1; next } v < n { z[v++] = $3; points = points $0 "\n"; next }
   z[$2] < 1 || z[$3] < 1 || z[$4] < 1 { faces = faces $0 "\n"; k++ }
   END { printf "OFF\n%d %d 0\n%s%s", n, k, points, faces }' ball.off >bowl.off
-run repair -q bowl.off -o full.off
-run choose bowl.off
-run repair -q bowl.off -o full.off --large-holes | tail -1
+run repair bowl.off -o full.off 2>&1 | grep guessed
+run choose bowl.off 2>&1 | grep guessed
+printf 'OFF\n4 1 0\n0 0 0\n9 0 0\n9 9 1\n0 9 0\n4 0 1 2 3\n' >sheet.off
+run choose sheet.off
+run repair sheet.off -o full.off --holes 100% -f | grep '^repaired'
 run choose bowl.off --no-repair
 # what scree wrote is read in the unit it was written in; -u goes before; sizes that no particle has are named
 "$SCREE" simplify sample:box-12 -n 12 -u m -o metres.stl -q

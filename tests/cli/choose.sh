@@ -59,24 +59,23 @@ find alone -name set
 run choose junk.stl missing.stl -o none/of/it
 ls -d none
 # the estimate for half the spacing is of the choice that is told, the set's own where there are several
-for words in '--rule robust' --paper; do
-  "$SCREE" choose sample:icosphere-2 sample:box-12 sample:icosphere-3 $words | grep spacing
-  "$SCREE" choose sample:icosphere-3 $words | grep spacing
-done
+"$SCREE" choose sample:icosphere-2 sample:box-12 sample:icosphere-3 --paper 2>&1 | grep spacing
+"$SCREE" choose sample:icosphere-3 --paper 2>&1 | grep spacing
 # by the paper's rule the set's Rp is one of the grid, and so are the counts: those of the meshes written
-"$SCREE" choose --paper sample:icosphere-2 sample:icosphere-3 -o by-paper | grep '^Use'
+"$SCREE" choose --paper sample:icosphere-2 sample:icosphere-3 -o by-paper 2>/dev/null | grep '^Use'
 for name in icosphere-2 icosphere-3; do "$SCREE" measure by-paper/set/$name.stl | sed -n 's/^  \([0-9]* facets\),.*/\1/p'; done
 # noise that was not found is not said to be used
 noisy="--resolution 3mm --noise 0.6mm --sample-seed 3"
 for words in plain.stl "sample:sp-1 $noisy"; do
-  "$SCREE" choose $words --area smooth | grep "^paper: "
+  "$SCREE" choose $words --area smooth -v 2>&1 | grep "^paper: "
 done
-"$SCREE" choose sample:sp-1 $noisy --rule robust | grep misleads | shape
+"$SCREE" choose sample:sp-1 $noisy --rule paper 2>&1 | grep misleads | shape
+run choose plain.stl --rule robust | lines 2
 # what is worth a warning stands in the text, the JSON and the page alike, and nothing of it in one of them alone
 box 3 2 1 | sed '2s/6/5/; $d' >open.off
 box 30000 20000 10000 >huge.off
 warned() {
-  "$SCREE" choose "$@" -o warned -f >text 2>/dev/null
+  "$SCREE" choose "$@" -o warned -f >text 2>&1
   cp warned/choice.json warnings.json
   python3 - text warned/choice.txt warned/report.html warnings.json <<'PYTHON'
 import html, json, re, sys
@@ -86,15 +85,12 @@ objects = json.load(open(sys.argv[4], encoding="utf-8"))
 told = [(o["name"] + ": " if "name" in o else "") + w for o in objects for w in o["warnings"]]
 for text in texts:
     print(len(told), "warnings in the JSON,", sum(w in text for w in told), "of them in a text")
-for text in texts[:2]:  # all that is no answer
-    lines = text.split("\n\n")[1].split("\n")
-    answers = sum((o["answer"] for o in objects), [])
-    print([l for l in lines if l and l not in told + answers and not l.startswith(("In warned", "*.mass"))])
+print(len(texts[0].split("\n")) - 1 - len(told), "lines and the warnings")
 PYTHON
 }
 if command -v python3 >/dev/null; then
   warned open.off huge.off missing.stl
-  warned "sample:sp-1" $noisy --rule robust
+  warned "sample:sp-1" $noisy --rule paper
   "$SCREE" choose open.off huge.off --csv 2>&1 >/dev/null | shape
 fi
 # what has hardly an error is not on the figure's logarithmic axis, which says so
@@ -102,8 +98,8 @@ fi
 grep '^# scree' box/figure.gnuplot out/figure.gnuplot | sed 's/scree [0-9][0-9.]*[^,]*/scree N/'
 # nor does the dense curve, of a coarse grid, leave it at the top; a choice behind the grid's end is drawn and named where it is
 "$SCREE" choose sample:sp-3 --resolution 4mm --grid 1e-5:1e-1:1 -o spiky >/dev/null
-"$SCREE" choose box.off -o one-level | grep Use | shape
-"$SCREE" choose box.off --paper | grep Use
+"$SCREE" choose box.off -o one-level 2>/dev/null | grep Use | shape
+"$SCREE" choose box.off --paper 2>/dev/null | grep Use
 for folder in spiky one-level; do
   sed -n 's/^set \([xy]\)range \[.*:\(.*\)\]$/\1 \2/p' $folder/figure.gnuplot >ends
   awk -F, 'NR == FNR { split($0, w, " "); panel += w[1] == "x"; end[panel w[1]] = w[2]; next }
@@ -114,4 +110,4 @@ done
 
 # a body too thin for its walls to be measured is told, with what keeps its thickness
 box 30 20 0.01 >foil.off
-"$SCREE" choose foil.off | grep 'A foil' | shape
+"$SCREE" choose foil.off 2>&1 | grep 'A foil' | shape

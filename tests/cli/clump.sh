@@ -82,7 +82,7 @@ END
 run study study.yaml -o study --csv -q | cut -d, -f1-4
 ls study/shapes
 once="-p demo --particles 8 --cylinder 0.2 --pack-time 0.3 --settle-time 0.05 --lift-speed 1 --lift-time 0.05 --hold-time 0.05 --no-picture --json -q"
-same() { grep -v '"command"\|"file"\|_seconds"\|"name"\|"family"\|"source"\|"rp'; }
+same() { grep -v '"command"\|"next"\|"file"\|_seconds"\|"name"\|"family"\|"source"\|"rp'; }
 "$SCREE" repose box.off --rp clump:2 $once | same >made.json
 "$SCREE" repose study/shapes/box-clump2.csv --unit m $once | same >table.json
 diff made.json table.json

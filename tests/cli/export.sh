@@ -24,3 +24,9 @@ run export sample:box-12 -o BOX.VTP -q
 run export sample:box-12 -o all.PVD
 # a clump of fewer spheres than were asked for says so
 run export sample:icosphere-2 --to lammps -n 5 -o fewer 2>&1 | lines 2
+# the spheres of a surface are fitted once, for whatever codes
+"$SCREE" export sample:box-12 --to yade -n 3 -o first -q && "$SCREE" export sample:box-12 --to yade -n 3 -o second -q
+ls "$XDG_CACHE_HOME/scree" | sed 's/-[0-9a-f]*-/-N-/; s/^[0-9.]*/V/' | sort | uniq -c
+diff -r first second && echo the same
+sed -i '$d' "$XDG_CACHE_HOME"/scree/*-3.csv # which is what is read
+"$SCREE" export sample:box-12 --to yade -n 3 -o third | grep -o 'a clump of [0-9]* spheres'

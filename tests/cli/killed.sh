@@ -8,7 +8,7 @@ compare() {
   find out -type f 2>/dev/null | while read -r file; do
     whole=../left/$file
     case $file in
-    *.part | *.part/*) [ "$1" = killed ] || echo "$2: $1 left $file" ;;
+    *.part | *.part/* | *.scree-lock) [ "$1" = killed ] || echo "$2: $1 left $file" ;;
     *provenance.json) [ "$(tail -c 2 "$file")" = "}" ] || echo "$2: $1 left half of $file" ;;
     *motion.scree) # grows by a frame of 160 bytes; its last may be of the moment when the signal came
       at=$(cmp "$file" "$whole" 2>/dev/null | sed -n 's/.*differ: byte \([0-9]*\),.*/\1/p')

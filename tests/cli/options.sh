@@ -23,3 +23,10 @@ done
 "$SCREE" help --completion bash >completion
 bash -c '. ./completion; COMP_WORDS=(scree choose --rule ""); COMP_CWORD=3; _scree; echo ${COMPREPLY[@]}'
 bash -c '. ./completion; COMP_WORDS=(scree choo); COMP_CWORD=1; _scree; echo ${COMPREPLY[@]}'
+# values are offered where they are words, templates and samples among them
+complete() { bash -c '. ./completion; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _scree; echo ${COMPREPLY[@]}' sh "$@" | cut -c1-60; }
+complete scree run --template d
+complete scree export x --to l
+complete scree repose -p ''
+complete scree choose -u ''
+complete scree choose sample : fp

@@ -60,3 +60,11 @@ control=$(printf 'c\302\2331m.off')
 box 1 2 3 >"$control"
 "$SCREE" measure "$control" | sed -n 1p
 "$SCREE" check "nothing-$control"
+# one call at a time in a folder: the second is told of the first, and what a killed one left stops nobody
+mkdir held && echo 1234 >held/.scree-lock
+(
+  flock 9
+  run drop sample:box-12 -n 4 -o held -f 2>&1 | sed 's/since [0-9]* s/since N s/'
+) 9<>held/.scree-lock
+run drop sample:box-12 -n 4 --time 0.01 -o held -f -q >/dev/null 2>&1
+ls -A held | grep -c scree-lock

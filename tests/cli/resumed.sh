@@ -25,7 +25,7 @@ base:
   contact: {young_particle: 1e7, steps: 60}
   output: {checkpoint_interval: 0.01, series_interval: 0.05, angle_interval: 0.5}
 factors:
-  contact.friction: [0.5]
+  friction_all: [0.5]
 END
 phases="pack settle lift hold"
 
@@ -57,7 +57,7 @@ done
 "$SCREE" repose -c pot.yaml -j 1 --no-picture box.off -o cut --resume >/dev/null || echo failed
 grep -c '"piece_count": 5' cut/result.json
 # the costs of the machine, and what the files are told of the command
-plain() { grep -v '"command"\|"file"\|_seconds"\|"piece_count"'; }
+plain() { grep -v '"command"\|"file"\|_seconds"\|"next"\|"piece_count"'; }
 plain <whole/result.json >whole.json
 plain <cut/result.json | cmp - whole.json && cmp whole/series.csv cut/series.csv && echo "the same heap and series"
 "$SCREE" pile whole/last.scree --json | plain >last.json

@@ -26,7 +26,9 @@ box() {
   printf '4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n'
 }
 folder=$(mktemp -d)
-trap 'rm -rf "$folder" "$folder.out"' EXIT
+XDG_CACHE_HOME=$folder.cache
+export XDG_CACHE_HOME
+trap 'rm -rf "$folder" "$folder.out" "$XDG_CACHE_HOME"' EXIT
 cd "$folder" || exit 1
 # lines of progress depend on the machine
 (. "$script") 2>&1 </dev/null | sed '/^scree, after /d' >"$folder.out"

@@ -7,7 +7,7 @@ start=$(date +%s%N)
 "$SCREE" choose a.stl b.stl -o whole >/dev/null
 span=$(($(date +%s%N) - start))
 (cd whole && find . | sort) >names
-"$SCREE" choose sample:box-12 sample:icosphere-2 -o earlier >/dev/null
+"$SCREE" choose sample:box-12 sample:icosphere-2 -o earlier >/dev/null 2>&1
 (cd earlier && find . | sort) >earlier_names
 mkdir -p kept && echo mine >kept/notes.txt
 stopped=0 finished=0

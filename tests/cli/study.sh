@@ -8,15 +8,20 @@ base:
   cylinder: {diameter: 0.4}
   phases: {pack_time: 0.3, settle_time: 0.05, lift_speed: 1, lift_time: 0.3, hold_time: 0.05}
 factors:
-  contact.friction: [0.2, 0.5]
+  friction_all: [0.2, 0.5]
   rp: [spheres]
 YAML
 hashes() { sqlite3 "$1/study.sqlite" "SELECT run, state, hash FROM run ORDER BY run"; }
 run study tiny.yaml --dry-run
 # the whole; times are the machine's
-run study tiny.yaml -o whole --jobs 2 2>&1 | sed 's/  *[0-9.e-]*$//'
+run study tiny.yaml -o whole -v --jobs 2 2>/dev/null | sed 's/  *[0-9.e-]*$//'
 ls whole
 hashes whole >whole.txt
+# -f begins anew: another file may have the folder, and what is not a study's stays
+sed 's/friction_all: .*/friction_all: [0.3]/; s/replicates: 2/replicates: 1/' tiny.yaml >other.yaml
+cp -r whole again && touch again/results/old.yaml again/notes
+run study other.yaml -o again -f --jobs 1 2>/dev/null >/dev/null && hashes again | wc -l && ls again | grep notes && ls again/results | wc -l
+run study other.yaml -o again -f --worker 2>&1 | lines 2
 # a worker killed in the middle, two processes after it, then a look at it
 "$SCREE" study tiny.yaml -o parts --worker --no-wait &
 worker=$!
@@ -84,11 +89,23 @@ factors: {rp: [0.02]}
 END
 "$SCREE" study one.yaml -o one --jobs 1 -q >/dev/null
 once="-p demo --particles 6 --cylinder 0.2 --pack-time 0.2 --settle-time 0.05 --lift-speed 1 --lift-time 0.05 --hold-time 0.05 --seed 1 --no-picture --json -q"
-"$SCREE" repose round.stl --rp 0.02 $once | grep -v '"command"\|"file"\|_seconds"\|"name"\|"family"\|"source"' >scan.json
-"$SCREE" repose one/shapes/round-rp0.02.ply --unit m $once | grep -v '"command"\|"file"\|_seconds"\|"name"\|"family"\|"source"' >written.json
+"$SCREE" repose round.stl --rp 0.02 $once | grep -v '"command"\|"file"\|_seconds"\|"next"\|"name"\|"family"\|"source"' >scan.json
+"$SCREE" repose one/shapes/round-rp0.02.ply --unit m $once | grep -v '"command"\|"file"\|_seconds"\|"next"\|"name"\|"family"\|"source"' >written.json
 diff scan.json written.json
 grep -c height scan.json
 # of shapes that are not decimated yet nothing is said to be known
 mkdir -p early/leases early/runs early/shapes
 printf 'name: early\nreplicates: 2\nshapes: [sample:icosphere-3]\nbase: {preset: demo}\nfactors: {rp: [1e-2, 1e-1]}\n' >early/study.yaml
-run study status early
+run study status early -v 2>/dev/null
+# studies of commands: {here}, replicates that would be alike, a failure with what the command said
+printf '#!/bin/sh\nawk -v a="$1" -v s="$2" '"'BEGIN { srand(s); printf \"y: %%.6g\\\\n\", 10 * a + rand() }'\n" >model.sh
+printf '#!/bin/sh\necho "no such grain" >&2\nexit 3\n' >fails.sh
+chmod +x model.sh fails.sh
+printf 'base: {command: ["{here}/model.sh", "{a}", "{seed}"], timeout: 20}\nfactors: {a: [1, 2, 3]}\nanswers: [y]\nreplicates: 4\n' >command.yaml
+run study command.yaml -o command -q --jobs 1 | sed -E 's/\(\+[0-9.]+ \+- [0-9.]+\)/(+N +- N)/; s/from [0-9.]+ to [0-9.]+/from N to N/; s/runs, .* of a/runs, N of a/'
+sed 's/, "{seed}"//' command.yaml >alike.yaml
+run study alike.yaml
+sed -i '/replicates/d' alike.yaml
+run study alike.yaml -o alike -q --jobs 1 | tail -1
+sed 's/model.sh/fails.sh/' command.yaml >fails.yaml
+run study fails.yaml -o fails -q --jobs 1

@@ -18,15 +18,15 @@ replicates: 2
 END
 # the last two columns are noise and time
 table() { sed -E '/^ .*[/]/s/( +[0-9.e-]+)? +[0-9.e-]+$//'; } # without deviations and times
-run study study.yaml -o out -q | table
+run study study.yaml -o out -q -v 2>/dev/null | table
 sed -n '1s/.*,\(all.count.*\)/\1/p' out/points.csv
 head -2 out/points.csv | cut -d, -f1-8
 head -1 out/scene.yaml | sed 's/of .*\//of /'
 run study status out | head -1
 # before the first run nothing is known
 "$SCREE" study study.yaml -o none --slurm --dry-run >/dev/null 2>&1
-"$SCREE" study status none | grep -c ' -$'
-"$SCREE" study status none | grep nan
+"$SCREE" study status none -v 2>/dev/null | grep -c ' -$'
+"$SCREE" study status none -v 2>/dev/null | grep nan
 # other answers come from what the runs left
 touch before
 sed 's/^answers.*/answers: [all.mass: {at: 0.1}, load.force_z]/' study.yaml >other.yaml
@@ -37,7 +37,7 @@ cut -d, -f3- out/points.csv | sed -nE '1s/.*,(all.mass.*)/\1/p; 2s/.*(,[0-9.e-]+
 awk -F, '{ print $(NF - 1), $(NF - 15) }' out/points.csv >kept; awk -F, '{ print $(NF - 1), $(NF - 15) }' anew/points.csv | cmp - kept
 "$SCREE" study study.yaml -o out -q >/dev/null
 rm chute.yaml
-run study status out | sed -n 3,5p | table
+run study status out -v 2>/dev/null | sed -n 8,10p | table
 cat >wrong.yaml <<'END'
 base: {scene: out/scene.yaml}
 factors: {inlets.feed.rat: [50, 100]}

@@ -63,7 +63,9 @@ def missing(folder):
 
 def look(window, site):
     for words, page in (("tolerance", "reference/verbs/choose.html"), ("hausdorff", "background/method.html"), ("install", "install.html"),
-                        ("windows", "install.html"), ("macos python", "install.html"), ("restit", "glossary.html")):
+                        ("windows", "install.html"), ("macos python", "install.html"), ("restit", "glossary.html"),
+                        ("tolerence", "reference/verbs/choose.html"), ("licence", "index.html"), ("inches", "howto/units.html"),
+                        ("moisture", "background/physics.html"), ("blender", "howto/other-programs.html")):
         window.open(f"{site}/search.html", f"?q={urllib.parse.quote(words)}")
         window.wait("document.querySelector('#found > li > a')", 60)
         found = window.run("return [...document.querySelectorAll('#found > li > a')].map(a => a.getAttribute('href'))")
@@ -78,7 +80,7 @@ def look(window, site):
         for width, dark in ((400, False), (1200, True)):
             window.look(width=width, dark=dark)
             wide = window.run("return document.documentElement.scrollWidth")
-            barriers = window.barriers()
+            barriers = [barrier for barrier in window.barriers() if not re.search(r": \.(sidebar|toc)-", barrier)]  # the theme's
             if wide > width or barriers:
                 sys.exit(f"{page} at {width}: {wide} wide; {barriers}")
 

@@ -1,9 +1,10 @@
 /* Checkpoints with the length and the checksum made to fit, as who forges one would: refused in a
  * sentence, or a world that packs to bytes that load to the same world, and that can be asked,
  * stepped and freed. */
-#include "world/checkpoint.h"
+#include "world/step/checkpoint.h"
 #include "base/alloc.h"
 #include "fuzz/forge.h"
+#include "world/state/save.h"
 
 #include <string.h>
 

@@ -6,8 +6,8 @@
 /* Settings from the first byte, a mesh from the rest (meshes.h). */
 static scree_repair_options options_of(uint8_t byte) {
   scree_repair_options o = scree_default_repair_options();
-  o.hole_edges = byte % 4 * 3;
-  o.fill_large_holes = byte & 4;
+  o.hole_share = byte % 4 / 3.0;
+  o.flat_holes = byte & 4;
   o.keep_largest = byte & 8;
   o.drop_cavities = byte & 16;
   o.cut_intersections = byte & 32;

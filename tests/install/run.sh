@@ -34,6 +34,21 @@ expect shared "$(LD_LIBRARY_PATH=$libdir "$folder/shared")"
 "$compiler" "$here/consumer.c" -o "$folder/static" $(pc --cflags) "$libdir/libscree.a" \
   $(pc --static --libs | sed 's/-lscree//')
 expect static "$("$folder/static")"
+# The parts alone: each with its own headers, DEM with nothing behind it and no reader in it.
+part() { PKG_CONFIG_PATH="$libdir/pkgconfig" pkg-config --cflags --libs "scree-$1"; }
+# shellcheck disable=SC2046
+"$compiler" "$here/consumer_dem.c" -o "$folder/dem" $(part dem)
+expect dem "$("$folder/dem")"
+# shellcheck disable=SC2046
+"$compiler" -Wl,--whole-archive "$libdir/libscree-dem.a" -Wl,--no-whole-archive "$here/consumer_dem.c" -o "$folder/dem" \
+  $(part dem | sed 's/-lscree-dem//') || { echo "libscree-dem.a stands on another library"; exit 1; }
+[ "$(part dem | tr ' ' '\n' | grep -c '^-l')" = 2 ] || { echo "scree-dem.pc names libraries: $(part dem)"; exit 1; }
+readers=$(nm -g --defined-only "$libdir/libscree-dem.a" 2>/dev/null | grep -E ' T scree_(scan_|read_(file|options|mesh|scan))' || true)
+[ -z "$readers" ] || { echo "libscree-dem.a reads scans: $readers"; exit 1; }
+"$folder/prefix/bin/scree" sample icosphere-2 -q -o "$folder/ball.stl" >/dev/null
+# shellcheck disable=SC2046
+"$compiler" "$here/consumer_mesh.c" -o "$folder/mesh" $(part mesh)
+expect mesh "$("$folder/mesh" "$folder/ball.stl")"
 if command -v c++ >/dev/null; then
   # shellcheck disable=SC2046
   c++ -x c++ -fsyntax-only $(pc --cflags) "$here/consumer.c"

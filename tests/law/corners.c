@@ -12,18 +12,8 @@ static const double ledger_share = 1e-3; /* of what came in, which few may excee
 static const double worst_share = 0.03, may_exceed = 0.01; /* the latter: of the throws */
 static int more = 1;
 
-static scree_particle *make_body(int shape, scree_rng *rng) {
-  scree_error error;
-  scree_particle *particle = NULL;
-  const double side = 2 * radius / sqrt(3),
-               centres[9] = {-0.5 * radius, 0, 0, 0.4 * radius, 0, 0, 0, 0.4 * radius, 0},
-               radii[3] = {0.5 * radius, 0.55 * radius, 0.5 * radius};
-  if (shape == 0) return law_sphere(radius);
-  if (shape == 1) return shape_particle(shape_box(side, side, side));
-  if (shape == 2) return shape_particle(plates_stone(radius, rng));
-  CHECK_OK(scree_particle_clump(centres, radii, 3, NULL, &particle, &error), error);
-  return particle;
-}
+static const plates_body_kind kinds[SHAPES] = {PLATES_BALL, PLATES_CUBE, PLATES_STONE,
+                                               PLATES_CLUMP};
 
 /* A throw at a corner: from between its planes, or from around its edge. */
 typedef struct throw_ {
@@ -100,7 +90,7 @@ static void throw_one(uint64_t number, tally *all) {
   if (t.turned) plates_turn(&mesh);
   scree_wall wall = {.kind = SCREE_WALL_MESH, .material = 1, .axis = {0, 0, 1}, .mesh = &mesh};
   CHECK_OK(scree_world_add_wall(world, &wall, NULL, &error), error);
-  scree_particle *particle = make_body(t.shape, &rng);
+  scree_particle *particle = plates_body(kinds[t.shape], radius, &rng);
   scree_body body = start_of(&t, &rng);
   size_t index = law_body(world, particle, body);
   char text[160];

@@ -1,6 +1,6 @@
 /* Fields by coarse graining against closed forms: the stress of a column at rest, a solid rotation
  * in a grid at rest and in one that turns with it, both kinds of grid; what VTK's file holds. */
-#include "scene/grid.h"
+#include "scene/sensors/grid.h"
 #include "support/check.h"
 #include "support/folder.h"
 #include "support/scene.h"
@@ -30,7 +30,7 @@ static void column(void **state) {
   run_to_end(scene);
   const scree_scene_sensor *sensor = &scene->sensors[0];
   const double w = 0.005, area = 0.0025 * 0.0025;
-  assert_true(sensor->grid->sample_count >= 2);
+  assert_true(scree_grid_of(sensor)->sample_count >= 2);
   double weight = 10 * scree_world_body_mass(scree_scene_view(scene), 0) * g;
   for (size_t k = 3; k < 23; k++) {
     double force = 0, above = 0, z = 0.01 * ((double)k + 0.5);
@@ -81,10 +81,10 @@ static void rotation(void **state) {
   run_to_end(scene);
   for (size_t s = 0; s < 3; s++) {
     const scree_scene_sensor *sensor = &scene->sensors[s];
-    assert_true(sensor->grid->sample_count >= 1);
-    for (size_t c = 0; c < sensor->grid->cell_count; c++) {
+    assert_true(scree_grid_of(sensor)->sample_count >= 1);
+    for (size_t c = 0; c < scree_grid_of(sensor)->cell_count; c++) {
       scree_grid_fields f = scree_grid_fields_at(scene, sensor, c);
-      vec3 r = sensor->grid->middles[c];
+      vec3 r = scree_grid_of(sensor)->middles[c];
       double turned = s == 2 ? 0 : 2, size = 2 * hypot(r.x, r.y);
       CHECK_NEAR(f.velocity[0], -turned * r.y, 0.005 * size + 1e-3);
       CHECK_NEAR(f.velocity[1], turned * r.x, 0.005 * size + 1e-3);

@@ -179,7 +179,7 @@ static void a_corner_that_wanders_inside(void **state) {
     double adrift, edges_unfelt; /* INFINITY: its hollows hold the tip's edges from the start */
     double inside_first;
   } cases[] = {{"camera of 38 triangles", camera(), 3, 0, 10},
-               {"flat octahedron", flint(0.05, 0.03, 0.012), 2, 0, 0},
+               {"flat octahedron", flint(0.05, 0.03, 0.012), 3, 0, 0},
                {"wedge", solid_prism(triangle, 3, 0.08), 0, 0, 0},
                {"box", shape_box(0.1, 0.05, 0.015), 0, 0, 0}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -10,8 +10,9 @@
 #include "support/shapes.h"
 #include "support/solids.h"
 #include "support/threads.h"
-#include "world/contact.h"
-#include "world/pairs.h"
+#include "world/contact/contact.h"
+#include "world/observe/replay.h"
+#include "world/state/pairs.h"
 
 #include <stdlib.h>
 
@@ -478,7 +479,7 @@ static void warm_steps_allocate_nothing(void **state) {
                               law_sphere(0.02)};
   for (size_t kinds = 1; kinds <= 2; kinds++) {
     scree_world *world = heap_of(shapes, kinds, 18);
-    law_step(world, 40000);
+    law_step(world, 80000);
     size_t before = scree_allocation_count();
     law_step(world, 2000);
     size_t count = scree_allocation_count() - before;
@@ -492,7 +493,9 @@ static void warm_steps_allocate_nothing(void **state) {
   for (int i = 0; i < 2; i++) scree_particle_free(shapes[i]);
 }
 
-static void what_leaves_the_range_stops(void **state) {
+/* At 90 m/s it is pressed beyond its limit, comes back, and is counted; at 2 km/s no step sees it.
+ */
+static void what_leaves_the_range_is_told(void **state) {
   (void)state;
   scree_particle *box = shape_particle(shape_box(0.06, 0.04, 0.02));
   law_setup setup = law_default();
@@ -505,13 +508,18 @@ static void what_leaves_the_range_stops(void **state) {
     law_body(world, box, body);
     scree_error error;
     scree_status status = scree_world_step(world, 20000, &error);
-    assert_int_equal(status, SCREE_DIVERGED);
-    print_message("%s\n", error.message);
-    assert_non_null(strstr(error.message, fast ? "would move" : "overlaps wall 0"));
     scree_body after;
+    scree_observation o;
+    scree_world_observe(world, &o);
     scree_world_get_body(world, 0, &after);
     assert_true(isfinite(after.position[2]));
-    assert_int_equal(scree_world_step(world, 1, NULL), SCREE_DIVERGED);
+    assert_int_equal(status, fast ? SCREE_DIVERGED : SCREE_OK);
+    assert_true(fast || (after.velocity[2] > 0 && o.hardened_count > 0 && o.stiffness_missing > 1));
+    if (fast) {
+      print_message("%s\n", error.message);
+      assert_non_null(strstr(error.message, "would move"));
+      assert_int_equal(scree_world_step(world, 1, NULL), SCREE_DIVERGED);
+    }
     scree_world_free(world);
   }
   scree_particle_free(box);
@@ -681,7 +689,7 @@ int main(void) {
       cmocka_unit_test(threads_change_nothing),
       cmocka_unit_test(pairs_come_into_order),
       cmocka_unit_test(warm_steps_allocate_nothing),
-      cmocka_unit_test(what_leaves_the_range_stops),
+      cmocka_unit_test(what_leaves_the_range_is_told),
       cmocka_unit_test(depth_of_edges),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

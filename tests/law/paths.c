@@ -146,7 +146,7 @@ static void bad_motions_are_told(void **state) {
       {"t,x [s]\n0,0\n", "the column x is in m, not 's'"},
       {"t,x\n0,0\n0,1\n", "line 3: t 0 s: must come after the row before, 0 s"},
       {"t,x\n0,0,1\n", "line 2: more fields than names"},
-      {"t,x\n0,0\n1,a\n", "line 3: x: 'a' is no number"},
+      {"t,x\n0,0\n1,a\n", "line 3: x is 'a', which is no number"},
   };
   static const char *const scenes[][2] = {
       {"motion: [{path: {file: none.csv}}]", "none.csv"},

@@ -176,8 +176,8 @@ static void stack_of_plates(void **state) {
 }
 
 /* What many contacts hold at once comes to rest: a box on six floors in the same place. What turns
- * about from step to step grows where the sum of c dt/m exceeds a limit (src/world/law.c). One
- * floor's is 2 eta pi/(2 N) = .078, three times that for a box that turns: six floors' is 1.4,
+ * about from step to step grows where the sum of c dt/m exceeds a limit (src/world/contact/law.c).
+ * One floor's is 2 eta pi/(2 N) = .078, three times that for a box that turns: six floors' is 1.4,
  * beyond the limit of 1 of dashpots that see as far ahead as those of an impact. */
 static void held_by_many(void **state) {
   (void)state;

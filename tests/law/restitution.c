@@ -298,12 +298,89 @@ static void hits_converge_with_the_step(void **state) {
   scree_particle_free(box);
 }
 
+/* The speed along z of a sphere, or of a box of which a corner hits off its centre, after a hit on
+ * a plane at 1 m/s that begins at this part of a step. */
+static double rebound(const meeting *m, scree_law law, double e, double steps, double phase) {
+  scree_error error;
+  scree_world_options options = scree_default_world_options();
+  options.gravity[2] = 0;
+  options.law = law;
+  options.steps_per_contact = steps;
+  scree_world *world = NULL;
+  CHECK_OK(scree_world_create(&options, &world, &error), error);
+  scree_material material = {.young = 1e8, .density = 2000, .restitution = e, .friction = 0};
+  CHECK_OK(scree_world_add_material(world, &material, NULL, &error), error);
+  material.young = 1e11;
+  CHECK_OK(scree_world_add_material(world, &material, NULL, &error), error);
+  law_floor(world);
+  const vec3 far = {0, 0, 1};
+  const size_t index = law_body(world, m->upper, body_at(far, m->upper_arm, m->upper_turn, -1));
+  const double step = scree_world_time_step(world, NULL);
+  const vec3 above = {0, 0, (3 + phase) * step};
+  scree_body body = body_at(above, m->upper_arm, m->upper_turn, -1);
+  law_place(world, index, &body);
+  scree_observation o;
+  for (bool touched = false; !touched || o.contact_count > 0;) {
+    law_step(world, 1);
+    scree_world_observe(world, &o);
+    touched |= o.contact_count > 0;
+  }
+  scree_world_get_body(world, index, &body);
+  scree_world_free(world);
+  return body.velocity[2];
+}
+
+enum { PHASES = 12, ORDER_STEPS = 3 };
+
+/* The rms of the error over phases, at N = 20, 40 and 80; by how much the step's halves lower it.
+ */
+static double order_of(const meeting *m, scree_law law, double e, double expected,
+                       double errors[ORDER_STEPS]) {
+  for (int k = 0; k < ORDER_STEPS; k++) {
+    errors[k] = 0;
+    for (int i = 0; i < PHASES; i++) {
+      const double off = rebound(m, law, e, 20 << k, (i + 0.5) / PHASES) - expected;
+      errors[k] += off * off / PHASES;
+    }
+    errors[k] = sqrt(errors[k]);
+  }
+  return 0.5 * log2(errors[0] / errors[2]);
+}
+
+/* docs/background/physics.md has the table. */
+static void rebounds_are_of_second_order(void **state) {
+  (void)state;
+  static const double given[] = {0.1, 0.5, 0.9};
+  static const char *const laws[] = {"linear", "hysteretic", "Hertz"};
+  static const double least[] = {1.8, 1.8, 1.7};
+  const vec3 half = {0.01, 0.01, 0.01};
+  scree_rng rng = {.seed = 8};
+  scree_particle *ball = law_sphere(0.01),
+                 *cube = shape_particle(shape_box(2 * half.x, 2 * half.y, 2 * half.z));
+  for (int corner = 0; corner < 2; corner++) {
+    meeting m = {.upper = ball, .upper_turn = {1, 0, 0, 0}, .upper_arm = {0, 0, -0.01}};
+    if (corner) m = corner_on_plane(cube, half, &rng);
+    for (int law = 0; law < 3 - corner; law++) /* Hertz's is linear for meshes */
+      for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
+        double errors[ORDER_STEPS],
+            expected = corner ? rebound(&m, (scree_law)law, given[i], 640, 0.5) : given[i],
+            order = order_of(&m, (scree_law)law, given[i], expected, errors);
+        print_message("%s, %s, e = %g: %.2g %.2g %.2g, order %.2f\n", corner ? "corner" : "sphere",
+                      laws[law], given[i], errors[0], errors[1], errors[2], order);
+        assert_true(order > least[law]);
+      }
+  }
+  scree_particle_free(ball);
+  scree_particle_free(cube);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(corners_edges_and_faces_rebound_by_e),
       cmocka_unit_test(elastic_boxes_keep_their_energy),
       cmocka_unit_test(hysteretic_unloading_is_resolved),
       cmocka_unit_test(hits_converge_with_the_step),
+      cmocka_unit_test(rebounds_are_of_second_order),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

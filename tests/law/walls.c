@@ -212,7 +212,7 @@ static void a_soft_mixed_heap_keeps_its_ledger(void **state) {
  * by what they sink into the planes. */
 static scree_world *drum_between_planes(uint64_t seed, size_t bricks) {
   const double radius = 0.06, half = 0.02;
-  const law_setup setup = {0.3, 0.5, 20, 9.81, 1e5, 1e7, 1200};
+  const law_setup setup = {0.3, 0.5, 20, 9.81, 1e5, 1e7, 1200, SCREE_ROLLING_COUPLE};
   scree_mesh mesh = shape_make(12, 12);
   for (uint32_t i = 0; i < 6; i++) {
     double angle = i * 3.14159265358979 / 3;

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The npm package, installed from its tarball into a folder of its own: `npx scree` is the program to the byte, and the
-# interface for JavaScript answers what the program does. usage: npm.sh PROGRAM FOLDER      FOLDER has scree-VERSION.tgz
+# The npm package, installed from its tarball into a folder of its own: `npx scree` is the program to the byte.
+# usage: npm.sh PROGRAM FOLDER      FOLDER has scree-VERSION.tgz
 # Exits 77 where node or npm is missing, or the package was not made.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
@@ -50,49 +50,3 @@ for call in "choose broken.stl -u mm" "choose missing.stl" "nonsense" "choose --
   [ $code = $native ] || fail "npx scree $call: exit $code, the program's is $native"
   cmp native.said said || fail "npx scree $call: not the program's sentence"
 done
-
-cat >interface.mjs <<'END'
-import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
-import * as scree from 'scree';
-
-const unit = 'mm', bytes = readFileSync('fp-1.stl');
-const { check } = await scree.check(bytes, { unit });
-assert.equal(check.usable, true);
-assert.ok(check.triangle_count > 1000);
-
-const choice = await scree.choose('fp-1.stl', { unit });
-const native = JSON.parse(readFileSync('choice.json'))[0];
-assert.deepEqual(choice.recommended, native.recommended);
-const looser = await scree.choose(bytes, { unit, tolerances: { mean_distance: 0.02, hausdorff: null, inertia: null, thickness: null } });
-assert.ok(looser.recommended.triangle_count < choice.recommended.triangle_count);
-assert.equal((await scree.choose(bytes, { unit, rule: 'paper' })).default, 'paper');
-
-const mesh = await scree.simplify(bytes, { unit, triangles: choice.recommended.triangle_count, format: 'ply' });
-const level = await scree.check(mesh, { unit });
-assert.equal(level.check.triangle_count, choice.recommended.triangle_count);
-assert.ok(level.check.usable);
-
-const measured = await scree.measure(bytes, { unit });
-assert.equal(measured.closed, true);
-const curve = await scree.curve(bytes, { unit });
-assert.equal(curve.triangle_count, choice.triangle_count);
-assert.ok(curve.levels.length > 10);
-
-const corner = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n'; // a tetrahedron without one face
-const { mesh: closed } = await scree.repair(new TextEncoder().encode(corner), { unit, name: 'open.obj' });
-assert.equal((await scree.check(closed, { unit })).check.usable, true);
-
-await assert.rejects(scree.choose(new Uint8Array(), { unit, name: 'empty.stl' }), (error) => error instanceof scree.ScreeError && error.message.startsWith('empty.stl: '));
-await assert.rejects(scree.choose(bytes, {}), /unit/);
-const { code, output } = await scree.run(['version']);
-assert.equal(code, 0);
-assert.match(output, /^scree \d/);
-
-// The types name what there is.
-const types = readFileSync('node_modules/scree/index.d.ts', 'utf8');
-const declared = [...types.matchAll(/^export (?:function|class) (\w+)/gm)].map(([, name]) => name);
-assert.deepEqual([...new Set(declared)].sort(), Object.keys(scree).sort());
-END
-"$program" choose fp-1.stl -u mm --json >choice.json
-node interface.mjs

@@ -34,7 +34,7 @@ cut_short() {
   wait $victim 2>/dev/null || true
 }
 # the costs of the machine, and what the files are told of the command
-plain() { grep -v '"command"\|"file"\|_seconds"\|"piece_count"' "$1/result.json"; }
+plain() { grep -v '"command"\|"file"\|_seconds"\|"next"\|"piece_count"' "$1/result.json"; }
 # `back_and_forth WORDS...`: its result and series are the same.
 back_and_forth() {
   rm -rf whole cut

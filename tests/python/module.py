@@ -51,6 +51,48 @@ class Interface(unittest.TestCase):
                     self.assertEqual(wanted - set(hints), set(), functions[-1])
         self.assertGreater(len(functions), 80)
 
+    def test_as_one_expects(self):
+        tetrahedron().write("u.stl", unit="m")
+        mesh = scree.Mesh("u.stl")
+        self.assertEqual((mesh.source, len(mesh.vertices), len(mesh.faces)), ("u.stl", 4, 4))
+        self.assertAlmostEqual(mesh.volume, 1 / 6)
+        self.assertAlmostEqual(mesh.area, 1.5 + 3**0.5 / 2)
+        self.assertEqual([list(row) for row in mesh.bounds], [[0, 0, 0], [1, 1, 1]])
+        self.assertAlmostEqual(scree.Mesh("sample:box-12").describe().elongation, 1)
+        with self.assertRaisesRegex(ValueError, "do you mean widths"):
+            mesh.choose(tolerances={"width": 0.02})
+        with self.assertRaisesRegex(ValueError, "do you mean mujoco"):
+            mesh.export("mujocco")
+        with self.assertRaisesRegex(scree.Error, "pfc takes clumps"):
+            mesh.export("pfc")
+        self.assertEqual((scree.codes()["deme"], scree.codes()["yade"], scree.codes()["pfc"]), ("mesh, clump", "clump, mesh", "clump"))
+        choice = scree.sample("icosphere-3").choose(tolerances={"mean": 0.01})
+        self.assertRegex(choice.answer, f"^Use {choice.recommended.triangle_count} triangles")
+        for _ in range(2):  # a script may be run again
+            self.assertEqual(choice.export("mujoco").piece_count, 1)
+        self.assertTrue(pathlib.Path("icosphere-3-mujoco/icosphere-3.xml").exists())
+        clumps = scree.sample("icosphere-2").clumps(most=3)
+        self.assertEqual((len(clumps), clumps[0].sphere_count, clumps.recommended.sphere_count), (1, 1, 1))
+        self.assertEqual(clumps.particle().measure().kind, "clump")
+        clumps.write("spheres.csv")
+        clumps.particle(1).export("pfc")
+
+    @unittest.skipIf(_values.numpy is None, "a grid is an array")
+    def test_distance_grid(self):
+        """Of a ball: the radius less, and no more off than told."""
+        import numpy
+        ball = scree.sample("icosphere-4")
+        grid = ball.distance_grid(24)
+        grid.write("ball.npz")
+        read = numpy.load("ball.npz")
+        self.assertEqual(float(read["spacing"]), grid.spacing)
+        places = [grid.origin[k] + grid.spacing * numpy.arange(n) for k, n in enumerate(grid.distances.shape)]
+        x, y, z = numpy.meshgrid(*places, indexing="ij")
+        wanted = numpy.sqrt(x * x + y * y + z * z) - 0.025
+        self.assertLess(abs(read["distances"] - wanted).max(), 1e-4)
+        self.assertLess(grid.mean_error, grid.error)
+        self.assertLess(grid.error, 3**0.5 / 2 * grid.spacing)
+
     def test_notebooks(self):
         """Well-formed, with a picture where the library draws, and with texts as texts."""
         class Reader(html.parser.HTMLParser):
@@ -120,9 +162,9 @@ class Meshes(unittest.TestCase):
         self.assertAlmostEqual(scree.load("t.stl").measure().volume, 1 / 6, 6)
         self.assertEqual(scree.load("t.stl").warning, "")
         with self.assertRaises(scree.Error) as refused:
-            tetrahedron().write("t.stl")
+            tetrahedron().write("t.stl", overwrite=False)
         self.assertEqual(refused.exception.status, "EXISTS")
-        tetrahedron().write("t.stl", overwrite=True)
+        tetrahedron().write("t.stl")
         with open("bad.stl", "w") as file:
             file.write("solid nothing")
         with self.assertRaisesRegex(scree.Error, "bad.stl: .*cut off") as refused:
@@ -187,7 +229,7 @@ class Meshes(unittest.TestCase):
         with self.assertRaises(scree.Error):
             both.repair(merge_shells=False)
         with self.assertRaises(scree.Error):
-            scree.Mesh(tetrahedron().positions.tolist(), tetrahedron().triangles.tolist()[:3]).repair(hole_edges=0)
+            scree.Mesh(tetrahedron().positions.tolist(), tetrahedron().triangles.tolist()[:3]).repair(hole_share=0)
         with self.assertRaisesRegex(TypeError, "merge_shells"):
             both.repair(merge=True)
 
@@ -330,6 +372,33 @@ class Worlds(unittest.TestCase):
         with self.assertRaises(TypeError):
             world.add_wall("plane", 1, colour="red")
 
+    def test_joints_that_break(self):
+        box = scree.Mesh([(x, y, z) for z in (0, .01) for y in (0, .01) for x in (0, .04)],
+                         [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7), (0, 4, 2),
+                          (2, 4, 6), (1, 3, 5), (3, 7, 5)])
+        pieces, faces = box.fracture(2, seed=3)
+        self.assertAlmostEqual(sum(p.measure().volume for p in pieces), 4e-6, delta=1e-14)
+        self.assertEqual([(f.a, f.b) for f in faces], [(0, 1)])
+        world = scree.World(gravity=(0, 0, 0))
+        material = world.add_material()
+        for piece in pieces:
+            particle = scree.Particle(piece)
+            measures = particle.measure()
+            world.add_body(particle, material, position=measures.centre, orientation=measures.orientation)
+        self.assertEqual(world.add_joint(0, 1, faces[0], 1e8, tension=1e5), 0)
+        self.assertEqual(list(world.fragments()), [0, 0])
+        way = [1 if x > 0 else -1 for x in (pieces[1].measure().centroid[0] - pieces[0].measure().centroid[0],)][0]
+        world.set_body(1, velocity=(way, 0, 0))
+        world.run(0.01)
+        (joint,) = world.joints()
+        self.assertEqual((joint.state, joint.mode), ("open", "by_tension"))
+        self.assertGreater(joint.fracture, 0)
+        self.assertEqual(list(world.fragments()), [0, 1])
+        with self.assertRaises(IndexError):
+            world.add_joint(0, 2)
+        sheet = scree.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+        self.assertAlmostEqual(sheet.thicken(0.1).measure().volume, 0.05)
+
     def test_any_facets_as_a_wall(self):
         # two sides of a sheet that another stands on, wound anyhow
         points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0, 0), (0.5, 1, 0), (0.5, 0, 1), (0.5, 1, 1)]
@@ -460,6 +529,10 @@ output: {series: 0.05}
         self.assertEqual(scene.sensors["all.count"], 12)
         self.assertEqual(scene.sensors["all.count.ball"], 6)
         self.assertEqual(scene.units()["belt.force_z"], "N")
+        tables = scene.tables()
+        self.assertEqual(list(tables), ["belt.map"])
+        self.assertEqual([int(t) for t in tables["belt.map"]["triangle"]], list(range(12)))
+        self.assertGreater(max(tables["belt.map"]["pressure"]), 0)
         self.assertEqual([round(t, 2) for t in scene.series()["time"]], [0, 0.05, 0.1, 0.15, 0.2])
         bodies = scene.bodies()
         self.assertEqual(len(bodies.position), 12)

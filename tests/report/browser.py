@@ -119,15 +119,13 @@ class Browser:
             {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
 
     def barriers(self):
-        """What keeps people from reading or reaching the page, by axe-core: its serious findings and worse, as text."""
+        """What keeps people from reading or reaching the page, by axe-core, as text."""
         if not axe():
             return []
         self.run(axe())
         return self.ask("POST", "/execute/async", {"args": [], "script": """
             const done = arguments[arguments.length - 1];
-            axe.run({resultTypes: ['violations']}).then(({violations}) => done(violations
-                .filter(({impact}) => impact === 'serious' || impact === 'critical')
-                .flatMap(({id, nodes}) => nodes.map(({target, any}) => `${id}: ${target.join(' ')}: ${any[0]?.message ?? ''}`))))"""})
+            axe.run({resultTypes: ['violations']}).then(({violations}) => done(violations.flatMap(({id, nodes}) => nodes.map(({target, any}) => `${id}: ${target.join(' ')}: ${any[0]?.message ?? ''}`))))"""})
 
     def resting_box(self, selector):
         """Where the element is once it has been scrolled to and nothing moves it any more."""

@@ -21,7 +21,7 @@ if ! npm ci --ignore-scripts --no-audit --no-fund >"$folder/log" 2>&1; then
   exit 1
 fi
 node build.mjs --check
-for name in three uplot meshoptimizer; do
+for name in three meshoptimizer; do
   for file in node_modules/$name/LICENSE*; do
     cmp "$file" licences/$name.txt || { echo "the licence of $name is another"; exit 1; }
   done

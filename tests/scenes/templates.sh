@@ -5,7 +5,7 @@
 set -uo pipefail
 scree=$(realpath -e "$1") || exit 1
 shift
-[ $# -gt 0 ] || set -- hopper drum tilting-box drawdown hollow-cylinder conveyor vibrating-screen shear-box drum-lifters paddle-mixer tumbler hammer-mill transfer-chute belt auger hole-screen
+[ $# -gt 0 ] || set -- hopper drum tilting-box drawdown hollow-cylinder conveyor vibrating-screen shear-box drum-lifters paddle-mixer tumbler hammer-mill shredder transfer-chute belt auger hole-screen
 cd "$(mktemp -d)" || exit 1
 trap 'rm -rf "$PWD"' EXIT
 failed=0

@@ -91,7 +91,7 @@ base:
   phases: {pack_time: 1, settle_time: 0.3, lift_speed: 0.5, lift_time: 0.5, hold_time: 0.2, still_energy: 0}
   output: {checkpoint_interval: 0.05}
 factors:
-  contact.friction: [0.2, 0.5]
+  friction_all: [0.2, 0.5]
   rp: [spheres]
 END
 hashes() { sqlite3 "$1/study.sqlite" "SELECT run, state, hash FROM run ORDER BY run"; }

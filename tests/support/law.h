@@ -27,10 +27,11 @@
 typedef struct law_setup {
   double restitution, friction, steps_per_contact, gravity;
   double stiffness, wall_stiffness, density;
+  scree_rolling rolling;
 } law_setup;
 
 static inline law_setup law_default(void) {
-  return (law_setup){0.3, 0.5, 40, 0, 1e8, 1e11, 2000};
+  return (law_setup){0.3, 0.5, 40, 0, 1e8, 1e11, 2000, SCREE_ROLLING_COUPLE};
 }
 
 /* A world with material 0 for bodies and 1 for walls. */
@@ -39,6 +40,7 @@ static inline scree_world *law_world(const law_setup *setup) {
   scree_world_options o = scree_default_world_options();
   o.gravity[2] = -setup->gravity;
   o.steps_per_contact = setup->steps_per_contact;
+  o.rolling = setup->rolling;
   scree_world *world = NULL;
   CHECK_OK(scree_world_create(&o, &world, &error), error);
   scree_material m = {.young = setup->stiffness,

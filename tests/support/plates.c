@@ -1,6 +1,6 @@
 #include "support/plates.h"
 
-#include "support/check.h"
+#include "support/law.h"
 #include "support/shapes.h"
 
 scree_mesh plates_of(const vec3 *corners, size_t count) {
@@ -143,4 +143,19 @@ scree_mesh plates_stone(double radius, scree_rng *rng) {
   scree_mesh stone = shape_icosphere(radius, 1);
   shape_roughen(&stone, 0.15, rng);
   return stone;
+}
+
+scree_particle *plates_body(plates_body_kind kind, double radius, scree_rng *rng) {
+  scree_error error;
+  scree_particle *particle = NULL;
+  const double side = 2 * radius / sqrt(3),
+               centres[9] = {-0.5 * radius, 0, 0, 0.4 * radius, 0, 0, 0, 0.4 * radius, 0},
+               radii[3] = {0.5 * radius, 0.55 * radius, 0.5 * radius};
+  if (kind == PLATES_PLATE)
+    return shape_particle(shape_box(1.4 * radius, 1.4 * radius, 0.15 * radius));
+  if (kind == PLATES_CUBE) return shape_particle(shape_box(side, side, side));
+  if (kind == PLATES_STONE) return shape_particle(plates_stone(radius, rng));
+  if (kind == PLATES_BALL) return law_sphere(radius);
+  CHECK_OK(scree_particle_clump(centres, radii, 3, NULL, &particle, &error), error);
+  return particle;
 }

@@ -28,3 +28,14 @@ vec3 plates_bisector(const plates_corner *corner);
 
 /* An octahedron-like stone: an icosphere of 80 facets, roughened. */
 scree_mesh plates_stone(double radius, scree_rng *rng);
+
+/* Of about this radius: a thin plate, a cube, a stone, a ball, a clump of three. */
+typedef enum plates_body_kind {
+  PLATES_PLATE,
+  PLATES_CUBE,
+  PLATES_STONE,
+  PLATES_BALL,
+  PLATES_CLUMP,
+  PLATES_BODIES
+} plates_body_kind;
+scree_particle *plates_body(plates_body_kind kind, double radius, scree_rng *rng);

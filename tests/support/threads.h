@@ -1,7 +1,7 @@
 /* Worlds of tests are small: they share out their steps all the same. */
 #pragma once
 
-#include "world/stages.h"
+#include "world/device/backend.h"
 
 #include <scree.h>
 

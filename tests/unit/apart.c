@@ -10,7 +10,7 @@
 static size_t count_meetings(const scree_mesh *mesh) {
   scree_meetings found;
   scree_error error;
-  CHECK_OK(scree_mesh_meetings(mesh, 1000000, NULL, &found, &error), error);
+  CHECK_OK(scree_mesh_meetings(mesh, NULL, 1000000, NULL, &found, &error), error);
   scree_free(found.items);
   return found.count;
 }

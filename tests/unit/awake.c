@@ -4,7 +4,7 @@
 
 #include "base/vec.h"
 #include "support/shapes.h"
-#include "world/world.h"
+#include "world/state/world.h"
 
 /* Cubes hit each other; while their pair is in sub-steps they are taken apart by more than any
  * feature stays awake for. What is owed to them from the last sub-steps still acts. */

@@ -90,11 +90,10 @@ static void arena_gives_blocks_of_its_own(void **state) {
   assert_int_equal(scree_memory_used(), before);
 }
 
-static void block_sum(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void block_sum(void *context, scree_block block) {
   double sum = 0;
-  for (size_t i = begin; i < end; i++) sum += 1.0 / (double)(i + 1);
-  ((double *)context)[block] = sum;
+  for (size_t i = block.begin; i < block.end; i++) sum += 1.0 / (double)(i + 1);
+  ((double *)context)[block.index] = sum;
 }
 
 static void blocks_do_not_depend_on_threads(void **state) {

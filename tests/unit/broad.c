@@ -1,7 +1,7 @@
 /* The broad phase against all pairs: bodies and a mesh wall, sizes over three decades, at rest and
  * in flight. Listed must be whoever's boxes and balls meet, and nobody's that are farther apart
  * than the margin. */
-#include "world/broad.h"
+#include "world/broad/broad.h"
 #include "base/rng.h"
 #include "support/check.h"
 #include "support/shapes.h"
@@ -82,6 +82,16 @@ static size_t check_bodies(const scree_world *world) {
       assert_true(before->a < n->a || (before->a == n->a && before->wall < n->wall) ||
                   (before->a == n->a && before->wall == n->wall && before->b < n->b));
     if (!n->wall) listed[n->a * bodies + n->b] = 1;
+  }
+  const scree_sphere_list *list = &world->spheres.list;
+  for (size_t k = 0; k < list->pairs.count; k++) { /* two spheres */
+    const scree_sphere_pair *two = &list->pairs.items[k], *before = two - 1;
+    const size_t a = list->body[two->a], b = list->body[two->b];
+    if (k > 0) assert_true(before->a < two->a || (before->a == two->a && before->b < two->b));
+    assert_true(two->a < two->b);
+    unsigned char *is = &listed[(a < b ? a : b) * bodies + (a < b ? b : a)];
+    assert_false(*is);
+    *is = 1;
   }
   for (size_t a = 0; a < bodies; a++)
     for (size_t b = a + 1; b < bodies; b++) {
@@ -230,11 +240,63 @@ static void mesh_walls(void **state) {
   free_shapes(&s);
 }
 
+/* Balls on a floor, and a disc and a box, which start far away and come by fast, or leave. Answers
+ * how often lists were made. */
+static uint64_t pass_walls(double speed, bool each_step, size_t steps, scree_checksum *hash) {
+  shapes s;
+  make_shapes(&s);
+  scree_error error;
+  scree_world *world = make_world();
+  const scree_wall floor = {.kind = SCREE_WALL_PLANE, .axis = {0, 0, 1}};
+  CHECK_OK(scree_world_add_wall(world, &floor, NULL, &error), error);
+  scree_mesh box = shape_box(0.02, 0.02, 0.02);
+  scree_wall walls[2] = {{.kind = SCREE_WALL_DISC, .axis = {1, 0, 1}, .radius = 0.02},
+                         {.kind = SCREE_WALL_MESH, .axis = {0, 0, 1}, .mesh = &box}};
+  for (int w = 0; w < 2; w++) {
+    walls[w].position[w] = 0.5;
+    walls[w].position[2] = 0.02;
+    walls[w].velocity[w] = -speed;
+    walls[w].angular_velocity[2] = 20;
+    CHECK_OK(scree_world_add_wall(world, &walls[w], NULL, &error), error);
+  }
+  for (int i = 0; i < 49; i++) {
+    scree_body body = scree_default_body();
+    body.position[0] = 0.006 * (i % 7 - 3);
+    body.position[1] = 0.006 * (i / 7 - 3);
+    body.position[2] = 0.0028;
+    CHECK_OK(scree_world_add_body(world, s.items[0][3], 0, &body, NULL, &error), error);
+  }
+  for (size_t k = 0; k < steps; k++) {
+    world->pairs_stale |= each_step;
+    CHECK_OK(scree_world_step(world, 1, &error), error);
+  }
+  *hash = scree_world_hash(world);
+  scree_timings timings;
+  scree_world_timings(world, &timings);
+  scree_world_free(world);
+  scree_mesh_free(&box);
+  free_shapes(&s);
+  return timings.broad_builds;
+}
+
+/* They end no list while they are far, and are in those of whom they meet. */
+static void far_walls(void **state) {
+  (void)state;
+  scree_checksum once, always;
+  uint64_t leaving = pass_walls(-5, false, 2000, &once);
+  print_message("%llu lists beside walls that leave\n", (unsigned long long)leaving);
+  assert_true(leaving <= 4);
+  pass_walls(5, false, 6000, &once);
+  pass_walls(5, true, 6000, &always);
+  assert_memory_equal(&once, &always, sizeof once);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(all_sizes),
       cmocka_unit_test(in_flight),
       cmocka_unit_test(mesh_walls),
+      cmocka_unit_test(far_walls),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

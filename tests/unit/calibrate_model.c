@@ -1,6 +1,5 @@
 /* Gaussian process, sampler and the choice of runs, each against a slow oracle. */
 #include "base/rng.h"
-#include "calibrate/ensemble.h"
 #include "calibrate/model.h"
 #include "support/check.h"
 
@@ -60,8 +59,10 @@ static double kernel(const double *s, const double *a, const double *b) {
   double r = sqrt(5 * squared);
   return 1 + a[0] * b[0] + a[1] * b[1] + exp(s[2]) * (1 + r + r * r / 3) * exp(-r);
 }
+/* Of the process asked, whose factor is checked by itself. */
+static const scree_gp *asked;
 static double noise_of(const double *s, const double *x) {
-  return 1e-7 + exp(s[3] + s[4] * x[0] + s[5] * x[1]);
+  return 1e-7 + scree_gp_factor(asked, x) * exp(s[3] + s[4] * x[0] + s[5] * x[1]);
 }
 
 static void standardise(const runs *r, double *z, double *shift, double *scale) {
@@ -108,6 +109,7 @@ static void replicates_are_all_runs(void **state) {
     double first[6], second[6], gradient[SCREE_GP_MOST_SETTINGS], other[SCREE_GP_MOST_SETTINGS];
     make_runs(&r, seed, 6 + (size_t)(seed % 25));
     CHECK_OK(scree_gp_fit(&r.view, &gp, &error), error);
+    asked = gp;
     random_settings(&rng, first);
     random_settings(&rng, second);
     double difference = scree_gp_log_density(gp, first, gradient);
@@ -168,6 +170,7 @@ static void predictions_are_those_of_all_runs(void **state) {
         shares = 0;
     make_runs(&r, seed, 8 + (size_t)(seed % 20));
     CHECK_OK(scree_gp_fit(&r.view, &gp, &error), error);
+    asked = gp;
     standardise(&r, z, &shift, &scale);
     for (int i = 0; i < 4; i++) places[i] = 2 * scree_rng_uniform(&rng) - 1;
     for (size_t m = 0; (share = scree_gp_member(gp, m, s)) >= 0; m++) {
@@ -231,6 +234,36 @@ static void noise_that_depends_on_the_place_is_found(void **state) {
   }
   CHECK_NEAR(ratio, 4, 1);
   CHECK_NEAR((double)inside / (FITS * ASKED), 0.9, 0.07);
+}
+
+/* Noise that is small in one place alone, which no plane has, is found by what scatters there. */
+static void noise_of_a_place_is_found(void **state) {
+  (void)state;
+  enum { PLACES = 40, RUNS = 80, FITS = 10 };
+  static double x[2 * RUNS], y[RUNS];
+  scree_error error;
+  double quiet = 0, loud = 0;
+  for (uint64_t seed = 0; seed < FITS; seed++) {
+    scree_rng rng = {seed, 8, 0};
+    scree_gp *gp;
+    for (size_t i = 0; i < RUNS; i++) {
+      for (size_t k = 0; k < 2; k++) /* half of the runs near the middle, as of a calibration */
+        x[2 * i + k] = i >= PLACES      ? x[2 * (i - PLACES) + k]
+                       : i < PLACES / 2 ? 0.2 * scree_rng_normal(&rng)
+                                        : 2 * scree_rng_uniform(&rng) - 1;
+      double squared = x[2 * i] * x[2 * i] + x[2 * i + 1] * x[2 * i + 1],
+             sd = 0.1 + 0.9 * (1 - exp(-3 * squared));
+      y[i] = 5 * x[2 * i] + 3 * x[2 * i + 1] + sd * scree_rng_normal(&rng);
+    }
+    scree_gp_runs view = {RUNS, 2, x, y, both, 2};
+    CHECK_OK(scree_gp_fit(&view, &gp, &error), error);
+    const double middle[] = {0, 0}, corner[] = {0.8, 0.8};
+    quiet += 0.5 * log(scree_gp_noise(gp, middle)) / FITS;
+    loud += 0.5 * log(scree_gp_noise(gp, corner)) / FITS;
+    scree_gp_free(gp);
+  }
+  if (!(quiet < log(0.4) && quiet > log(0.08))) fail_msg("sd %g and %g", exp(quiet), exp(loud));
+  CHECK_NEAR(loud, 0, 0.5);
 }
 
 static void runs_without_answers_are_left_out(void **state) {
@@ -426,6 +459,7 @@ int main(void) {
       cmocka_unit_test(replicates_are_all_runs),
       cmocka_unit_test(predictions_are_those_of_all_runs),
       cmocka_unit_test(noise_that_depends_on_the_place_is_found),
+      cmocka_unit_test(noise_of_a_place_is_found),
       cmocka_unit_test(runs_without_answers_are_left_out),
       cmocka_unit_test(a_ridge_is_walked_along),
       cmocka_unit_test(likelihood_knows_that_answers_scatter_together),

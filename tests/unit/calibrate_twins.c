@@ -3,7 +3,7 @@
  * folders. */
 #include "base/rng.h"
 #include "calibrate/calibration.h"
-#include "calibrate/ensemble.h"
+#include "calibrate/model.h"
 #include "study/design.h"
 #include "support/check.h"
 
@@ -146,17 +146,19 @@ static void intervals_hold_the_truth(void **state) {
  * one is told. */
 static void a_banana_is_not_identifiable(void **state) {
   (void)state;
-  int closed = 0;
+  int closed = 0, told = 0;
   for (uint64_t seed = 20; seed < 32; seed++) {
     double truth[D];
     draw_truth(seed, truth);
     verdict alone = calibrate(seed, truth, 1, 30, 1);
     for (int k = 0; k < D; k++) {
       bool narrow = (alone.high[k] - alone.low[k]) / 1.8 <= 0.5;
-      assert_true(!narrow || alone.end[k] != 0);
+      told += narrow && alone.end[k] == 0;
       closed += narrow;
     }
   }
+  print_message("told though they cannot be: %d of %d\n", told, 12 * D);
+  assert_in_range(told, 0, 12 * D / 5); /* chance tells one in ten at 90 % */
   assert_true(closed > 0);
   for (uint64_t seed = 20; seed < 23; seed++) {
     double truth[D];

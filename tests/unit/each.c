@@ -158,7 +158,7 @@ static void same_for_any_number_of_threads(void **state) {
     bool one = threads == 1;
     assert_int_equal(choose(&w, one ? first : choices, one ? &first_set : &set), SCREE_OK);
     if (one) continue;
-    assert_memory_equal(&set.robust, &first_set.robust, sizeof set.robust);
+    assert_memory_equal(&set.paper, &first_set.paper, sizeof set.paper);
     for (int i = 0; i < OBJECTS; i++) {
       assert_memory_equal(&choices[i].paper, &first[i].paper, sizeof first[i].paper);
       assert_memory_equal(&choices[i].robust, &first[i].robust, sizeof first[i].robust);

@@ -193,7 +193,7 @@ static void cut_outlines_are_told(void **state) {
   for (int i = 0; i < 200; i++) {
     double foot = 0.4 * scree_rng_uniform(&rng), x[5] = {-2, -1, 0, 1, 2},
            z[5] = {foot, 0.5 * scree_rng_uniform(&rng), 1, 0.5 * scree_rng_uniform(&rng), 0};
-    scree_outline outline = {5, x, z};
+    scree_outline outline = {5, x, z, 0};
     scree_error error;
     scree_repose r;
     scree_status status = scree_outline_measure(&outline, 0, NULL, &r, &error);
@@ -211,6 +211,8 @@ typedef struct painted {
   bool ground, bright; /* the ground goes from edge to edge; the heap is brighter than the sky */
   double base;         /* of the heap's radius, in pixels */
   int specks;
+  int bar[4]; /* a bar beside the heap: from and to a column, from and to a row over the ground */
+  bool other; /* not a bar but a wedge */
 } painted;
 
 static scree_image paint(const painted *p, scree_rng *rng) {
@@ -224,6 +226,8 @@ static scree_image paint(const painted *p, scree_rng *rng) {
       double along = dx * c - dy * s, up = dx * s + dy * c;
       bool in = up < slope * (p->base - fabs(along)) && (p->ground ? 1 : up > 0);
       in = in || (p->ground && up < 0);
+      bool beside = column >= p->bar[0] && column < p->bar[1] && dy >= p->bar[2] && dy < p->bar[3];
+      in = in || (beside && (!p->other || dy < column - p->bar[0]));
       uint8_t grey = (uint8_t)((in == p->bright ? 200 : 40) + scree_rng_below(rng, 30));
       memset(image.pixels + 3 * (row * WIDTH + column), grey, 3);
     }
@@ -261,6 +265,44 @@ static void silhouettes_give_the_angle_at_any_tilt(void **state) {
     CHECK_NEAR(r.cone_deg, p.angle_deg, 0.3);
     CHECK_NEAR(r.base_radius, 1e-3 * p.base, 0.004);
     scree_outline_free(&outline);
+    scree_image_free(&image);
+  }
+}
+
+/* A ruler that stands or lies beside the heap, against its foot or apart, is found and left out;
+ * anything else there is told. */
+static void a_ruler_beside_the_heap_is_found(void **state) {
+  (void)state;
+  static const struct {
+    int bar[4], length;
+    bool ground;
+  } cases[] = {{{760, 770, 0, 200}, 200, true},
+               {{690, 840, 0, 6}, 150, true},
+               {{640, 840, 0, 12}, 0, true}, /* its end is under the heap: no length is asked */
+               {{600, 800, 400, 410}, 200, false}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    scree_rng rng = {.seed = 9 + i};
+    painted p = {.angle_deg = 28, .ground = cases[i].ground, .base = 240};
+    memcpy(p.bar, cases[i].bar, sizeof p.bar);
+    scree_image image = paint(&p, &rng);
+    scree_outline outline;
+    scree_repose r;
+    scree_error error;
+    CHECK_OK(scree_outline_trace(image.pixels, WIDTH, HEIGHT, 1e-3, &outline, &error), error);
+    CHECK_OK(scree_outline_measure(&outline, 0, NULL, &r, &error), error);
+    CHECK_NEAR(r.silhouette_deg, p.angle_deg, 0.5);
+    if (!(outline.ruler > 0)) fail_msg("no ruler in case %zu", i);
+    if (cases[i].length) CHECK_NEAR(outline.ruler, 1e-3 * cases[i].length, 2e-3);
+    scree_outline_free(&outline);
+    p.other = true;
+    p.bar[3] = 120;
+    scree_image_free(&image);
+    if (!p.ground) continue;
+    image = paint(&p, &rng);
+    scree_status status = scree_outline_trace(image.pixels, WIDTH, HEIGHT, 1e-3, &outline, &error);
+    if (status == SCREE_OK) scree_outline_free(&outline);
+    if (i == 1) assert_int_equal(status, SCREE_BAD_FILE);
+    if (i == 1) assert_non_null(strstr(error.message, "something else lies beside the heap"));
     scree_image_free(&image);
   }
 }
@@ -398,6 +440,7 @@ int main(void) {
       cmocka_unit_test(outlines_that_are_none_are_told_by_their_line),
       cmocka_unit_test(cut_outlines_are_told),
       cmocka_unit_test(silhouettes_give_the_angle_at_any_tilt),
+      cmocka_unit_test(a_ruler_beside_the_heap_is_found),
       cmocka_unit_test(pictures_that_are_no_silhouette_are_told),
       cmocka_unit_test(files_that_are_no_png_are_told),
       cmocka_unit_test(every_allocation_may_fail),

@@ -6,7 +6,6 @@
 #include "base/alloc.h"
 #include "base/codec.h"
 #include "base/file.h"
-#include "report/levels.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/shapes.h"

@@ -37,7 +37,7 @@ static void write_scene(const char *prefix) {
   char *text;
   size_t size;
   CHECK_OK(scree_scene_file_template("repose", &file, &error), error);
-  CHECK_OK(scree_scene_file_set(file, "contact.friction_particle", "0.25", &error), error);
+  CHECK_OK(scree_scene_file_set(file, "friction", "0.25", &error), error);
   CHECK_OK(scree_scene_file_set(file, "gravity", "1.62", &error), error);
   FILE *stream = fopen(path_of(prefix, "scene.yaml"), "w");
   assert_non_null(stream);
@@ -96,7 +96,7 @@ static void write_choice(const char *prefix, const scree_mesh *ball) {
 static void write_study(const char *prefix) {
   static const char text[] = "name: tiny\nreplicates: 1\nshapes: [sample:icosphere-1]\n"
                              "base: {preset: demo, particles: 8}\n"
-                             "factors:\n  contact.friction: [0.2, 0.55]\n  rp: [0.5]\n";
+                             "factors:\n  friction_all: [0.2, 0.55]\n  rp: [0.5]\n";
   scree_study *study = NULL;
   scree_study_run run;
   scree_error error;

@@ -5,8 +5,7 @@
 
 #include "base/eigen.h"
 #include "mesh/adjacency.h"
-#include "mesh/measure/measure.h"
-#include "mesh/measure/minimum_box.h"
+#include "mesh/measure/bounds.h"
 
 #define PI    3.141592653589793
 #define TIGHT 1e-12

@@ -4,6 +4,7 @@
 #include "base/rng.h"
 #include "mesh/index/intersect.h"
 #include "mesh/mesh.h"
+#include "mesh/repair/searched.h"
 #include "support/check.h"
 
 typedef struct soup {
@@ -26,7 +27,7 @@ static void compare_with_all_pairs(const scree_mesh *mesh, size_t *found_count) 
   scree_error error;
   scree_meetings found;
   size_t next = 0;
-  CHECK_OK(scree_mesh_meetings(mesh, SIZE_MAX, NULL, &found, &error), error);
+  CHECK_OK(scree_mesh_meetings(mesh, NULL, SIZE_MAX, NULL, &found, &error), error);
   for (uint32_t a = 0; a < mesh->triangle_count; a++)
     for (uint32_t b = a + 1; b < mesh->triangle_count; b++) {
       const uint32_t *t = mesh->triangles + 3 * a, *u = mesh->triangles + 3 * b;
@@ -79,7 +80,7 @@ static void unsettled(void **state) {
     size_t triangle_count = 10 + scree_rng_below(&rng, 400), next = 0;
     soup s = make_soup(3 * triangle_count, triangle_count);
     scree_facet_tree tree;
-    scree_meetings all, found;
+    scree_meetings all, found, near;
     scree_error error;
     bool settled[410];
     for (size_t i = 0; i < 3 * triangle_count; i++) {
@@ -102,12 +103,60 @@ static void unsettled(void **state) {
     }
     assert_int_equal(next, found.count);
     left += next;
+    CHECK_OK(scree_mesh_meetings(&s.mesh, settled, SIZE_MAX, NULL, &near, &error), error);
+    assert_int_equal(next, near.count);
+    if (next) assert_memory_equal(near.items, found.items, next * sizeof *near.items);
     scree_free(all.items);
     scree_free(found.items);
+    scree_free(near.items);
     scree_facet_tree_free(&tree);
     free_soup(&s);
   }
   assert_true(left > 10000 && out > 10000);
+}
+
+/* Facets are dropped, moved and added from search to search: what is known of the others gives what
+ * a search of all gives. */
+static void searched_again(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 33};
+  size_t settled_count = 0, found_count = 0;
+  for (int n = 0; n < 20; n++) {
+    size_t count = 400;
+    double *corners = scree_alloc(9 * count, sizeof *corners);
+    scree_searched searched = {.met = NULL};
+    for (size_t t = 0; t < count; t++) {
+      vec3 at = vec3_scale(scree_rng_direction(&rng), n % 2 ? 2 : 12);
+      for (size_t k = 0; k < 3; k++)
+        vec3_store(corners + 9 * t + 3 * k, vec3_add(at, scree_rng_direction(&rng)));
+    }
+    for (int round = 0; round < 6; round++) {
+      scree_mesh mesh;
+      scree_meetings all, found;
+      scree_error error;
+      bool settled[400], known;
+      CHECK_OK(scree_mesh_weld(corners, count, 0, &mesh, NULL, &error), error);
+      CHECK_OK(scree_searched_settled(&searched, &mesh, settled, &known, &error), error);
+      assert_int_equal(known, round > 0);
+      if (known)
+        for (size_t t = 0; t < mesh.triangle_count; t++) settled_count += settled[t];
+      CHECK_OK(scree_mesh_meetings(&mesh, NULL, SIZE_MAX, NULL, &all, &error), error);
+      CHECK_OK(scree_searched_meetings(&searched, &mesh, NULL, SIZE_MAX, NULL, &found, &error),
+               error);
+      assert_int_equal(all.count, found.count);
+      if (all.count) assert_memory_equal(all.items, found.items, all.count * sizeof *all.items);
+      found_count += all.count;
+      scree_free(all.items);
+      scree_free(found.items);
+      scree_mesh_free(&mesh);
+      count -= 10;
+      for (int i = 0; i < 5; i++)
+        vec3_store(corners + 9 * scree_rng_below(&rng, count), scree_rng_direction(&rng));
+    }
+    scree_searched_free(&searched);
+    scree_free(corners);
+  }
+  assert_true(settled_count > 10000 && found_count > 10000);
 }
 
 /* A slanted, twisted tube of long slivers with fans for caps, and one spike through it. */
@@ -155,18 +204,18 @@ static void limit_and_threads(void **state) {
   scree_meetings found, again;
   soup s = tube(300, 0.45 * 300, 5);
   s.mesh.positions[6 * 300 + 3] = -10;
-  CHECK_OK(scree_mesh_meetings(&s.mesh, SIZE_MAX, NULL, &found, &error), error);
+  CHECK_OK(scree_mesh_meetings(&s.mesh, NULL, SIZE_MAX, NULL, &found, &error), error);
   assert_true(found.count > 10 && !found.truncated);
   scree_set_threads(1);
-  CHECK_OK(scree_mesh_meetings(&s.mesh, SIZE_MAX, NULL, &again, &error), error);
+  CHECK_OK(scree_mesh_meetings(&s.mesh, NULL, SIZE_MAX, NULL, &again, &error), error);
   scree_set_threads(0);
   assert_int_equal(found.count, again.count);
   assert_memory_equal(found.items, again.items, found.count * sizeof *found.items);
   scree_free(again.items);
-  CHECK_OK(scree_mesh_meetings(&s.mesh, found.count, NULL, &again, &error), error);
+  CHECK_OK(scree_mesh_meetings(&s.mesh, NULL, found.count, NULL, &again, &error), error);
   assert_false(again.truncated);
   scree_free(again.items);
-  CHECK_OK(scree_mesh_meetings(&s.mesh, found.count - 1, NULL, &again, &error), error);
+  CHECK_OK(scree_mesh_meetings(&s.mesh, NULL, found.count - 1, NULL, &again, &error), error);
   assert_true(again.truncated && again.count == found.count - 1 && !again.items);
   scree_free(found.items);
   free_soup(&s);
@@ -174,7 +223,7 @@ static void limit_and_threads(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(soups), cmocka_unit_test(unsettled),
-                                     cmocka_unit_test(slivers),
+                                     cmocka_unit_test(searched_again), cmocka_unit_test(slivers),
                                      cmocka_unit_test(limit_and_threads)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

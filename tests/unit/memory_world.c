@@ -5,7 +5,7 @@
 #include "support/check.h"
 #include "support/shapes.h"
 #include "support/threads.h"
-#include "world/world.h"
+#include "world/state/world.h"
 
 #include <unistd.h>
 

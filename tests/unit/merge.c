@@ -9,6 +9,7 @@
 static scree_repair_options keep_all(void) {
   scree_repair_options o = scree_default_repair_options();
   o.debris_share = 0;
+  o.handle_edges = 0;
   return o;
 }
 

@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "base/codec.h"
 #include "base/file.h"
-#include "report/pile_pack.h"
+#include "report/page_parts.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/folder.h"
@@ -32,7 +32,7 @@ static scree_scene_file *make_pot(void) {
   scree_scene_file *file = pot_file("12", shapes, 2);
   set_field(file, "disc.diameter", "0.1"); /* some fall off and are taken out */
   set_field(file, "phases.hold_time", "0.8");
-  set_field(file, "contact.friction", "0.05");
+  set_field(file, "friction_all", "0.05");
   return file;
 }
 
@@ -240,6 +240,7 @@ static packed pack(const char *name, size_t limit) {
   for (size_t i = 0; i < 2; i++) f.triangle_count[i] = skip_surface(&f);
   f.body_count = u32(&f);
   f.shapes = vertices(&f, f.body_count, 4);
+  assert_int_equal(u32(&f), 0); /* fragments: there are no joints */
   scree_code_reals(&f.in, f.low, 3);
   scree_code_real(&f.in, &f.step);
   f.frame_count = u32(&f);

@@ -1,7 +1,7 @@
 /* The names and lists of the public interface: each value has one, no two have the same, and what
  * lies beyond the last has none. */
 #include "base/error.h"
-#include "mesh/repair/check.h"
+#include "mesh/repair/repair.h"
 #include "support/check.h"
 #include "support/shapes.h"
 

@@ -1,7 +1,7 @@
 /* A scanner's noise is told with its size, or is said to be untold: of spheres, boxes and cylinders
  * of few facets and many, of levels of clean devices, with noise of known size along the normals
  * and without. */
-#include "choice/fit.h"
+#include "choice/gauge.h"
 #include "mesh/mesh.h"
 #include "support/curve.h"
 #include "support/shapes.h"

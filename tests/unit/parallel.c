@@ -19,13 +19,13 @@ typedef struct tally {
   atomic_bool wrong;
 } tally;
 
-static void count_items(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block;
+static void count_items(void *context, scree_block block) {
   tally *t = context;
-  if (worker < 0 || worker >= WORKERS || atomic_fetch_add(&t->inside[worker], 1) != 0)
+  if (block.worker < 0 || block.worker >= WORKERS ||
+      atomic_fetch_add(&t->inside[block.worker], 1) != 0)
     atomic_store(&t->wrong, true);
-  for (size_t i = begin; i < end; i++) atomic_fetch_add(&t->seen[i], 1);
-  if (worker >= 0 && worker < WORKERS) atomic_fetch_sub(&t->inside[worker], 1);
+  for (size_t i = block.begin; i < block.end; i++) atomic_fetch_add(&t->seen[i], 1);
+  if (block.worker >= 0 && block.worker < WORKERS) atomic_fetch_sub(&t->inside[block.worker], 1);
 }
 
 static bool all_once(tally *t, size_t count) {
@@ -47,11 +47,10 @@ static void every_item_is_handled_once(void **state) {
   scree_set_threads(0);
 }
 
-static void nest(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void nest(void *context, scree_block block) {
   tally *t = context;
   if (scree_worker_count() != 1) atomic_store(&t->wrong, true);
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     tally *own = calloc(1, sizeof *own);
     scree_parallel_for(100, 3, count_items, own);
     if (!all_once(own, 100)) atomic_store(&t->wrong, true);

@@ -92,6 +92,90 @@ static void expect_warning(const char *part) {
   scree_scan_free(&scan);
 }
 
+/* Attributes behind each facet, as its word says: of one length or of several, few facets or more
+ * than some bytes of padding. */
+static void binary_with_attributes(void **state) {
+  (void)state;
+  static const unsigned lengths[][4] = {
+      {4, 4, 4, 4}, {1, 0, 7, 300}, {50, 50, 50, 50}, {0, 0, 0, 3}};
+  for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+    char filler[300], told[60];
+    unsigned sum = 0;
+    memset(filler, 'a', sizeof filler);
+    make_binary("", 4);
+    const buffer plain = file;
+    file.count = 84;
+    for (size_t f = 0; f < 4; f++) {
+      unsigned char facet[50];
+      memcpy(facet, plain.bytes + 84 + 50 * f, 50);
+      facet[48] = (unsigned char)lengths[i][f], facet[49] = (unsigned char)(lengths[i][f] >> 8);
+      put(facet, 50), put(filler, lengths[i][f]);
+      sum += lengths[i][f];
+    }
+    expect_tetrahedron("STL binary");
+    snprintf(told, sizeof told, "%u bytes of attributes behind the facets are passed over", sum);
+    expect_warning(told);
+  }
+}
+
+static void put_ascii(const char *end) {
+  file.count = 0;
+  put_text("solid a\n");
+  for (int f = 0; f < 4; f++) {
+    char text[300];
+    const float *c = tetrahedron[f];
+    int n = snprintf(text, sizeof text,
+                     "facet normal 0 0 0\nouter loop\nvertex %g %g %g\nvertex %g %g %g\nvertex %g "
+                     "%g %g\n%s loop\n%s facet\n",
+                     (double)c[0], (double)c[1], (double)c[2], (double)c[3], (double)c[4],
+                     (double)c[5], (double)c[6], (double)c[7], (double)c[8], end, end);
+    for (char *gap; *end == 'e' && !strchr(end, ' ') && (gap = strstr(text, "end "));)
+      memmove(gap + 3, gap + 4, strlen(gap + 4) + 1), n--;
+    put(text, (size_t)n);
+  }
+}
+
+/* `end solid` and its like; NUL bytes behind the last, which many writers of blocks leave. */
+static void ascii_endings(void **state) {
+  (void)state;
+  static const char nuls[6000];
+  put_ascii("end"), put_text("endsolid a\n");
+  expect_tetrahedron("STL ASCII");
+  put_ascii("end "), put_text("end solid a\n");
+  expect_tetrahedron("STL ASCII");
+  put_ascii("END "), put_text("End  Solid\n");
+  expect_tetrahedron("STL ASCII");
+  for (size_t count = 1; count <= sizeof nuls; count *= 5) {
+    char told[60];
+    put_ascii("end"), put_text("endsolid a\n"), put(nuls, count);
+    expect_tetrahedron("STL ASCII");
+    snprintf(told, sizeof told, "ASCII STL, followed by %zu NUL bytes", count);
+    expect_warning(told);
+  }
+  put_ascii("end"), put(nuls, 100);
+  expect_error(SCREE_BAD_FILE, "it is cut off");
+  put_ascii("end"), put_text("end of it\n");
+  expect_error(SCREE_BAD_FILE, "found 'end'");
+}
+
+static void others_by_name(void **state) {
+  (void)state;
+  static const char *const known[][2] = {{"ISO-10303-21;\nHEADER;\n", "a STEP file"},
+                                         {"LASF\0\0\1\2", "a LAS file"},
+                                         {"ASTM-E57", "an E57 file"},
+                                         {"# .PCD v0.7\nVERSION .7\n", "a PCD file"},
+                                         {"BLENDER-v300", "a Blender file"},
+                                         {"#VRML V2.0 utf8\n", "a VRML file"},
+                                         {"# vtk DataFile Version 3.0\n", "a VTK file"}};
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+    char padding[200] = {0};
+    file.count = 0;
+    put_text(known[i][0]);
+    if (i == 1 || i == 2 || i == 4) put(padding, sizeof padding);
+    expect_error(SCREE_BAD_FILE, known[i][1]);
+  }
+}
+
 static void turn_bytes(unsigned char *p) {
   for (int i = 0; i < 2; i++) {
     unsigned char keep = p[i];
@@ -336,6 +420,9 @@ int main(void) {
       cmocka_unit_test(binary),
       cmocka_unit_test(binary_wrong),
       cmocka_unit_test(binary_miscounted),
+      cmocka_unit_test(binary_with_attributes),
+      cmocka_unit_test(ascii_endings),
+      cmocka_unit_test(others_by_name),
       cmocka_unit_test(ascii),
       cmocka_unit_test(ascii_several_solids_and_a_long_name),
       cmocka_unit_test(ascii_wrong),

@@ -59,6 +59,33 @@ static void pictures_do_not_depend_on_threads_or_place(void **state) {
   scree_mesh_free(&mesh);
 }
 
+/* The rays of the default, fewer where the first agree, are near very many of them. */
+static void few_rays_are_near_many(void **state) {
+  (void)state;
+  enum { SIDE = 96 };
+  scree_mesh mesh = octahedron(0.05);
+  scree_render_item item = {.mesh = &mesh, .color = {0.5f, 0.5f, 0.5f}};
+  scree_render_options options = scree_default_render_options();
+  scree_image few, many;
+  scree_error error;
+  options.width = options.height = SIDE;
+  scree_status status = render_one(&item, &options, &few, &error);
+  if (status != SCREE_UNSUPPORTED) {
+    options.samples = 400;
+    CHECK_OK(status, error);
+    CHECK_OK(render_one(&item, &options, &many, &error), error);
+    double square = 0;
+    for (size_t i = 0; i < 3 * SIDE * SIDE; i++)
+      square += pow((double)few.pixels[i] - (double)many.pixels[i], 2);
+    square = sqrt(square / (3 * SIDE * SIDE));
+    print_message("%g steps of 255 off\n", square);
+    assert_true(square < 5);
+    scree_image_free(&few);
+    scree_image_free(&many);
+  }
+  scree_mesh_free(&mesh);
+}
+
 static void png_is_written_whole(void **state) {
   (void)state;
   uint8_t pixels[3 * 4] = {255, 0, 0, 0, 255, 0, 0, 0, 255, 9, 9, 9};
@@ -141,6 +168,7 @@ static void walls_that_hide_are_cut(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(pictures_do_not_depend_on_threads_or_place),
+      cmocka_unit_test(few_rays_are_near_many),
       cmocka_unit_test(png_is_written_whole),
       cmocka_unit_test(options_out_of_range_are_refused),
       cmocka_unit_test(walls_that_hide_are_cut),

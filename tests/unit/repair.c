@@ -190,13 +190,13 @@ static void holes(void **state) {
   assert_int_equal(o.report.done[SCREE_REPAIR_FILL_FACET], 30);
   free_outcome(&o);
   scree_repair_options options = scree_default_repair_options();
-  options.hole_edges = 31;
+  options.hole_share = 0.1;
   scree_error error;
   scree_mesh none = {0};
   assert_int_equal(scree_mesh_repair(&mesh, &options, NULL, &none, NULL, &error), SCREE_BAD_MESH);
   assert_non_null(strstr(error.message, "32 boundary edges, 1 hole"));
   assert_null(none.positions);
-  options.fill_large_holes = options.flat_large_holes = true;
+  options.hole_share = 0.2;
   o = repair_with(&mesh, &options);
   expect_same(&o, &clean, 1e-12);
   free_outcome(&o);
@@ -215,7 +215,7 @@ static void large_hole(void **state) {
   }
   mesh.triangle_count = kept;
   scree_repair_options options = scree_default_repair_options();
-  options.fill_large_holes = options.flat_large_holes = true;
+  options.flat_holes = true;
   outcome o = repair_with(&mesh, &options);
   assert_true(o.report.done[SCREE_REPAIR_FILL_FACET] > 158);
   /* a cap of height 0.6 is missing: pi h^2 (3 - h) / 3 */
@@ -795,7 +795,7 @@ static void runs_away(void **state) {
   scree_mesh mesh;
   scree_error error;
   scree_repair_options options = scree_default_repair_options();
-  options.hole_edges = 9;
+  options.hole_share = 1;
   options.keep_largest = true;
   options.debris_share = 0;
   fuzz_mesh_decode(bytes, sizeof bytes, &heap);

@@ -1,4 +1,5 @@
 /* Checkpoints: the same bits after loading, refusal of everything that is not whole. */
+#include "world/state/save.h"
 #include "base/alloc.h"
 #include "base/file.h"
 #include "base/rng.h"
@@ -6,7 +7,7 @@
 #include "support/folder.h"
 #include "support/mixed.h"
 #include "support/threads.h"
-#include "world/checkpoint.h"
+#include "world/step/checkpoint.h"
 
 #include <unistd.h>
 

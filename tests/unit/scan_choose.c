@@ -39,7 +39,7 @@ static const expectation files[] = {
     {"ugly_multibody_ascii.stl", NULL},
     {"ugly_soup.stl", "300 boundary edges, 100 holes, 1248 crossing pairs"},
     {"ugly_spider_ascii.stl", NULL},
-    {"scan_birdbath_sfm.ply", "722 boundary edges, 1 hole"},
+    {"scan_birdbath_sfm.ply", "a repair would change the volume by 13 %"},
     {"stone_073ac.ply", NULL},
     {"stone_0_320.ply", NULL},
     {"stone_E22.ply", NULL},
@@ -102,7 +102,7 @@ static faults find_faults(const scree_mesh *mesh) {
   scree_topology topology;
   scree_error error;
   CHECK_OK(scree_mesh_topology(mesh, &topology, &error), error);
-  CHECK_OK(scree_mesh_meetings(mesh, 1000, NULL, &met, &error), error);
+  CHECK_OK(scree_mesh_meetings(mesh, NULL, 1000, NULL, &met, &error), error);
   scree_free(met.items);
   return (faults){count_folds(mesh), topology.degenerate_facet_count, met.count};
 }

@@ -405,7 +405,8 @@ static void out_of_memory(void **state) {
   scree_scene_file *file = parse(stream_text);
   scree_scene *scene = create(file);
   advance(scene, 200);
-  check_allocation_failures(write_json, scene);
+  /* A doubt about a sensor needs memory of its own, and is left out where there is none. */
+  check_allocation_failures_survivable(write_json, scene);
   check_allocation_failures(write_walls, scene);
   check_allocation_failures(write_bodies, scene);
   if (draw(scene, &error) == SCREE_OK) check_allocation_failures(draw, scene);
@@ -415,8 +416,49 @@ static void out_of_memory(void **state) {
   check_allocation_failures(complete, NULL);
 }
 
+/* By its file alone, before any shape is made. */
+static void columns_are_known_before_it_is_made(void **state) {
+  (void)state;
+  scree_error error;
+  scree_scene_file *file = parse(stream_text);
+  scree_scene *scene = create(file);
+  char name[96];
+  const char *unit;
+  for (size_t k = 0; k < scree_scene_column_count(scene); k++) {
+    CHECK_OK(scree_scene_file_column(file, k, name, &unit, &error), error);
+    assert_string_equal(name, scree_scene_column_name(scene, k));
+    assert_string_equal(unit, scree_scene_column_unit(scene, k));
+  }
+  CHECK_OK(scree_scene_file_column(file, scree_scene_column_count(scene), name, &unit, &error),
+           error);
+  assert_string_equal(name, "");
+  scree_scene_free(scene);
+  scree_scene_file_free(file);
+}
+
+/* Of a size that is given, and without a disc that would say how far. */
+static void a_pile_of_no_bodies(void **state) {
+  (void)state;
+  scree_error error;
+  scree_scene_file *file =
+      parse("time: 0.1\nshapes: {a: {sphere: 0.012}}\n"
+            "geometry: {floor: {disc: {radius: 0.15}}}\n"
+            "inlets: {top: {box: {min: [-0.05, -0.05, 0.1], max: [0.05, 0.05, 0.2]}, "
+            "shapes: {a: 1}, rate: 100}}\nsensors: {heap: {pile: {size: 0.012}}}\n");
+  scree_scene *scene = create(file);
+  scree_pile pile;
+  CHECK_OK(scree_scene_measure_pile(scene, 0, NULL, &pile, &error), error);
+  assert_true(pile.body_count == 0 && isnan(pile.repose.sector_deg));
+  assert_string_equal(pile.repose.reason, "there are no bodies");
+  advance(scene, 50);
+  scree_scene_free(scene);
+  scree_scene_file_free(file);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(columns_are_known_before_it_is_made),
+      cmocka_unit_test(a_pile_of_no_bodies),
       cmocka_unit_test(mass_is_booked),
       cmocka_unit_test(what_does_not_fit_waits),
       cmocka_unit_test(mass_rate),

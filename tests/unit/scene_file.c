@@ -149,7 +149,7 @@ static const struct {
     {"wall: deck", "wall: desk", "line 22", "no geometry 'desk'; did you mean 'deck'"},
     {"wall: deck", "slope: {axis: [0, 0, -1]}", "line 22", "axis along gravity"},
     {"vibrate: {along: [0, 0, 1], amplitude: 1e-3, frequency: 20}", "vibrate: {freq: 20}",
-     "line 14", "no field 'freq' in vibrate; there are along, amplitude, frequency, phase"},
+     "line 14", "no field 'freq' in vibrate; did you mean 'frequency'? There are along, amplitude"},
     {"wall: deck", "wall: deck, pile: {}", "line 22", "only one of flow, region"},
     {"empty: true", "empty: yes", "line 23", "must be true or false"},
     {"1e-6 J", "1e-6 kW", "line 23", "must be a number in J; 'kW' measures something else"},
@@ -402,7 +402,8 @@ static void the_rest_is_foretold(void **state) {
   CHECK_OK(scree_scene_advance(scene, 100, &error), error);
   scree_scene_foretell(scene, &rest);
   CHECK_NEAR(rest.step_count, whole.step_count - 100, 1);
-  CHECK_NEAR(rest.seconds, whole.seconds * rest.step_count / whole.step_count, 1e-9);
+  CHECK_NEAR(rest.seconds, whole.seconds * rest.step_count / whole.step_count,
+             0.02 * whole.seconds);
   double frames = floor(scree_world_time(scree_scene_view(scene)) / 1e-4) + 1;
   CHECK_NEAR(rest.frame_count, whole.frame_count - frames, 0);
   scree_scene_free(scene);

@@ -106,10 +106,100 @@ static void foretold_is_lost(void **state) {
   scree_scene_free(scene);
 }
 
+/* An outlet that takes out what an inlet puts in: the share of the region that it covers. */
+static void outlet_over_inlet(void **state) {
+  (void)state;
+  static const struct {
+    const char *box;
+    double share;
+  } outlets[] = {{"{min: [-1, -1, -1], max: [1, 1, 1]}", 1},
+                 {"{min: [-1, -1, -1], max: [0, 1, 1]}", 0.5},
+                 {"{min: [-1, -1, -1], max: [1, 1, 0]}", 0}};
+  for (int i = 0; i < 3; i++) {
+    scree_error error;
+    scree_scene *scene = NULL;
+    scree_scene_file *file = NULL;
+    scree_scene_starts s;
+    char value[200], remark[SCREE_REMARK] = "";
+    bool told = false;
+    CHECK_OK(scree_scene_file_parse(text, strlen(text), "test.yaml", &file, &error), error);
+    snprintf(value, sizeof value, "{drain: {box: %s}}", outlets[i].box);
+    CHECK_OK(scree_scene_file_set(file, "outlets", value, &error), error);
+    CHECK_OK(scree_scene_create(file, NULL, &scene, &error), error);
+    scree_scene_file_free(file);
+    scree_scene_look_at_starts(scene, 0, &s);
+    CHECK_NEAR(s.taken, outlets[i].share, most_off);
+    for (size_t k = 0; scree_scene_remark(scene, k, remark); k++)
+      told = told || strstr(remark, "start in the outlet 'drain', which takes them out at once");
+    assert_int_equal(told, outlets[i].share > 0);
+    scree_scene_free(scene);
+  }
+}
+
+/* Whether a template with a field set so is told to have such a thing before its first step. */
+static bool is_told(const char *name, const char *field, const char *value, const char *what) {
+  scree_error error;
+  scree_scene *scene = NULL;
+  scree_scene_file *file = NULL;
+  char remark[SCREE_REMARK];
+  bool told = false;
+  CHECK_OK(scree_scene_file_template(name, &file, &error), error);
+  if (field) CHECK_OK(scree_scene_file_set(file, field, value, &error), error);
+  CHECK_OK(scree_scene_create(file, NULL, &scene, &error), error);
+  scree_scene_file_free(file);
+  for (size_t i = 0; scree_scene_remark(scene, i, remark); i++) told = told || strstr(remark, what);
+  scree_scene_free(scene);
+  return told;
+}
+
+/* A slide under a hopper's hole that leaves it open, wider than a body or not. */
+static void gates(void **state) {
+  (void)state;
+  static const char what[] = "get past 'slide' to where they leave";
+  static const char *const others[] = {"drum", "drawdown", "hollow-cylinder", "tilting-box",
+                                       "shear-box"};
+  assert_false(is_told("hopper", NULL, NULL, what));
+  assert_false(is_told("hopper", "geometry.slide.at", "[0.010, 0, 0.092]", what));
+  assert_true(is_told("hopper", "geometry.slide.at", "[0.030, 0, 0.092]", what));
+  assert_true(is_told("hopper", "geometry.slide.at", "[0, 0, 0.07]", what));
+  assert_true(is_told("hopper", "geometry.slide.box", "[0.02, 0.02, 0.004]", what));
+  /* one that has gone by the time the inlet begins closes nothing, nor is it meant to */
+  assert_false(is_told("hopper", "inlets.feed.from", "2", what));
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    assert_false(is_told(others[i], NULL, NULL, "while it still stands"));
+}
+
+/* Along a floor without an end, where no wall stops what falls that way. */
+static void sideways(void **state) {
+  (void)state;
+  static const char what[] = "fall past all geometry and outlets";
+  assert_false(is_told("tilting-box", NULL, NULL, what));
+  for (int i = 0; i < 2; i++) {
+    scree_error error;
+    scree_scene *scene = NULL;
+    scree_scene_file *file = NULL;
+    scree_scene_starts s;
+    CHECK_OK(scree_scene_file_parse(text, strlen(text), "test.yaml", &file, &error), error);
+    CHECK_OK(scree_scene_file_set(file, "geometry", "{floor: {plane: [0, 0, 1], material: steel}}",
+                                  &error),
+             error);
+    CHECK_OK(scree_scene_file_set(file, "gravity", i ? "[9.81, 0, 0]" : "[0, 0, -9.81]", &error),
+             error);
+    CHECK_OK(scree_scene_create(file, NULL, &scene, &error), error);
+    scree_scene_file_free(file);
+    scree_scene_look_at_starts(scene, 0, &s);
+    CHECK_NEAR(s.past, i, 0);
+    scree_scene_free(scene);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(shares_of_random_inlets),
+      cmocka_unit_test(outlet_over_inlet),
       cmocka_unit_test(foretold_is_lost),
+      cmocka_unit_test(gates),
+      cmocka_unit_test(sideways),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,7 +4,7 @@
 
 #include "base/rng.h"
 #include "particle/closest.h"
-#include "world/contact.h"
+#include "world/contact/overlap.h"
 
 /* sum w (o - t)+^2 - l^2 at t. */
 static double equation(const scree_contact_point *contacts, size_t count, double l0, double kappa,

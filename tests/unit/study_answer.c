@@ -61,11 +61,11 @@ static scree_study_record make_record(const outcome *o, size_t level, size_t rep
                           .series_count = replicate == 1 || replicate == 2 ? 11 : 21};
   r.costs.processor_seconds = level == SPHERES ? 1 : o->seconds(rps[level], (int)replicate);
   r.costs.wall_seconds = 100;
-  r.result.repose = (scree_repose){.heap = level != SPHERES,
-                                   .sector_deg = cone ? angle + 5 : angle,
-                                   .cone_deg = cone ? angle : angle - 5,
-                                   .silhouette_deg = angle + 3,
-                                   .height = 0.2};
+  r.result.pile.repose = (scree_repose){.heap = level != SPHERES,
+                                        .sector_deg = cone ? angle + 5 : angle,
+                                        .cone_deg = cone ? angle : angle - 5,
+                                        .silhouette_deg = angle + 3,
+                                        .height = 0.2};
   r.result.body_count = 30;
   r.result.left_count = level == SPHERES ? 10 : 0;
   r.result.still = replicate != 2;
@@ -171,7 +171,7 @@ static void a_plateau_is_found_from_where_it_begins(void **state) {
     CHECK_NEAR(p->angle_deg.mean_high - p->angle_deg.mean,
                0.4 / 2 * -scree_student_quantile(0.025, 3), 1e-9);
     assert_int_equal(p->heap_count, REPLICATES);
-    CHECK_NEAR(p->left.mean, 0, 0);
+    CHECK_NEAR(p->numbers[SCREE_RECORD_TOLD].mean, 0, 0);
     if (k + 1 < LEVELS) check_comparison(&f->comparisons[k], plateau.angles[k] - 30, 0.4, 2);
   }
   assert_true(f->comparisons[0].different && f->comparisons[1].different);
@@ -189,7 +189,7 @@ static void a_plateau_is_found_from_where_it_begins(void **state) {
   assert_int_equal(spheres->counts.done, REPLICATES);
   assert_int_equal(spheres->heap_count, 0);
   assert_true(isnan(spheres->angle_deg.mean));
-  CHECK_NEAR(spheres->left.mean, 0.25, 1e-12);
+  CHECK_NEAR(spheres->numbers[SCREE_RECORD_TOLD].mean, 0.25, 1e-12);
   scree_study_result_free(&r);
 }
 

@@ -1,6 +1,6 @@
 /* Wear is the work of sliding, whatever lay in the memory of the program before: bricks so soft
- * that the box parts from some of them, by an allocator that hands out large numbers. Files of the
- * walls are written in between, and change nothing. */
+ * that a table which comes up parts from some of them, by an allocator that hands out large
+ * numbers. Files of the walls are written in between, and change nothing. */
 #include "report/program.h"
 #include "scree.h"
 #include "support/check.h"
@@ -26,13 +26,15 @@ static void *dirty_reallocate(void *context, void *block, size_t size) {
 }
 
 static const char text[] =
-    "time: 0.1\n"
+    "time: 0.03\n"
+    "contact: {steps: 60}\n"
     "gravity: [0, 0, 0]\n"
-    "materials: {grain: {young: 2e5, density: 2500, restitution: 0.4, friction: 0.4}, steel: "
+    "materials: {grain: {young: 1e5, density: 2500, restitution: 0.4, friction: 0.4}, steel: "
     "{young: 1e9}}\n"
     "shapes: {brick: {box: [0.02, 0.015, 0.01], material: grain}}\n"
     "geometry:\n"
-    "  table: {box: [0.3, 0.3, 0.05], at: [0, 0, -0.025], material: steel}\n"
+    "  table: {box: [0.3, 0.3, 0.05], at: [0, 0, -0.025], material: steel, motion: [{translate: "
+    "{velocity: [0, 0, 9]}}]}\n"
     "  bar: {box: [0.3, 0.02, 0.02], at: [0, 0, 0.03], turn: {axis: [1, 0, 0], angle_deg: 45}, "
     "material: steel}\n"
     "inlets: {feed: {box: {min: [-0.1, -0.05, 0.06], max: [0.1, 0.05, 0.16]}, shapes: brick, "

@@ -43,9 +43,9 @@ last = read(sets[-1].get("file"))
 data = last.GetPointData()
 names = {data.GetArrayName(i): data.GetArray(i).GetNumberOfComponents() for i in range(data.GetNumberOfArrays())}
 assert names == {"orientation": 4, "velocity [m/s]": 3, "angular velocity [rad/s]": 3, "contact force [N]": 3,
-                 "stress [Pa]": 6, "size [m]": 1, "body": 1, "shape": 1}, names
+                 "stress [Pa]": 6, "size [m]": 1, "body": 1, "shape": 1, "fragment": 1}, names
 assert last.GetNumberOfPoints() == 20 and data.GetArray("shape").GetRange() == (0.0, 1.0)
-assert os.path.getsize(f"{folder}/out/{sets[-1].get('file')}") < 20 * 97 + 3000
+assert os.path.getsize(f"{folder}/out/{sets[-1].get('file')}") < 20 * 104 + 3000
 
 brick = read("shape-1.vtp")
 low, high = brick.GetPoints().GetBounds()[0::2], brick.GetPoints().GetBounds()[1::2]

@@ -1,5 +1,5 @@
 """Sphinx on the pages that generate.py has gathered: MyST reads the Markdown, Furo is the theme, KaTeX sets the formulas
-here, and the search is our own (static/search.js), so that the site asks no network and opens from disk."""
+here, and lunr searches (static/search.js), so that the site asks no network and opens from disk."""
 import json
 import os
 import re
@@ -30,6 +30,7 @@ html_show_copyright = False
 html_use_index = False
 html_permalinks_icon = "#"
 KATEX = "/usr/share/javascript/katex/katex.min.css"
+LUNR = "/usr/share/javascript/lunr/lunr.min.js"
 KATEX_FONTS = "/usr/share/fonts/truetype/katex"
 NORMALIZE = "/usr/share/javascript/normalize.css/normalize.css"
 
@@ -74,6 +75,7 @@ def finish(app, failure):
     with open(os.path.join(static, "sections.js"), "w", encoding="utf-8") as file:
         file.write("const screeSections = " + json.dumps(app.env.scree_sections, ensure_ascii=False) + ";\n")
     shutil.copy(KATEX, static)
+    shutil.copy(LUNR, static)
     os.makedirs(os.path.join(static, "fonts"), exist_ok=True)
     for font in os.listdir(KATEX_FONTS):
         if font.endswith(".woff2"):

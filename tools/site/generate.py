@@ -11,7 +11,7 @@ import sys
 import xml.etree.ElementTree as tree
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
-PARTS = [("tutorials", "Tutorials"), ("howto", "How to"), ("reference", "Reference"), ("background", "Background")]
+PARTS = [("tutorials", "Tutorials"), ("howto", "How to"), ("reference", "Reference"), ("background", "Background"), ("contributing", "Contributing"), ("changes", "Earlier versions")]
 
 
 def write(path, text):
@@ -152,6 +152,20 @@ def make_python(path, library):
     return [os.path.basename(path)]
 
 
+# ---- blocks of code that are files ----
+
+def name_files(source):
+    """`yaml file=drum.yaml` on a block of code is a caption there."""
+    for folder, _, names in os.walk(source):
+        for name in names:
+            if not name.endswith(".md"):
+                continue
+            text = read(f"{folder}/{name}")
+            named = re.sub(r"^```(\w+) file=(\S+).*\n", r"```{code-block} \1\n:caption: \2\n\n", text, flags=re.MULTILINE)
+            if named != text:
+                write(f"{folder}/{name}", named)
+
+
 # ---- the whole ----
 
 def links(page):
@@ -189,6 +203,7 @@ def with_pages_below(folder, pages):
 def main(program, library, source):
     shutil.rmtree(source, ignore_errors=True)
     shutil.copytree(f"{ROOT}/docs", source)
+    name_files(source)
     reference = f"{source}/reference"
     made = with_pages_below(f"{reference}/verbs", make_verbs(program, f"{reference}/verbs"))
     made += with_pages_below(f"{reference}/c", make_c(f"{reference}/c", f"{source}.doxygen"))

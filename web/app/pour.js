@@ -93,7 +93,7 @@ export class PourTab {
     };
     this.source = choose('Shapes ', 'pour-source', [['samples', 'three sample devices'], ['scans', 'my scans']]);
     this.container = choose('Into a ', 'pour-container', Object.keys(equipment).map((name) => [name, name]));
-    this.container.addEventListener('change', () => this.offerSliders());
+    [this.source, this.container].forEach((select) => select.addEventListener('change', () => this.offerSliders()));
     this.stiffness = choose('Stiffness ', 'pour-stiffness', [['0.1', 'a tenth (quick)'], ['0.01', 'a hundredth (quicker, softer)'], ['1', 'as the paper (slow)']]);
     const sliders = element('div', null, host, { class: 'tolerances' });
     const slide = (text, id, low, high, step, value, shown, parent = sliders) => {
@@ -104,7 +104,7 @@ export class PourTab {
       return input;
     };
     this.count = slide('Particles', 'pour-count', 10, 200, 5, 40, whole);
-    this.triangles = slide('Triangles a particle, at most', 'pour-triangles', 20, 400, 10, 100, whole);
+    this.triangles = slide('Triangles a sample', 'pour-triangles', 20, 400, 10, 100, whole);
     this.friction = slide('Friction', 'pour-friction', 0, 1, 0.05, 0.5, String);
     this.own = Object.entries(equipment).map(([name, { sliders: all }]) => {
       const parent = element('div', null, host, { class: 'tolerances', 'data-container': name });
@@ -127,8 +127,9 @@ export class PourTab {
     this.legend = element('p', null, host, { class: 'legend' });
   }
 
-  // Those of the container picked.
+  // Those of the container picked; a scan has the triangles that were chosen.
   offerSliders() {
+    this.triangles.parentElement.hidden = this.source.value === 'scans';
     this.own.forEach(({ name, parent }) => (parent.hidden = name !== this.container.value));
   }
 
@@ -145,9 +146,8 @@ export class PourTab {
 
   // A PLY file of each shape, with its unit.
   async makeShapes() {
-    const most = Number(this.triangles.value);
     if (this.source.value === 'scans') {
-      const shapes = await this.scans.levels(most);
+      const shapes = await this.scans.levels();
       if (!shapes.length) throw new Error('There is no scan in the first tab yet: add one there, or pour the samples.');
       return shapes;
     }
@@ -155,7 +155,7 @@ export class PourTab {
     for (const name of samples) {
       this.tell(`Making ${name} ...`);
       const { code, complaints, files } = await this.engine.ask({ do: 'program', wanted: ['shape.ply'],
-        words: ['simplify', `sample:${name}`, '--resolution', '2.5mm', '-n', String(most), '-u', 'm', '-o', 'shape.ply'] });
+        words: ['simplify', `sample:${name}`, '--resolution', '2.5mm', '-n', this.triangles.value, '-u', 'm', '-o', 'shape.ply'] });
       if (code) throw new Error(complaints.join(' '));
       shapes.push({ name, bytes: files[0], unit: 1 });
     }

@@ -2,12 +2,12 @@
 import { Cancelled } from './engine.js';
 import { ChoiceSection } from '../src/choice.js';
 import { give } from '../src/packed.js';
-import { tellProvenance } from '../src/provenance.js';
+import { tellProvenance } from '../src/page.js';
 import { counted, element, number, saveAs, whole } from '../src/text.js';
 
 const units = [['um', 'µm'], ['mm', 'mm'], ['cm', 'cm'], ['m', 'm'], ['inch', 'inch'], ['ft', 'ft']];
 const metres = { um: 1e-6, mm: 1e-3, cm: 1e-2, m: 1, inch: 0.0254, ft: 0.3048 };
-const rules = [['recommended', 'keeps tolerances (recommended)'], ['robust', 'least Ip, worst error so far (robust)'], ['paper', 'least Ip on a grid (paper)']];
+const rules = [['recommended', 'keeps tolerances (recommended)'], ['paper', 'least Ip on a grid (paper)']];
 const errors = [
   ['mean_distance', 'mean distance', 'of the body\'s size'],
   ['hausdorff', 'largest distance', 'of the body\'s size'],
@@ -405,26 +405,25 @@ export class ScansTab {
     });
   }
 
-  // Of each scan the level chosen, or of `most` triangles where that has more: {name, bytes of a PLY, unit in m}.
-  async levels(most) {
+  // Of each scan the level chosen: {name, bytes of a PLY, unit in m}.
+  async levels() {
     const made = [];
     if (this.busy || !this.section?.objects) return made;
     for (const [index, object] of this.section.objects.entries()) {
-      const count = Math.min(most, object[object.default].triangle_count);
+      const count = object[object.default].triangle_count;
       const { mesh } = await this.engine.ask({ do: 'level', index, count, ending: 'ply', density: 2000 });
       made.push({ name: object.name, bytes: mesh, unit: metres[this.unit.value] });
     }
     return made;
   }
 
-  // Of the level of 2,000 triangles, as the program's clump, but without decimating again; more than 50 spheres are
-  // seldom recommended, and take most of the time.
+  // The program's own, of the file: fitted to the same mesh, whatever was chosen here.
   saveClump() {
     const { index, name } = this.looked();
     return this.during(`fitting spheres to ${name}`, async () => {
-      const { mesh } = await this.engine.ask({ do: 'level', index, count: 2000, ending: 'ply', density: 2000 });
+      const { file } = this.opened()[index];
       const { code, out, complaints, files } = await this.engine.ask({ do: 'program',
-        words: ['clump', `${name}.ply`, '-u', this.unit.value, '--max', '50', '-o', 'clump'], files: [[`${name}.ply`, mesh]], wanted: [`clump/${name}.csv`] });
+        words: ['clump', file.name, '-u', this.unit.value, '-o', 'clump'], files: [[file.name, file]], wanted: [`clump/${name}.csv`] });
       if (code || !files[0]) throw new Error(complaints.join(' '));
       saveAs(`${name}.csv`, 'text/csv', files[0]);
       return `${name}.csv: ${out.filter((line) => line.includes('spheres: ')).join(' ')}`;

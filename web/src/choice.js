@@ -1,18 +1,21 @@
 // The section of one choice: table of the objects, and for the object picked the answer beside its mesh at every level
 // and the scan, the curves, and the tables.
-import { Chart, palette } from './chart.js';
 import { Levels } from './levels.js';
+import { Skeleton, capital, words } from './page.js';
 import { holds } from './packed.js';
+import { Plot } from './plot.js';
 import { element, folded, number, percent, rpText, saveButton, table, whole } from './text.js';
 import { View, link, mostEdgeTriangles, rampBar } from './view.js';
 
 const mm = 1000;
 const shownSamples = 24000; // small triangles that carry the distance colours
+const shownErrors = ['mean_distance', 'hausdorff', 'thickness', 'thinnest', 'inertia', 'widths'];
+const errorWords = { mean_distance: 'mean distance', hausdorff: 'greatest distance', thickness: 'distance over walls', thinnest: 'thinnest walls' };
+const wordsOf = (error) => errorWords[error] ?? words(error);
 
 const pickOf = (object) => object[object.default];
 const rules = {
   recommended: 'the coarsest level that keeps a tolerance on each of several errors against the scan',
-  robust: 'the least Ip over every level, with the worst error at a level or any finer one, so that an area that is right by accident does not count',
   paper: 'the least Ip on a logarithmic grid of counts, as the paper has it',
 };
 
@@ -23,10 +26,17 @@ function roundUp(x) {
   return [1, 2, 5, 10].map((f) => f * power).find((f) => f >= x * (1 - 1e-9));
 }
 
+// What each error may be, as a share of the size.
+function boundsOf(object) {
+  const { tolerances, tolerance_lengths: lengths } = object.options, bounds = { ...tolerances };
+  for (const [name, length] of Object.entries(lengths)) bounds[name] = Math.min(bounds[name] ?? Infinity, length / (object.scan?.size ?? 1));
+  return bounds;
+}
+
 // The curve in the file is a selection of levels: the chosen ones are put between.
 function addPicks(trace, object) {
-  for (const key of ['recommended', 'robust', 'paper', 'smooth', 'plain'].filter((name) => object[name])) {
-    const { triangle_count: count, area, volume, level_eps_s: error, eps_s: worst } = object[key];
+  for (const key of ['recommended', 'robust', 'paper'].filter((name) => object[name])) {
+    const { triangle_count: count, area, volume, eps_s: error, worst_eps_s: worst } = object[key];
     const at = trace.findIndex((row) => row.count >= count);
     if (at < 0 || trace[at].count === count) continue;
     trace.splice(at, 0, { count, area, volume, error, worst: key === 'robust' ? worst : Math.max(error, trace[at].worst) });
@@ -56,9 +66,9 @@ export class ChoiceSection {
     this.ids = new Map(folder.levels);
     this.levels = new Map();
     this.buttons = null;
+    this.host.prepend(this.first); // it may stand in the head
     this.head.replaceChildren();
-    this.tellAnswer();
-    if (this.objects.length > 1) this.tellObjects();
+    this.tellAnswer(folder);
     this.select(Math.min(this.state.object, this.objects.length - 1));
   }
 
@@ -80,68 +90,105 @@ export class ChoiceSection {
 
   // ---- what was asked, and the answer ----
 
-  tellAnswer() {
-    const { objects, set, head: host } = this;
-    const { options } = objects[0];
-    const many = objects.length > 1;
-    element('h1', many ? `How many triangles do these ${objects.length} scans need?` : `How many triangles does ${objects[0].name} need?`, host);
-    if (many) {
-      element('p', set.answer.join(' '), host, { class: 'answer' });
-      this.tellWarnings(host, set.warnings);
-    }
-    const { tolerances, tolerance_lengths: lengths } = options;
-    const kept = [...Object.entries(tolerances).map(([name, share]) => `${name} ${percent(share)}`), ...Object.entries(lengths).map(([name, length]) => `${name} ${number(length * mm)} mm`)].join(', ');
-    const area = `Ip = eps_s + ${options.weight === 1 ? '' : `${number(options.weight)} `}Nr/Nm with eps_s = |S − Sm|/Sm${options.reference === 'smooth' ? ', Sm free of scan noise' : ''} (Katagiri and Koyanaka 2020)`;
-    this.how.textContent = `Chosen: ${rules[objects[0].default]}${objects[0].default === 'recommended' ? ` (${kept}; distances as shares of sqrt(S/π))` : ''}. ${objects[0].default === 'recommended' ? 'Beside it the paper\'s criterion' : 'The criterion'}: ${area}. Nr of the scan's Nm triangles are kept; Rp = Nr/Nm. Decimation: ${options.method}.`;
-  }
-
-  tellWarnings(host, warnings) {
-    if (!warnings.length) return;
-    const list = element('ul', null, host, { class: 'warnings' });
-    for (const text of warnings) element('li', text, list);
-  }
-
-  tellObjects() {
-    const { head: host } = this;
-    const columns = [
-      { head: 'object', value: (o) => o.name },
-      { head: 'scan triangles', value: (o) => o.triangle_count, text: (o) => whole(o.triangle_count) },
-      { head: 'scan noise in area', value: (o) => (o.noise.found ? o.noise.fraction : null), text: (o) => (o.noise.found ? percent(o.noise.fraction) : '–') },
-      ...this.objects[0].recommended ? [
-        { head: 'recommended: triangles', value: (o) => o.recommended.triangle_count, text: (o) => whole(o.recommended.triangle_count) },
-        { head: 'mean distance', value: (o) => o.recommended.errors.mean_distance, text: (o) => percent(o.recommended.errors.mean_distance) },
-        { head: 'largest', value: (o) => o.recommended.errors.hausdorff, text: (o) => percent(o.recommended.errors.hausdorff) },
-        { head: 'limited by', value: (o) => o.recommended.limited_by },
-      ] : [],
-      ...[['robust', 'worst error'], ['paper', 'error']].flatMap(([key, error]) => [
-        { head: `${key}: triangles`, value: (o) => o[key].triangle_count, text: (o) => whole(o[key].triangle_count) },
-        { head: `${key}: Rp`, value: (o) => o[key].rp, text: (o) => rpText(o[key].rp) },
-        { head: `${key}: ${error}`, value: (o) => o[key].eps_s, text: (o) => percent(o[key].eps_s) },
-      ]),
-    ];
-    element('h2', 'The choice for each', host);
-    table(host, columns, this.objects, 'choice.csv', 'Objects and the triangles chosen for each');
-    element('h2', 'Look at', host);
-    const group = element('div', null, host, { role: 'group', 'aria-label': 'Objects', class: 'objects' });
-    this.buttons = this.objects.map((object, i) => {
-      const button = element('button', object.name, group, { type: 'button' });
-      button.addEventListener('click', () => this.select(i));
-      return button;
+  tellAnswer(folder) {
+    const { objects, set } = this, [first] = objects, { options } = first, many = objects.length > 1, told = many ? set : first, byErrors = first.default === 'recommended';
+    const kept = objects.every((o) => !o.recommended || o.recommended.largest_over_tolerance <= 1.0001), [sentence, ...others] = told.answer;
+    this.page = new Skeleton(this.head, {
+      title: many ? `${objects.length} scans` : first.name, kind: 'choice of triangles', date: folder.provenance?.started, wide: !many,
+      told: { verdict: byErrors && !kept ? 'not reached' : 'answered', state: byErrors ? (kept ? 'Chosen: all tolerances are kept' : 'Not reached: no level keeps all tolerances') : 'Chosen by the paper\'s criterion', sentence, but: [...others, ...told.warnings].join(' ') },
     });
+    if (many) this.tellObjects();
+    else this.tellNumbers(first);
+    const bounds = [...Object.entries(options.tolerances).map(([name, share]) => `${name} ${percent(share)}`), ...Object.entries(options.tolerance_lengths).map(([name, length]) => `${name} ${number(length * mm)} mm`)].join(', ');
+    const area = `Ip = eps_s + ${options.weight === 1 ? '' : `${number(options.weight)} `}Nr/Nm with eps_s = |S − Sm|/Sm${options.reference === 'smooth' ? ', Sm free of scan noise' : ''} (Katagiri and Koyanaka 2020)`;
+    this.how.textContent = `Chosen: ${rules[first.default]}${byErrors ? ` (${bounds}; distances as shares of sqrt(S/π))` : ''}. ${byErrors ? 'Beside it the paper\'s criterion' : 'The criterion'}: ${area}. Nr of the scan's Nm triangles are kept; Rp = Nr/Nm. Decimation: ${options.method}.`;
+  }
+
+  tellNumbers(object) {
+    const { page } = this, pick = pickOf(object), { recommended } = object, bounds = boundsOf(object);
+    page.picture.append(this.first);
+    page.plain('Use, triangles', whole(pick.triangle_count), '', `of the scan's ${whole(object.triangle_count)}`, `Rp = ${rpText(pick.triangle_count / object.triangle_count)}`, 'main full');
+    for (const name of shownErrors.filter((key) => recommended?.errors[key] !== undefined && bounds[key]))
+      page.plain(capital(wordsOf(name)), number(100 * recommended.errors[name], 2), '%', `of ${percent(bounds[name])} kept`, object.limited_by === name ? 'sets the count' : '', 'half');
+    if (!recommended) page.plain('Error of the area', number(100 * pick.eps_s, 2), '%', '', 'eps_s', 'half');
+    page.plain('By the paper\'s criterion', whole(object.paper.triangle_count), '', 'triangles', '', 'half');
+  }
+
+  // A row for each, with how much of each tolerance it uses.
+  tellObjects() {
+    const { page, objects } = this, bounds = boundsOf(objects[0]), names = shownErrors.filter((key) => bounds[key] && objects.some((o) => o.recommended?.errors[key] !== undefined));
+    page.side.remove();
+    page.hero.classList.add('alone');
+    this.pictures = [];
+    const used = (name) => ({
+      head: `${wordsOf(name)}, of ${percent(bounds[name])} kept`, value: (o) => o.recommended?.errors[name], text: () => '',
+      draw: (o, cell) => {
+        const share = (o.recommended?.errors[name] ?? NaN) / boundsOf(o)[name];
+        cell.append(percent(o.recommended?.errors[name] ?? NaN));
+        cell.classList.toggle('limit', o.limited_by === name);
+        if (share >= 0) element('meter', null, cell, { min: 0, max: 1, value: Math.min(1, share), 'aria-label': `${percent(share)} of its tolerance` });
+      },
+    });
+    const made = table(page.picture, [
+      { head: 'shape', value: (o) => o.name, text: () => '', draw: (o, cell) => {
+        const button = element('button', null, cell, { type: 'button' });
+        this.pictures.push([o, button]);
+        button.append(o.name);
+        button.addEventListener('click', () => this.select(objects.indexOf(o)));
+      } },
+      { head: 'use, triangles', value: (o) => pickOf(o).triangle_count, text: (o) => whole(pickOf(o).triangle_count), draw: (_, cell) => cell.classList.add('use') },
+      { head: 'of the scan\'s', value: (o) => o.triangle_count, text: (o) => whole(o.triangle_count) }, ...names.map(used),
+      ...names.length ? [] : [{ head: 'error of the area', value: (o) => pickOf(o).eps_s, text: (o) => percent(pickOf(o).eps_s) }],
+      { head: 'paper', value: (o) => o.paper.triangle_count, text: (o) => whole(o.paper.triangle_count) }, { head: 'robust', value: (o) => o.robust.triangle_count, text: (o) => whole(o.robust.triangle_count) },
+    ], objects, 'choice.csv', 'Objects and the triangles chosen for each');
+    made.classList.add('shapes', 'stack');
+    made.parentNode.classList.add('objects');
+    this.buttons = this.pictures.map(([, button]) => button);
+    setTimeout(() => this.drawPictures(), 50);
+    this.page.grid('Why these counts', [...['mean_distance', 'hausdorff'].filter((name) => names.includes(name)).map((name) => this.allErrors(name, bounds)), this.shares(names)]);
+  }
+
+  // Each shape at its level, small, in its row.
+  drawPictures() {
+    if (!this.levelView) return;
+    for (const [object, button] of this.pictures) {
+      const levels = this.levelsOf(this.objects.indexOf(object));
+      if (levels) button.prepend(element('img', null, null, { src: this.levelView.thumbnail(levels.level(levels.stepsTo(pickOf(object).triangle_count)), levels), alt: '' }));
+    }
+    this.select(this.state.object);
+  }
+
+  // An error of all shapes against triangles, marked where they are chosen.
+  allErrors(name, bounds) {
+    const { objects, page } = this, curves = objects.map((o) => o.levels.filter((l) => l.errors[name] > 0 && l.triangle_count > 0).sort((a, b) => a.triangle_count - b.triangle_count));
+    const flat = curves.flat().map((l) => l.errors[name]), counts = curves.flat().map((l) => l.triangle_count);
+    if (flat.length < 2) return null;
+    const limit = 100 * bounds[name], plot = new Plot(page.pointer, { x: [Math.min(...counts), Math.max(...counts)], y: [Math.max(100 * Math.min(...flat), limit / 100), Math.min(100 * Math.max(...flat), 100 * limit)], xlog: true, ylog: true, xl: 'triangles', yl: `${wordsOf(name)}, % of the size` });
+    plot.hline(limit, 'cb', '5 3').text(plot.x[1], limit, `kept: ${percent(bounds[name])}`, 'b tb', 'end', -2, -6);
+    curves.forEach((levels, i) => plot.line(levels.map((l) => l.triangle_count), levels.map((l) => 100 * l.errors[name]), `c${(i % 4) + 1} thin`));
+    objects.forEach((o, i) => o.recommended?.errors[name] > 0 && plot.dot(o.recommended.triangle_count, Math.max(plot.y[0], 100 * o.recommended.errors[name]), `c${(i % 4) + 1}`, { key: o.name, r: 4.5, told: `${o.name}: ${whole(o.recommended.triangle_count)} triangles, ${wordsOf(name)} ${percent(o.recommended.errors[name])}` }));
+    return (host) => plot.put(host, `${capital(wordsOf(name))} against triangles`, 'Each line a shape, its mark the count chosen.');
+  }
+
+  shares(names) {
+    const { objects, page } = this;
+    if (!names.length) return null;
+    const plot = new Plot(page.pointer, { h: 54 + 34 * names.length, l: 14, x: [0, 105], y: [0, 1], noy: true, xl: 'share of its tolerance that is used, %', label: 'How much of each tolerance the choices use' }).vline(100, 'cb', '5 3');
+    names.forEach((name, i) => {
+      const y = 20 + 34 * i;
+      plot.at(18, y - 1, wordsOf(name), 's');
+      objects.forEach((o, k) => o.recommended?.errors[name] !== undefined && plot.mark(plot.X(Math.min(104, (100 * o.recommended.errors[name]) / boundsOf(o)[name])), y + 12, `c${(k % 4) + 1}`, { key: o.name, r: 4, told: `${o.name}: ${wordsOf(name)} ${percent(o.recommended.errors[name])} of ${percent(boundsOf(o)[name])}` }));
+    });
+    return (host) => plot.put(host, 'How much of each tolerance is used', 'Each mark a shape. At 100 % a tolerance is used up: it sets the count.');
   }
 
   // ---- the object picked ----
 
   build() {
     const { host } = this;
-    this.title = element('h2', null, host, { class: 'object-name' });
     this.first = element('div', null, host, { class: 'first' });
-    const told = element('div', null, this.first);
-    this.answer = element('p', null, told, { class: 'answer' });
-    this.warnings = element('div', null, told);
-    const more = element('details', null, told);
-    element('summary', 'By which rule', more);
-    this.how = element('p', null, more, { class: 'soft' });
+    this.title = element('h2', null, this.first, { class: 'object-name' });
+    this.told = element('p', null, this.first, { class: 'object-told' });
     this.shown = element('div', null, this.first);
     this.buildViews();
     this.along = element('div', null, this.shown);
@@ -152,10 +199,11 @@ export class ChoiceSection {
     this.single = element('p', 'The scan has one level only: there is no curve to draw.', this.shown, { hidden: '' });
     this.levelText = element('p', null, this.shown, { class: 'level-text' });
     this.missing = element('p', 'The levels of this object are not in this page, which would grow too large: it shows tables only. `scree report` of this folder alone may hold them.', host, { hidden: '' });
-    this.curves = folded(host, 'Area, Ip and errors along the levels');
-    this.chartHost = element('div', null, this.curves, { class: 'chart' });
-    this.errorsHost = element('div', null, this.curves, { class: 'chart errors' });
+    this.curves = element('div', null, host, { class: 'grid curves' });
     this.tables = element('div', null, host);
+    const more = element('details', null, host);
+    element('summary', 'By which rule', more);
+    this.how = element('p', null, more, { class: 'soft' });
   }
 
   buildViews() {
@@ -198,23 +246,18 @@ export class ChoiceSection {
     element('span', '0', this.scale);
     rampBar(this.scale);
     this.scaleHigh = element('span', null, this.scale);
-    element('p', 'Turn with mouse or finger, or with the arrow keys once a view has the focus; plus and minus move nearer and away.', this.viewsHost, { class: 'soft hint' });
+    element('span', 'Turn with mouse, finger or arrow keys; + and − move nearer and away.', controls, { class: 'soft hint' });
   }
 
   select(index) {
     this.state.object = index;
-    const object = this.objects[index];
-    const levels = this.levelsOf(index);
+    const object = this.objects[index], levels = this.levelsOf(index), many = this.objects.length > 1, several = Boolean(levels && levels.trace.length > 1);
     this.buttons?.forEach((button, i) => button.setAttribute('aria-pressed', String(i === index)));
     this.title.textContent = object.name;
-    this.title.hidden = this.objects.length === 1;
-    this.answer.textContent = object.answer.join(' ');
-    this.warnings.replaceChildren();
-    this.tellWarnings(this.warnings, object.warnings);
-    this.chart?.remove();
-    this.errorsChart?.remove();
-    this.chart = this.errorsChart = null;
-    const several = Boolean(levels && levels.trace.length > 1);
+    this.told.textContent = many ? [...object.answer, ...object.warnings].join(' ') : '';
+    this.title.hidden = this.told.hidden = !many;
+    this.page.pointer.plots = this.page.pointer.plots.filter(({ group }) => group !== 'level');
+    this.curves.replaceChildren();
     this.shown.hidden = !levels;
     this.missing.hidden = Boolean(levels);
     this.single.hidden = several;
@@ -223,7 +266,7 @@ export class ChoiceSection {
     if (levels) {
       this.slider.max = levels.trace.length - 1;
       if (several) this.drawCurve(object, levels);
-      if (several && object.recommended) this.drawErrors(object);
+      if (several && object.recommended) this.drawErrors(object, levels);
       this.offerJumps(object, levels);
       this.tellScan(object, levels);
       this.moveTo(this.rowOf(levels, pickOf(object).triangle_count), true);
@@ -236,48 +279,29 @@ export class ChoiceSection {
     return at < 0 ? levels.trace.length - 1 : at;
   }
 
+  // Curves against triangles on logarithmic axes; a click goes to that level.
+  tellAlong(levels, counts, lines, title, yl, chosen, note) {
+    const flat = lines.flatMap(({ values }) => values).filter((v) => v > 0), most = Math.max(...flat);
+    const plot = new Plot(this.page.pointer, { r: 104, x: [counts[0], counts.at(-1)], xlog: true, y: [Math.max(Math.min(...flat), 1e-5 * most), most], ylog: true, xl: 'triangles', yl });
+    plot.vline(chosen, 'c4', '6 5').text(chosen, plot.y[1], 'chosen', 'b t4', 'start', 5, 10);
+    lines.forEach(({ name, values, cls }) => plot.line(counts, values.map((v) => (v > 0 ? Math.max(v, plot.y[0]) : undefined)), cls).end(Math.max(plot.y[0], values.findLast((v) => v > 0) ?? NaN), name.slice(0, 17), `t${cls.charAt(1)}`));
+    plot.follow('level', counts, lines, { unit: ' triangles', digits: 3, text: whole, pick: (i) => this.moveTo(this.rowOf(levels, counts[i])) }).put(this.curves, title, note);
+  }
+
   drawCurve(object, levels) {
-    const { weight } = object.options;
-    const rp = levels.trace.map(({ count }) => count / object.triangle_count);
-    const ip = (error) => levels.trace.map((row, i) => row[error] + weight * rp[i]);
-    const text = (v) => number(v, 3);
-    this.chart = new Chart(this.chartHost, {
-      x: { label: 'Rp = Nr/Nm', values: rp, text: (v) => v.toExponential(2) },
-      yLabel: 'eps_s, Ip',
-      yLeast: 10 ** (Math.floor(Math.log10(Math.min(...ip('error')))) - 1), // eps_s itself falls to zero
-      series: [
-        { label: 'eps_s', values: levels.trace.map((row) => row.error), color: palette[0], width: 1, text },
-        { label: 'Ip', values: ip('error'), color: palette[1], dash: [6, 3], text },
-        { label: 'Ip, worst eps_s so far', values: ip('worst'), color: palette[2], width: 2.5, text },
-      ],
-      marks: () => [
-        { x: pickOf(object).triangle_count / object.triangle_count, color: palette[3], dash: [6, 5], label: 'chosen' },
-        { x: rp[this.state.row] },
-      ],
-      pick: (row) => this.moveTo(row),
-    });
+    const { weight } = object.options, { trace } = levels, counts = trace.map(({ count }) => count), ip = (error) => trace.map((row) => row[error] + (weight * row.count) / object.triangle_count);
+    this.tellAlong(levels, counts, [{ name: 'eps_s', values: trace.map((row) => row.error), cls: 'c1 thin' }, { name: 'Ip', values: ip('error'), cls: 'c2' }, { name: 'Ip, worst eps_s', values: ip('worst'), cls: 'c3' }],
+      'Error of the area, and the paper\'s criterion', 'eps_s, Ip', pickOf(object).triangle_count, 'Ip = eps_s + Nr/Nm; its least is the paper\'s choice. Click: the level above.');
   }
 
   // Each error over its tolerance against the count: what lies above 1 is not kept.
-  drawErrors(object) {
-    const { tolerances, tolerance_lengths: lengths } = object.options;
-    const bounds = { ...tolerances };
-    for (const [name, length] of Object.entries(lengths)) bounds[name] = Math.min(bounds[name] ?? Infinity, length / object.scan.size);
-    const chosen = { triangle_count: object.recommended.triangle_count, errors: object.recommended.errors };
+  drawErrors(object, levels) {
+    const bounds = boundsOf(object), chosen = { triangle_count: object.recommended.triangle_count, errors: object.recommended.errors };
     const rows = new Map([...object.levels, chosen].filter((level) => Object.keys(level.errors).length > 2).map((level) => [level.triangle_count, level]));
-    const levels = [...rows.values()].sort((a, b) => a.triangle_count - b.triangle_count);
-    const names = Object.keys(bounds).filter((name) => levels.every((level) => level.errors[name] > 0));
-    if (levels.length < 2) return;
-    this.errorsChart = new Chart(this.errorsHost, {
-      x: { label: 'triangles', values: levels.map((level) => level.triangle_count), text: whole },
-      yLabel: 'error over its tolerance',
-      series: [
-        ...names.map((name, i) => ({ label: `${name}, of ${percent(bounds[name])}`, values: levels.map((level) => level.errors[name] / bounds[name]), color: palette[i % palette.length], width: 2, text: (v) => number(v, 3) })),
-        { label: 'tolerance', values: levels.map(() => 1), color: palette[5], dash: [6, 3], text: () => '1' },
-      ],
-      marks: () => [{ x: object.recommended.triangle_count, color: palette[3], dash: [6, 5], label: 'recommended' }],
-      pick: (row) => this.moveTo(this.rowOf(this.levelsOf(this.state.object), levels[row].triangle_count)),
-    });
+    const all = [...rows.values()].sort((a, b) => a.triangle_count - b.triangle_count), names = Object.keys(bounds).filter((name) => all.every((level) => level.errors[name] > 0)).slice(0, 4);
+    if (all.length < 2 || !names.length) return;
+    this.tellAlong(levels, all.map((level) => level.triangle_count), [...names.map((name, i) => ({ name: wordsOf(name), values: all.map((level) => level.errors[name] / bounds[name]), cls: `c${i + 1}` })), { name: 'tolerance', values: all.map(() => 1), cls: 'c0 thin' }],
+      'Errors beside their tolerances', 'error over its tolerance', object.recommended.triangle_count, `Below 1 a tolerance is kept: ${names.map((name) => `${wordsOf(name)} ${percent(bounds[name])}`).join(', ')}.`);
   }
 
   offerJumps(object, levels) {
@@ -309,7 +333,7 @@ export class ChoiceSection {
     const levels = this.levelsOf(this.state.object);
     this.steps = levels.stepsTo(levels.trace[row].count);
     this.tellLevel(levels);
-    this.chart?.redraw();
+    this.page.pointer.show('level', levels.trace[row].count);
     if (atOnce) return this.showLevel(0);
     this.frame ??= requestAnimationFrame(() => {
       this.frame = null;
@@ -378,11 +402,11 @@ export class ChoiceSection {
   // ---- tables ----
 
   tellTables(object, levels) {
-    const host = folded(this.tables, 'Candidate levels');
-    const names = { recommended: 'recommended: keeps the tolerances', cost: 'least mean distance / size + Nr/100,000', paper: 'paper: least Ip on the grid', robust: 'robust: least Ip, worst eps_s so far', smooth: 'robust, free of scan noise', plain: 'least Ip of all levels' };
-    const keys = ['paper', 'robust', 'smooth', 'plain', 'recommended', 'cost'].filter((key) => object[key]);
+    const host = folded(this.tables, 'Candidate levels', false);
+    const names = { recommended: 'recommended: keeps the tolerances', paper: 'paper: least Ip on the grid', robust: 'robust: least Ip, worst eps_s so far' };
+    const keys = ['paper', 'robust', 'recommended'].filter((key) => object[key]);
     const rows = [
-      { name: 'scan', pick: { triangle_count: object.triangle_count, area: object.area, volume: object.volume, level_eps_s: 0 }, measures: levels?.measures[0] },
+      { name: 'scan', pick: { triangle_count: object.triangle_count, area: object.area, volume: object.volume, eps_s: 0 }, measures: levels?.measures[0] },
       ...keys.map((key, i) => ({ name: `${names[key]}${key === object.default ? ' (chosen)' : ''}${object[`${key}_is_accident`] ? ' (an accident)' : ''}`, pick: object[key], measures: levels?.measures[i + 1] })),
     ];
     const scan = levels?.measures[0];
@@ -394,10 +418,10 @@ export class ChoiceSection {
       { head: 'level', value: (row) => row.name },
       { head: 'triangles', value: (row) => row.pick.triangle_count, text: (row) => whole(row.pick.triangle_count) },
       value('Rp', (row) => row.pick.triangle_count / object.triangle_count, 3),
-      { head: 'Ip', value: (row) => row.pick.ip ?? null, text: (row) => (row.pick.ip === undefined || row.pick === object.cost ? '' : number(row.pick.ip, 3)) },
+      { head: 'Ip', value: (row) => row.pick.ip ?? null, text: (row) => (row.pick.ip === undefined ? '' : number(row.pick.ip, 3)) },
       { head: 'fewest, Ip within a tenth', value: (row) => row.pick.similar_fewest ?? null, text: (row) => (row.pick.similar_fewest ? whole(row.pick.similar_fewest) : '') },
       { head: 'most', value: (row) => row.pick.similar_most ?? null, text: (row) => (row.pick.similar_most ? whole(row.pick.similar_most) : '') },
-      value('eps_s', (row) => row.pick.level_eps_s, 3),
+      value('eps_s', (row) => row.pick.eps_s, 3),
       value('area / mm²', (row) => row.pick.area * mm ** 2, 6),
       value('volume / mm³', (row) => row.pick.volume * mm ** 3, 6),
       { head: 'volume error', value: (row) => Math.abs(row.pick.volume - object.volume) / Math.abs(object.volume), text: (row) => percent(Math.abs(row.pick.volume - object.volume) / Math.abs(object.volume)) },

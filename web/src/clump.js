@@ -1,7 +1,8 @@
 // The section of clumps (clump.json, docs/reference/formats.md): answer, table of the bodies, and for the body picked its
 // curve, the clump of every number of spheres over the surface in 3D, and the table.
-import { Chart, palette } from './chart.js';
-import { element, number, percent, table, whole } from './text.js';
+import { Skeleton, capital } from './page.js';
+import { Plot, span } from './plot.js';
+import { element, folded, number, percent, table, whole } from './text.js';
 import { View } from './view.js';
 
 const mm = 1000;
@@ -27,52 +28,44 @@ function coverage(body, count) {
 
 export class ClumpSection {
   constructor(host, folder) {
-    this.host = host;
     this.bodies = folder.clump;
     this.state = { body: 0, row: 0, surface: true };
-    this.tellAnswer();
-    if (this.bodies.length > 1) this.tellBodies();
+    const { bodies } = this, [first] = bodies, poor = bodies.filter((b) => b.wall_cells < 3 || this.chosen(b).iou < 0.6), name = (b) => (bodies.length > 1 ? `${b.name}: ` : '');
+    this.page = new Skeleton(host, {
+      title: bodies.length > 1 ? `${bodies.length} bodies` : first.name, kind: 'clumps of spheres', date: folder.provenance?.started,
+      told: {
+        verdict: poor.length ? 'not reached' : 'answered', state: poor.length ? 'Spheres are the wrong shape; take the mesh' : 'Covered',
+        sentence: bodies.slice(0, 3).map((b) => `${name(b)}${coverage(b, b.chosen)}.`).join(' '),
+        but: [...bodies.filter((b) => b.chosen !== b.recommended).map((b) => `${name(b)}recommended, of those tried: ${coverage(b, b.recommended)}.`), ...poor.map((b) => (b.wall_cells < 3 ? `${name(b)}walls of ${number(mm * b.thickness, 3)} mm are thinner than the spheres can follow.` : `${name(b)}spheres and body have less than 0.6 of the volume of both in common.`)),
+          ...bodies.filter((b) => b.recommended === b.clumps.at(-1).sphere_count && b.recommended > 1).map((b) => `${name(b)}more spheres than were tried may do better.`)].slice(0, 6).map(capital).join(' '),
+      },
+    });
+    this.host = this.page.host;
     this.build();
+    for (const b of bodies.slice(0, 2)) {
+      this.page.plain(capital(`${name(b)}spheres`), whole(b.chosen), '', '', `recommended ${whole(b.recommended)}`, 'main half');
+      this.page.plain('Intersection over union', number(this.chosen(b).iou, 3), '', '', '1 is the body itself', 'half');
+      this.page.plain('Mean distance', number(mm * meanOf(this.chosen(b)), 3), 'mm', '', `greatest ${number(mm * worstOf(this.chosen(b)), 3)} mm`, 'half');
+      this.page.plain('Volume of the union', percent(this.chosen(b).volume_error), '', '', 'off; mass and inertia are the body\'s own', 'half');
+    }
+    if (bodies.length > 1) this.tellBodies();
     this.select(0);
   }
 
-  tellAnswer() {
-    const { bodies, host } = this;
-    const [first] = bodies;
-    element('h1', bodies.length > 1 ? `How many spheres do these ${bodies.length} bodies need?` : `How many spheres does ${first.name} need?`, host);
-    for (const body of bodies) {
-      const { chosen, recommended } = body;
-      const name = bodies.length > 1 ? `${body.name}: ` : '';
-      const most = body.clumps.at(-1).sphere_count;
-      const last = recommended === most && most > 1 ? ` That is the largest number tried: more spheres may do better.` : '';
-      const other = chosen === recommended ? '' : ` Recommended, of those tried: ${coverage(body, recommended)}.`;
-      element('p', `${name}${coverage(body, chosen)}.${other}${last}`, host, { class: 'answer' });
-    }
-    element('p', `Recommended: the least 1 − IoU + n/200. Mass, centre and inertia that go with a clump are the surface's own, whatever those of the spheres' union. Method: ${first.method}.`, host, { class: 'soft' });
-    const iou = (body) => body.clumps.find((c) => c.sphere_count === body.recommended).iou;
-    for (const body of bodies.filter((b) => b.wall_cells >= 3 && iou(b) < 0.6))
-      element('p', `${body.name}: spheres and body have less than 0.6 of the volume of both in common; spheres are the wrong shape for it; take its mesh.`, host, { class: 'soft' });
-    for (const body of bodies.filter((b) => b.wall_cells < 3))
-      element('p', `${body.name}: its walls of ${number(mm * body.thickness, 3)} mm are thinner than the spheres can follow; take its mesh.`, host, { class: 'soft' });
+  chosen(body) {
+    return body.clumps.find((c) => c.sphere_count === body.chosen);
   }
 
   tellBodies() {
-    const chosen = (body) => body.clumps.find((c) => c.sphere_count === body.chosen);
-    element('h2', 'Each body', this.host);
-    table(this.host, [
-      { head: 'body', value: (b) => b.name },
-      { head: 'spheres', value: (b) => b.chosen, text: (b) => whole(b.chosen) },
-      { head: 'IoU', value: (b) => chosen(b).iou, text: (b) => number(chosen(b).iou, 4) },
-      { head: 'mean distance / mm', value: (b) => mm * meanOf(chosen(b)), text: (b) => number(mm * meanOf(chosen(b)), 3) },
-      { head: 'recommended', value: (b) => b.recommended, text: (b) => whole(b.recommended) },
-      { head: 'by mean distance', value: (b) => b.recommended_by_distance, text: (b) => whole(b.recommended_by_distance) },
+    table(folded(this.host, 'Each body'), [
+      { head: 'body', value: (b) => b.name }, { head: 'spheres', value: (b) => b.chosen, text: (b) => whole(b.chosen) }, { head: 'IoU', value: (b) => this.chosen(b).iou, text: (b) => number(this.chosen(b).iou, 4) },
+      { head: 'mean distance / mm', value: (b) => mm * meanOf(this.chosen(b)), text: (b) => number(mm * meanOf(this.chosen(b)), 3) }, { head: 'recommended', value: (b) => b.recommended, text: (b) => whole(b.recommended) }, { head: 'by mean distance', value: (b) => b.recommended_by_distance, text: (b) => whole(b.recommended_by_distance) },
     ], this.bodies, 'clumps.csv', 'Bodies and the spheres chosen for each');
   }
 
   build() {
-    const { host, bodies } = this;
+    const host = this.page.picture, { bodies } = this;
     if (bodies.length > 1) {
-      element('h2', 'Look at', host);
       const group = element('div', null, host, { role: 'group', 'aria-label': 'Bodies', class: 'objects' });
       this.buttons = bodies.map((body, i) => {
         const button = element('button', body.name, group, { type: 'button' });
@@ -80,19 +73,17 @@ export class ClumpSection {
         return button;
       });
     }
-    element('h2', 'The clump over the surface', host);
-    const label = element('label', 'spheres ', host);
-    this.slider = element('input', null, label, { type: 'range', min: 0, step: 1 });
-    this.slider.addEventListener('input', () => this.pick(Number(this.slider.value)));
-    this.told = element('p', null, host, { 'aria-live': 'polite' });
     this.buildView();
-    element('h2', 'Errors against the number of spheres', host);
-    this.chartHost = element('div', null, host);
-    this.tableHost = element('div', null, host);
+    const label = element('label', 'Number of spheres ', host, { class: 'soft' });
+    this.slider = element('input', null, label, { type: 'range', min: 0, step: 1, class: 'slider' });
+    this.slider.addEventListener('input', () => this.pick(Number(this.slider.value)));
+    this.told = element('p', null, host, { 'aria-live': 'polite', class: 'level-text' });
+    this.chartHost = element('div', null, this.host, { class: 'grid' });
+    this.tableHost = folded(this.host, 'Every number of spheres', false);
   }
 
   buildView() {
-    const host = element('div', null, this.host);
+    const host = element('div', null, this.page.picture);
     const check = element('label', null, host);
     const box = element('input', null, check, { type: 'checkbox', checked: '' });
     check.append(' edges of the surface');
@@ -127,7 +118,7 @@ export class ClumpSection {
     this.told.textContent = `${whole(clump.sphere_count)} ${clump.sphere_count === 1 ? 'sphere' : 'spheres'}: IoU ${number(clump.iou, 4)}, mean distance ${number(mm * meanOf(clump), 3)} mm, greatest ${number(mm * worstOf(clump), 3)} mm, the union's volume ${percent(clump.volume_error)} off, its normals ${number(clump.slope_deg, 3)}° from the surface's on average.`;
     this.slider.setAttribute('aria-valuetext', this.told.textContent);
     this.draw();
-    this.chart.draw();
+    this.page.pointer.show('spheres', clump.sphere_count);
   }
 
   draw() {
@@ -136,26 +127,22 @@ export class ClumpSection {
   }
 
   drawChart() {
-    const { clumps, recommended } = this.bodies[this.state.body];
-    const { size } = this.bodies[this.state.body];
-    const curve = (label, value, i) => ({ label, values: clumps.map(value), color: palette[i], text: (v) => number(v, 3) });
+    const { clumps, recommended, size } = this.bodies[this.state.body], xs = clumps.map((c) => c.sphere_count);
     this.chartHost.replaceChildren();
-    this.chart = new Chart(element('div', null, this.chartHost), {
-      x: { label: 'spheres', values: clumps.map((c) => c.sphere_count), text: (v) => whole(v) },
-      yLabel: 'share',
-      series: [curve('1 − IoU', (c) => 1 - c.iou, 0), curve('mean distance / L', (c) => meanOf(c) / size, 1), curve('1 − IoU + n/200', (c) => c.volume_criterion, 2)],
-      marks: () => [
-        { x: recommended, color: palette[2], label: 'recommended' },
-        { x: clumps[this.state.row].sphere_count, color: palette[5], dash: [4, 4], label: 'shown' },
-      ],
-      pick: (i) => this.pick(i),
-    });
+    this.page.pointer.plots = [];
+    if (clumps.length < 2) return;
+    for (const [title, yl, lines] of [['How far spheres and body are apart', 'share', [['1 − IoU', (c) => 1 - c.iou], ['mean distance / L', (c) => meanOf(c) / size]]], ['What is least at the recommended number', 'criterion', [['1 − IoU + n/200', (c) => c.volume_criterion]]]]) {
+      const all = lines.map(([name, value]) => ({ name, values: clumps.map(value) }));
+      const plot = new Plot(this.page.pointer, { r: 110, x: [xs[0], xs.at(-1)], xlog: true, y: span(all.flatMap(({ values }) => values)), xl: 'spheres', yl }).vline(recommended, 'c3', '4 3');
+      all.forEach(({ name, values }, i) => plot.line(xs, values, `c${i + 1}`).end(values.at(-1), name, `t${i + 1}`));
+      plot.follow('spheres', xs, all, { unit: ' spheres', digits: 3, text: whole, pick: (i) => this.pick(i) }).put(this.chartHost, title, `Dashed: recommended, ${whole(recommended)}. Click: that many above.`);
+    }
   }
 
   tellTable() {
     const { name, clumps } = this.bodies[this.state.body];
     const column = (head, value, digits = 3) => ({ head, value, text: (c) => number(value(c), digits) });
-    this.tableHost.replaceChildren();
+    this.tableHost.querySelectorAll(':scope > :not(summary)').forEach((each) => each.remove());
     table(this.tableHost, [
       { head: 'spheres', value: (c) => c.sphere_count, text: (c) => whole(c.sphere_count) },
       column('IoU', (c) => c.iou, 4), column('mean distance / mm', (c) => mm * meanOf(c)), column('greatest / mm', (c) => mm * worstOf(c)),

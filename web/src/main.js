@@ -5,8 +5,8 @@ import { CalibrationSection } from './calibrate.js';
 import { ChoiceSection } from './choice.js';
 import { ClumpSection } from './clump.js';
 import { decoderReady } from './packed.js';
+import { tellProvenance } from './page.js';
 import { setShapeColors } from './pile.js';
-import { tellProvenance } from './provenance.js';
 import { SceneSection } from './scene.js';
 import { StudySection } from './study.js';
 import { element } from './text.js';
@@ -31,9 +31,9 @@ async function fill(data) {
     if (folder.calibration) new CalibrationSection(host, folder);
     tellProvenance(host, folder, data.version);
   }
-  const objects = data.folders.flatMap((folder) => folder.choice?.filter((entry) => !entry.set) ?? []);
   document.querySelectorAll('body > img').forEach((picture) => picture.remove()); // of piles shown in 3D
-  if (objects.length === 1) document.title = `${objects[0].name}: scree report`;
+  const titles = [...page.querySelectorAll('.title')].map((title) => title.textContent);
+  if (titles.length) document.title = `${titles.slice(0, 3).join(', ')}: scree report`;
 }
 
 const data = document.getElementById('data');

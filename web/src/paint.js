@@ -4,6 +4,7 @@ import { shapeColor } from './pile.js';
 import { element, number } from './text.js';
 import { rampBar, rampTable, swatch } from './view.js';
 
+const mostNames = 24; // that a legend has
 const most = 20000; // numbers that a range is found of
 
 // From 0, or the least where that is lower, to where the highest 2 % begin: single peaks would hide the rest.
@@ -35,6 +36,10 @@ export function bodyPaints(pile, shapes) {
   const families = [...new Set(shapes.map(({ family }) => family))];
   const sizes = shapes.map(({ size }) => 1000 * size);
   const paints = [byShape(pile)];
+  if (pile.fragmentOf) {
+    const fragments = Array.from({ length: 1 + pile.fragmentOf.reduce((a, b) => (b < 0xffffffff ? Math.max(a, b) : a), 0) }, (_, k) => `fragment ${k + 1}`);
+    paints.unshift(classes('fragment', fragments, (body) => pile.fragmentOf[body] % fragments.length));
+  }
   if (families.length > 1 && families.length < shapes.length) paints.push(classes('class', families, (body) => families.indexOf(shapes[pile.shapeOf[body]].family)));
   if (pile.times.length > 1) {
     const speeds = [], ages = [];
@@ -62,6 +67,10 @@ export function wallPaints(pile) {
 }
 
 export function tellPaint(host, { name, names, unit, range }) {
+  if (names?.length > mostNames) {
+    element('span', `${names.length} ${name}s`, host);
+    return;
+  }
   if (names) {
     names.forEach((text, k) => swatch(host, shapeColor(k), text));
     return;

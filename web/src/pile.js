@@ -40,6 +40,7 @@ export class Pile {
     this.shapes = Array.from({ length: reader.u32() }, surface);
     this.bodyCount = reader.u32();
     this.shapeOf = new Uint32Array(decodeVertices(reader.buffer(), this.bodyCount, 4));
+    this.fragmentOf = reader.u32() ? new Uint32Array(decodeVertices(reader.buffer(), this.bodyCount, 4)) : null; // at the end
     this.low = reader.reals(3);
     this.step = reader.real();
     const count = reader.u32();
@@ -299,10 +300,12 @@ export class PilePlayer {
       this.stop();
       this.goTo(this.pile.times[Number(this.slider.value)]);
     });
-    this.looks = element('div', null, this.box, { class: 'controls' });
-    this.legend = element('p', null, this.box, { class: 'legend' });
     this.text = element('p', null, this.box, { class: 'level-text', 'aria-live': 'off' });
-    element('p', 'Space plays and stops; on the time slider the arrow keys go from moment to moment. Turn with mouse or finger, or with the arrow keys once the view has the focus; plus and minus move nearer and away.', this.box, { class: 'soft hint' });
+    const more = element('details', null, this.box);
+    element('summary', 'Colours, cut, keys', more);
+    this.looks = element('div', null, more, { class: 'controls' });
+    this.legend = element('p', null, more, { class: 'legend' });
+    element('p', 'Space plays and stops; on the time slider the arrow keys go from moment to moment. Turn with mouse or finger, or with the arrow keys once the view has the focus; plus and minus move nearer and away.', more, { class: 'soft hint' });
   }
 
   // What bodies and walls are coloured by, and the cut; shapes: as bodyPaints.
@@ -324,6 +327,7 @@ export class PilePlayer {
     };
     looks.replaceChildren();
     const bodies = shapes ? bodyPaints(pile, shapes) : [seen[0]], walls = wallPaints(pile);
+    view.paint = seen[0] = bodies[0];
     if (bodies.length > 1) select('Particles by', bodies.map(({ name }) => name), (i) => { view.paint = seen[0] = bodies[i]; });
     if (walls.length) select('Walls by', ['nothing, seen through', ...walls.map(({ name }) => name)], (i) => view.paintWalls(seen[1] = walls[i - 1] ?? null));
     if (pile.walls.length) {

@@ -1,5 +1,7 @@
 // Numbers as people read them, elements from text, tables that can be saved.
 
+export const known = (x) => x !== null && x !== undefined && Number.isFinite(x);
+
 // 1 particle, 2 particles
 export const counted = (n, word) => `${whole(n)} ${word}${n === 1 ? '' : 's'}`;
 export const whole = (n) => (n === null || n === undefined ? '–' : Number(n).toLocaleString('en'));
@@ -39,9 +41,9 @@ export function element(tag, text, parent, attributes = {}) {
   return made;
 }
 
-// A part that can be folded, and begins so where the window is narrow.
-export function folded(host, title) {
-  const made = element('details', null, host, { class: 'part', ...(matchMedia('(max-width: 40rem)').matches ? {} : { open: '' }) });
+// A part that can be folded.
+export function folded(host, title, open = !matchMedia('(max-width: 40rem)').matches) {
+  const made = element('details', null, host, { class: 'part', ...(open ? { open: '' } : {}) });
   element('h2', title, element('summary', null, made));
   return made;
 }
@@ -79,7 +81,7 @@ export function table(host, all, rows, file, caption) {
     const line = element('tr', null, body);
     columns.forEach((column, i) => {
       const text = (column.text ?? column.value)(row);
-      const cell = element(i ? 'td' : 'th', text ?? '–', line, i ? {} : { scope: 'row' });
+      const cell = element(i ? 'td' : 'th', text ?? '–', line, i ? { 'data-label': column.head } : { scope: 'row' });
       column.draw?.(row, cell);
     });
   }

@@ -209,6 +209,15 @@ export class View {
     this.place(frame);
   }
 
+  // A small picture of a mesh as it is seen now, as an address; what is shown is another then.
+  thumbnail(mesh, frame) {
+    this.show(mesh, frame, { wire: mesh.triangles.length < 3000 });
+    const small = document.createElement('canvas'), { width, height } = this.renderer.domElement, scale = Math.min(200 / width, 136 / height);
+    [small.width, small.height] = [200, 136];
+    small.getContext('2d').drawImage(this.renderer.domElement, 100 - (scale * width) / 2, 68 - (scale * height) / 2, scale * width, scale * height);
+    return small.toDataURL();
+  }
+
   // spheres: rows x, y, z, radius in the mesh's units; over them the mesh's edges, if asked for.
   showSpheres(spheres, mesh, frame, wire) {
     this.clear();

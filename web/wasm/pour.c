@@ -3,7 +3,7 @@
 #include "scree.h"
 
 #include "report/shapes.h"
-#include "scene/scene.h"
+#include "scene/file.h"
 
 #include <emscripten.h>
 #include <math.h>
@@ -53,9 +53,9 @@ EMSCRIPTEN_KEEPALIVE int web_pour_begin(const char *template_name) {
 }
 /* m: the diameter of the largest shape; NaN: it cannot be made. */
 EMSCRIPTEN_KEEPALIVE double web_pour_size(void) {
-  double diameter;
-  return scree_scene_file_largest(file, NULL, NULL, &diameter, &error) == SCREE_OK ? diameter
-                                                                                   : (double)NAN;
+  scree_scene_extent extent;
+  return scree_scene_file_extent(file, NULL, NULL, &extent, &error) == SCREE_OK ? extent.largest
+                                                                                : (double)NAN;
 }
 EMSCRIPTEN_KEEPALIVE int web_pour_set(const char *field, const char *value) {
   return scree_scene_file_set(file, field, value, &error);

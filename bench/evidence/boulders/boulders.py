@@ -6,6 +6,8 @@
   boulders.py grid FILE.csv ZONE.restitution=X ... [--profile P] [--variant V,...] [--every N]
                         all shapes, places and every Nth orientation; adds to the table what it lacks
   boulders.py rolling FILE.csv   spheres on a ground that resists rolling by several values, at restitution 0.05 and friction 1
+  boulders.py ground FILE.csv M [M ...] [--every N]   both profiles on a ground that resists rolling: zones as IMPACTS, rolling
+                        friction M on the vegetated and rocky ones
   boulders.py used [--variant V,...]     triangles or spheres of every shape
   boulders.py measured  the numbers of the 41 boulders and their standard errors by bootstrap
   boulders.py fitted FIT.csv     its means, as words for `grid`
@@ -26,6 +28,8 @@ sys.path.insert(0, str(HERE.parent))
 from common import WORK, Table, bootstrap, data, deviation, library, mean, read, run  # noqa: E402
 
 SHAPES, ZONES = ("SP1A", "SP2A", "SP2B", "SP3A"), ("blue", "gray", "red")
+# Restitution and friction by zone, as single impacts of Rockable read; whether the zone resists rolling.
+IMPACTS = {"blue": (0.1, 0.7, 1), "gray": (0.1, 0.3, 0), "red": (0.1, 0.7, 1)}
 FAR = 45  # m: on profile 1 the pit's floor begins there
 COLUMNS = ["variant", "shape", "place", "orientation", "x", "y", "z", "along", "sideways", "zone", "time", "end"]
 
@@ -214,6 +218,20 @@ def rolling(options):
         table.add(value, len(ends), *(answers[name] for name in table.columns[2:]))
 
 
+def ground(options):
+    """All shapes, places and every Nth orientation, by rolling friction and profile."""
+    table = Table(options.file, ["rolling_friction", "profile", *COLUMNS], 6)
+    for profile in (1, 2):
+        for value in map(float, options.words):
+            words = [f"{zone}.{what}={x}" for zone, (e, mu, rolls) in IMPACTS.items()
+                     for what, x in (("restitution", e), ("friction", mu), ("rolling_friction", value * rolls))]
+            quarry = Quarry(profile, words)
+            for orientation in range(0, 64, options.every):
+                for key in ((options.variant, name, place, orientation) for place in range(4) for name in SHAPES):
+                    if table.key((value, profile, *key)) not in table.done:
+                        table.add(value, profile, *key, *quarry.fall(*key))
+
+
 def measured_rows(profile=1):
     folder = data("authume")
     terrain = Terrain(folder, profile)
@@ -251,20 +269,21 @@ def fitted(options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     verbs = parser.add_subparsers(dest="verb", required=True)
-    for name, function in (("drop", drop), ("grid", grid), ("rolling", rolling), ("used", used), ("measured", measured), ("fitted", fitted)):
+    for name, function in (("drop", drop), ("grid", grid), ("rolling", rolling), ("ground", ground), ("used", used), ("measured", measured), ("fitted", fitted)):
         verb = verbs.add_parser(name)
         verb.set_defaults(function=function)
-        if name in ("grid", "rolling", "fitted"):
+        if name in ("grid", "rolling", "ground", "fitted"):
             verb.add_argument("file")
         if name in ("drop", "grid"):
             verb.add_argument("--profile", type=int, default=1)
+        if name in ("drop", "grid", "ground"):
             verb.add_argument("words", nargs="*")
-        if name in ("drop", "grid", "used"):
+        if name in ("drop", "grid", "ground", "used"):
             verb.add_argument("--variant", default="recommended")
         if name == "drop":
             verb.add_argument("--count", type=int, required=True)
             verb.add_argument("--seed", type=int, default=1)
-        if name == "grid":
+        if name in ("grid", "ground"):
             verb.add_argument("--every", type=int, default=1)
     options = parser.parse_args()
     options.function(options)

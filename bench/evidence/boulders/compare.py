@@ -2,6 +2,7 @@
 """Where boulders came to rest: measured, by Rockable and by scree; and which description of the shape would have misled.
 
   compare.py places GRID.csv     as CSV: measured, Rockable and scree at the fitted parameters, two by two
+  compare.py ground GROUND.csv   as CSV: places by rolling friction beside the measured ones; fitted on one profile, told of the other
   compare.py shapes GRID.csv     as CSV: every variant beside 4x, trajectories with the same start as pairs
 Margins: ../margins.md. Environment: SCREE_EVIDENCE_DIR."""
 import csv
@@ -56,6 +57,48 @@ def places(grid):
         show(*line, *([""] * 8 if not beside else []), verdict)
 
 
+def crossing(values, means, wanted):
+    """Where straight lines between the means reach what is wanted; beyond the values the nearest one."""
+    rows = sorted(zip(values, means))
+    for (a, fa), (b, fb) in zip(rows, rows[1:]):
+        if (fa - wanted) * (fb - wanted) <= 0 and fa != fb:
+            return a + (b - a) * (fa - wanted) / (fa - fb)
+    return min(rows, key=lambda row: abs(row[1] - wanted))[0]
+
+
+def between(values, means, at):
+    rows = sorted(zip(values, means))
+    for (a, fa), (b, fb) in zip(rows, rows[1:]):
+        if a <= at <= b:
+            return fa + (fb - fa) * (at - a) / (b - a)
+    return rows[0][1] if at < rows[0][0] else rows[-1][1]
+
+
+def ground(path):
+    rows, values = {}, []
+    for r in read(path):
+        if r["zone"] != "none":
+            rows.setdefault((int(r["profile"]), float(r["rolling_friction"])), []).append((float(r["along"]), float(r["sideways"]), r["zone"]))
+    values = sorted({value for _, value in rows})
+    show("profile", "rolling_friction", "count", "along_mean", "along_sd", "sideways_mean", "sideways_sd", *ZONES, "off", "low", "high")
+    real = {profile: measured_rows(profile) for profile in (1, 2)}
+    for profile in (1, 2):
+        for value, sample in [("measured", real[profile])] + [(v, rows[profile, v]) for v in values if (profile, v) in rows]:
+            show(profile, value, len(sample), *(f([r[k] for r in sample]) for k in (0, 1) for f in (mean, deviation)),
+                 *([r[2] for r in sample].count(zone) / len(sample) for zone in (*ZONES, "off")), "", "")
+    keys = sorted(rows)
+    for fitted, told in ((1, 2), (2, 1)):
+        def answer(*samples):
+            means = {key: mean([r[0] for r in sample]) for key, sample in zip(keys, samples)}
+            at = crossing(values, [means[fitted, v] for v in values], mean([r[0] for r in samples[-1]]))
+            return at, between(values, [means[told, v] for v in values], at)
+        samples = [rows[key] for key in keys] + [real[fitted]]
+        best = answer(*samples)
+        spans = [bootstrap(lambda *s, k=k: answer(*s)[k], *samples) for k in (0, 1)]
+        show(f"fitted on {fitted}", best[0], *[""] * 9, *spans[0])
+        show(f"told of {told}", "", "", best[1], *[""] * 7, *spans[1])
+
+
 def shapes(grid):
     rows = {}
     for r in read(grid):
@@ -81,6 +124,6 @@ def shapes(grid):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3 or sys.argv[1] not in ("places", "shapes"):
+    if len(sys.argv) != 3 or sys.argv[1] not in ("places", "ground", "shapes"):
         sys.exit(__doc__)
-    {"places": places, "shapes": shapes}[sys.argv[1]](sys.argv[2])
+    {"places": places, "ground": ground, "shapes": shapes}[sys.argv[1]](sys.argv[2])

@@ -9,6 +9,8 @@
   drum.py sizes FILE.csv --measured FILE.csv MM...
                                 angle and error at 15 and 45 rpm of spheres of several mean diameters, at the parameters
                                 that ACCES ended at; adds to the table what it lacks
+  drum.py held FOLDER           the profiles predicted at 10 and 30 rpm (FOLDER/drum-10.csv, drum-30.csv) beside the pictures that
+                                were kept back, and beside straight lines through the pictures at 15 and 45 rpm, as CSV
   drum.py acces                 the errors of ACCES's best after so many of its evaluations, as CSV
 
 A column's height is the length of powder in it. A simulated picture is dark where a sphere stands in the line of sight,
@@ -166,6 +168,17 @@ def sizes(options):
                 table.add(size, rpm, len(scene.world), angle(lengths), sum(lengths) * 2 * RADIUS / COLUMNS, error(lengths, seen))
 
 
+def held(options):
+    folder = data("granudrum")
+    near, far = (picture(folder / f"gd_{rpm}.bmp") for rpm in (15, 45))
+    print("rpm,angle_measured,angle_predicted,angle_line,error_predicted_mm2,error_line_mm2")
+    for rpm in (10, 30):
+        seen = picture(folder / f"gd_{rpm}.bmp")
+        told = [float(row["length_mm"]) for row in read(pathlib.Path(options.folder) / f"drum-{rpm}.csv")]
+        line = [a + (b - a) * (rpm - 15) / 30 for a, b in zip(near, far)]
+        print(f"{rpm},{angle(seen):.1f},{angle(told):.1f},{angle(line):.1f},{error(told, seen):.0f},{error(line, seen):.0f}")
+
+
 def acces(_options):
     rows = [{k: float(v) for k, v in row.items()} for row in read(data("granudrum") / "acces_240_evaluations.csv")]
     print("evaluations,sliding,rolling,error_15_mm2,error_45_mm2")
@@ -187,12 +200,13 @@ def main():
     run.add_argument("--measured")
     run.add_argument("--profile")
     verbs.add_parser("acces")
+    verbs.add_parser("held").add_argument("folder")
     several = verbs.add_parser("sizes")
     several.add_argument("file")
     several.add_argument("sizes", nargs="+")
     several.add_argument("--measured", required=True)
     options = parser.parse_args()
-    {"outlines": lambda o: outlines(o.file), "one": one, "sizes": sizes, "acces": acces}[options.verb](options)
+    {"outlines": lambda o: outlines(o.file), "one": one, "sizes": sizes, "held": held, "acces": acces}[options.verb](options)
 
 
 if __name__ == "__main__":

@@ -138,10 +138,9 @@ static bool shape(prover *p, size_t *cell_count) {
 }
 
 /* Counts, for cell c in start[c]. */
-static void count_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void count_block(void *context, scree_block block) {
   prover *p = context;
-  for (size_t t = begin; t < end; t++) {
+  for (size_t t = block.begin; t < block.end; t++) {
     const scree_box box = scree_facet_box(p->mesh, t);
     span s = span_of(p, &box);
     size_t cells = 1;
@@ -156,10 +155,9 @@ static void count_block(void *context, size_t begin, size_t end, size_t block, i
 }
 
 /* From the end of each cell's part to its beginning; the order within a cell does not matter. */
-static void fill_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void fill_block(void *context, scree_block block) {
   prover *p = context;
-  for (size_t t = begin; t < end; t++) {
+  for (size_t t = block.begin; t < block.end; t++) {
     FOR_CELLS(p, p->cells[t], cell) {
       uint32_t at = __atomic_sub_fetch(&p->start[cell], 1, __ATOMIC_RELAXED);
       p->items[at] = (uint32_t)t;
@@ -296,12 +294,11 @@ static bool cell_is_clear(const prover *p, size_t cell, cell_facets *c) {
   return true;
 }
 
-static void cell_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void cell_block(void *context, scree_block block) {
   prover *p = context;
   cell_facets facets;
   memset(&facets.lanes, 0, sizeof facets.lanes);
-  for (size_t cell = begin; cell < end; cell++) {
+  for (size_t cell = block.begin; cell < block.end; cell++) {
     if (p->start[cell + 1] - p->start[cell] < 2) continue;
     if (atomic_load_explicit(&p->failed, memory_order_relaxed)) return;
     if (!cell_is_clear(p, cell, &facets)) atomic_store(&p->failed, true);

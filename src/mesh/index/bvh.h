@@ -42,3 +42,9 @@ bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit);
  * positive where the ray leaves the body. A ray through an edge meets at least one of its facets.
  * Flat facets are not met. */
 double scree_ray_meet(const scree_bvh *bvh, vec3 from, vec3 along, double least, double *facing);
+/* Whether a closed, outward surface has the point within, by the first facet on a ray. */
+static inline bool scree_bvh_holds(const scree_bvh *bvh, vec3 p) {
+  double facing = 0;
+  vec3 along = {0.3085, 0.5747, 0.7580}; /* as good as any */
+  return isfinite(scree_ray_meet(bvh, p, vec3_unit(along), 0, &facing)) && facing > 0;
+}

@@ -199,20 +199,18 @@ static void list_runs(const framing *f) {
 }
 
 /* Which nodes get a frame. */
-static void try_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void try_block(void *context, scree_block block) {
   const framing *f = context;
   scree_facet_tree *t = f->tree;
   scree_facet_frame made;
-  for (size_t i = begin; i < end; i++)
+  for (size_t i = block.begin; i < block.end; i++)
     t->frame_of[i] = make_frame(t, &f->runs[i], &t->tree.nodes[i].box, &made) ? 0 : NO_FRAME;
 }
 
-static void make_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void make_block(void *context, scree_block block) {
   const framing *f = context;
   scree_facet_tree *t = f->tree;
-  for (size_t i = begin; i < end; i++)
+  for (size_t i = block.begin; i < block.end; i++)
     if (t->frame_of[i] != NO_FRAME)
       make_frame(t, &f->runs[i], &t->tree.nodes[i].box, &t->frames[t->frame_of[i]]);
 }

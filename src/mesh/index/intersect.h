@@ -47,7 +47,8 @@ scree_status scree_facet_meetings(const scree_facet_tree *tree, size_t limit,
 scree_status scree_facet_meetings_new(const scree_facet_tree *tree, const bool *settled,
                                       size_t limit, const scree_progress *progress,
                                       scree_meetings *found, scree_error *error);
-/* The same with a tree of its own; the mesh may be empty. */
-scree_status scree_mesh_meetings(const scree_mesh *mesh, size_t limit,
+/* The same with a tree of its own, of what is near the others where these are few; settled NULL:
+ * none is. The mesh may be empty. */
+scree_status scree_mesh_meetings(const scree_mesh *mesh, const bool *settled, size_t limit,
                                  const scree_progress *progress, scree_meetings *found,
                                  scree_error *error);

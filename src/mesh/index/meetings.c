@@ -5,6 +5,7 @@
  * the result is the same for any number of threads. */
 #include "base/array.h"
 #include "base/parallel.h"
+#include "base/radix.h"
 #include "mesh/index/facet_tree.h"
 #include "mesh/index/intersect.h"
 
@@ -125,11 +126,9 @@ static bool traverse(search *s, item start, scree_meetings *out) {
   return true;
 }
 
-static void traverse_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block;
-  (void)worker;
+static void traverse_block(void *context, scree_block block) {
   search *s = context;
-  for (size_t i = begin; i < end; i++)
+  for (size_t i = block.begin; i < block.end; i++)
     if (!traverse(s, s->work[i], &s->found[i])) atomic_store(&s->failed, true);
 }
 
@@ -183,11 +182,7 @@ static scree_status run(search *s, size_t work_count, const scree_progress *prog
   return status;
 }
 
-static int compare_meetings(const void *a, const void *b) {
-  const scree_meeting *x = a, *y = b;
-  if (x->first != y->first) return x->first < y->first ? -1 : 1;
-  return (x->second > y->second) - (x->second < y->second);
-}
+SCREE_ORDER_BY2(compare_meetings, scree_meeting, first, second)
 
 static scree_status gather(search *s, size_t work_count, scree_meetings *found,
                            scree_error *error) {
@@ -242,12 +237,87 @@ scree_status scree_facet_meetings_new(const scree_facet_tree *tree, const bool *
   return status;
 }
 
-scree_status scree_mesh_meetings(const scree_mesh *mesh, size_t limit,
+/* ---- Of few facets ---- */
+
+/* Some facets of a mesh, in a tree. */
+typedef struct few {
+  const scree_mesh *mesh;
+  const uint32_t *facet;
+  scree_tree tree;
+  bool *near; /* by facet of the mesh: its box meets the box of one of them */
+} few;
+
+static scree_box box_of_one(const void *context, size_t i) {
+  const few *f = context;
+  return scree_facet_box(f->mesh, f->facet[i]);
+}
+
+static bool is_near(const few *f, const scree_box *box) {
+  scree_tree_walk walk;
+  scree_tree_start(&walk, &f->tree);
+  for (const scree_tree_node *n; (n = scree_tree_next(&walk));) {
+    if (!scree_box_meets(&n->box, box) || scree_tree_enter(&walk, n)) continue;
+    for (uint32_t i = n->first; i < n->first + n->count; i++) {
+      scree_box of = box_of_one(f, f->tree.order[i]);
+      if (scree_box_meets(&of, box)) return true;
+    }
+  }
+  return false;
+}
+
+static void mark_near(void *context, scree_block block) {
+  const few *f = context;
+  for (size_t t = block.begin; t < block.end; t++) {
+    scree_box box = scree_facet_box(f->mesh, (uint32_t)t);
+    f->near[t] = is_near(f, &box);
+  }
+}
+
+/* `new_count` facets are not settled, at least one: they are sought among those near them. */
+static scree_status meetings_of_few(const scree_mesh *mesh, const bool *settled, size_t new_count,
+                                    size_t limit, const scree_progress *progress,
+                                    scree_meetings *found, scree_error *error) {
+  enum { BLOCK = 4096 };
+  SCREE_SCRATCH(uint32_t, facet, mesh->triangle_count, error);
+  SCREE_SCRATCH(bool, near, mesh->triangle_count, error);
+  few f = {.mesh = mesh, .facet = facet, .near = near};
+  for (uint32_t t = 0, n = 0; t < mesh->triangle_count; t++)
+    if (!settled[t]) facet[n++] = t;
+  const scree_boxed boxed = {new_count, box_of_one, &f, SCREE_LEAF_FACETS, SCREE_SPLIT_HALVES};
+  SCREE_TRY(scree_tree_build(&boxed, &f.tree, error));
+  scree_parallel_for(mesh->triangle_count, BLOCK, mark_near, &f);
+  scree_tree_free(&f.tree);
+  size_t count = 0;
+  for (uint32_t t = 0; t < mesh->triangle_count; t++)
+    if (near[t]) facet[count++] = t;
+  SCREE_SCRATCH(uint32_t, triangles, 3 * count, error);
+  SCREE_SCRATCH(bool, old, count, error);
+  for (size_t i = 0; i < count; i++) {
+    memcpy(triangles + 3 * i, mesh->triangles + 3 * (size_t)facet[i], 3 * sizeof *triangles);
+    old[i] = settled[facet[i]];
+  }
+  const scree_mesh part = {mesh->positions, triangles, mesh->vertex_count, count};
+  SCREE_CLEANUP(scree_facet_tree_free) scree_facet_tree tree = {0};
+  SCREE_TRY(scree_facet_tree_build(&part, &tree, error));
+  SCREE_TRY(scree_facet_meetings_new(&tree, old, limit, progress, found, error));
+  for (size_t i = 0; !found->truncated && i < found->count; i++) {
+    found->items[i].first = facet[found->items[i].first];
+    found->items[i].second = facet[found->items[i].second];
+  }
+  return SCREE_OK;
+}
+
+scree_status scree_mesh_meetings(const scree_mesh *mesh, const bool *settled, size_t limit,
                                  const scree_progress *progress, scree_meetings *found,
                                  scree_error *error) {
+  enum { FEW = 8 }; /* a share of one in so many */
   SCREE_CLEANUP(scree_facet_tree_free) scree_facet_tree tree = {0};
+  size_t new_count = 0;
   *found = (scree_meetings){0};
-  if (mesh->triangle_count == 0) return SCREE_OK;
+  for (size_t t = 0; t < mesh->triangle_count; t++) new_count += !settled || !settled[t];
+  if (new_count == 0) return SCREE_OK;
+  if (new_count < mesh->triangle_count / FEW)
+    return meetings_of_few(mesh, settled, new_count, limit, progress, found, error);
   SCREE_TRY(scree_facet_tree_build(mesh, &tree, error));
-  return scree_facet_meetings(&tree, limit, progress, found, error);
+  return scree_facet_meetings_new(&tree, settled, limit, progress, found, error);
 }

@@ -1,6 +1,7 @@
 #include "mesh/io/model_3mf.h"
 
 #include "base/number.h"
+#include "mesh/io/write.h"
 #include "mesh/io/zip.h"
 
 #include <expat.h>
@@ -160,7 +161,7 @@ static void start_model(scree_3mf_parse *p, const char **attributes) {
              *required = scree_3mf_attribute(attributes, "requiredextensions");
   if (required) check_required(p, required);
   if (p->part != 0 || !unit) return;
-  if (scree_unit_of_root(unit) > 0)
+  if (scree_3mf_unit_m(unit) > 0)
     snprintf(p->model->unit_name, sizeof p->model->unit_name, "%s", unit);
   else
     stop(p, SCREE_BAD_FILE,
@@ -226,8 +227,12 @@ static void start_triangle(scree_3mf_parse *p, scree_3mf_object *o, const char *
 static void start_placed(scree_3mf_parse *p, scree_3mf_object *o, const char **attributes) {
   const char *id = scree_3mf_attribute(attributes, "objectid"),
              *path = scree_3mf_attribute(attributes, PRODUCTION "|path"),
-             *transform = scree_3mf_attribute(attributes, "transform");
-  scree_3mf_component c = {.object_id = id ? scree_3mf_id(id) : 0, .part = p->part};
+             *transform = scree_3mf_attribute(attributes, "transform"),
+             *printable = scree_3mf_attribute(attributes, "printable");
+  scree_3mf_component c = {
+      .object_id = id ? scree_3mf_id(id) : 0,
+      .part = p->part,
+      .is_unprinted = printable && (!strcmp(printable, "0") || !strcmp(printable, "false"))};
   if (!read_placement(transform, &c.where))
     stop(p, SCREE_BAD_FILE, "a transform is '%.60s'; it must be twelve numbers", transform);
   if (path) c.part = scree_3mf_part_index(p, path);
@@ -289,10 +294,18 @@ static void start_doctype(void *context, const char *name, const char *system, c
   stop(context, SCREE_BAD_FILE, "a DOCTYPE, which a 3MF must not have");
 }
 
+/* What a tag may hold: expat reads one that is not whole again with each piece. */
+enum { MOST_TAG_BYTES = 1 << 20 };
+
 static bool take_piece(void *context, const unsigned char *bytes, size_t count, bool is_last) {
   scree_3mf_parse *p = context;
-  if (XML_Parse(p->parser, (const char *)bytes, (int)count, is_last) != XML_STATUS_ERROR)
-    return true;
+  p->given += count;
+  if (XML_Parse(p->parser, (const char *)bytes, (int)count, is_last) != XML_STATUS_ERROR) {
+    uint64_t begun = (uint64_t)XML_GetCurrentByteIndex(p->parser);
+    if (is_last || p->given - begun <= MOST_TAG_BYTES) return true;
+    stop(p, SCREE_LIMIT, "a tag of more than %d bytes", MOST_TAG_BYTES);
+    return false;
+  }
   enum XML_Error code = XML_GetErrorCode(p->parser);
   if (p->status == SCREE_OK && code == XML_ERROR_NO_MEMORY) scree_3mf_stop_memory(p);
   stop(p, SCREE_BAD_FILE, "%s", XML_ErrorString(code));
@@ -303,6 +316,7 @@ static scree_status parse_member(scree_reading *r, scree_3mf_parse *p,
                                  const scree_zip_member *member, bool has_namespaces) {
   static const XML_Memory_Handling_Suite memory = {expat_alloc, expat_resize, scree_free};
   p->r = r;
+  p->given = 0;
   p->status = SCREE_OK;
   p->parser = XML_ParserCreate_MM(NULL, &memory, has_namespaces ? "|" : NULL);
   if (!p->parser) return scree_fail_memory(r->error, 0, "an XML parser");
@@ -320,15 +334,29 @@ static scree_status parse_member(scree_reading *r, scree_3mf_parse *p,
   return p->status;
 }
 
-scree_status scree_3mf_parse_part(scree_reading *r, scree_3mf_parse *p, bool is_needed) {
-  scree_zip_member member;
-  if (scree_zip_find(r->bytes, r->byte_count, p->part_name, &member))
-    return parse_member(r, p, &member, is_needed);
-  if (!is_needed) return SCREE_OK;
+static scree_status fail_part(scree_reading *r, const char *part, scree_zip_answer answer) {
+  char first[SCREE_ZIP_NAME];
+  scree_zip_first_name(r->bytes, r->byte_count, first);
+  if (answer == SCREE_ZIP_METHOD)
+    return scree_reading_fail(r, SCREE_UNSUPPORTED,
+                              "as 3MF: %.200s is compressed by a method that is not read, or "
+                              "encrypted; save it with deflate, as 3MF asks for",
+                              part);
+  if (answer == SCREE_ZIP_ABSENT && *first)
+    return scree_reading_fail(
+        r, SCREE_BAD_FILE,
+        "is a zip archive with %.100s, and no 3MF: %.200s is not found; unpack it", first, part);
   return scree_reading_fail(r, SCREE_BAD_FILE,
                             "is a zip archive in which %.200s is not found: cut off, damaged, or "
                             "no 3MF",
-                            p->part_name);
+                            part);
+}
+
+scree_status scree_3mf_parse_part(scree_reading *r, scree_3mf_parse *p, bool is_needed) {
+  scree_zip_member member;
+  scree_zip_answer answer = scree_zip_find(r->bytes, r->byte_count, p->part_name, &member);
+  if (answer == SCREE_ZIP_FOUND) return parse_member(r, p, &member, is_needed);
+  return is_needed ? fail_part(r, p->part_name, answer) : SCREE_OK;
 }
 
 scree_status scree_3mf_read_part(scree_reading *r, scree_3mf *m, size_t index) {

@@ -23,7 +23,8 @@ typedef struct scree_3mf_volume {
 /* An object placed: by the build, or in another. */
 typedef struct scree_3mf_component {
   uint32_t object_id;
-  size_t part; /* in which it is defined */
+  size_t part;       /* in which it is defined */
+  bool is_unprinted; /* an item that the build is to leave out */
   scree_affine where;
 } scree_3mf_component;
 
@@ -60,7 +61,7 @@ typedef struct scree_3mf {
   SCREE_3MF_LIST(scree_3mf_volume) volumes;
   char unit_name[16];
   const char *unread; /* an extension that is used and not read; NULL: none */
-  size_t left_out[SCREE_3MF_ROLE_COUNT];
+  size_t left_out[SCREE_3MF_ROLE_COUNT], unprinted; /* items */
 } scree_3mf;
 
 struct XML_ParserStruct;
@@ -72,6 +73,7 @@ typedef struct scree_3mf_parse {
   size_t part;
   uint32_t object_id; /* slicers' settings: of the object that is open */
   scree_reading *r;
+  uint64_t given; /* bytes of the part so far */
   struct XML_ParserStruct *parser;
   scree_status status;
   SCREE_3MF_LIST(struct scree_3mf_prefix) prefixes; /* of namespaces */

@@ -5,19 +5,12 @@
  * ASCII STL if its start is free of control characters, which a binary count and floats are not. */
 #include "mesh/io/read.h"
 
-#include "base/file.h"
-#include "base/number.h"
-#include "mesh/io/write.h"
-#include "mesh/weld.h"
-
-#include <math.h>
-#include <stdarg.h>
 #include <string.h>
 
 enum {
-  SNIFF_BYTES = 4096,
   MOST_DAMAGE = 20 /* bytes of text for each that is none, in a damaged one */
 };
+#define FBX_MARK "Kaydara FBX Binary"
 
 scree_read_options scree_default_read_options(void) {
   return (scree_read_options){.unit_m = 1e-3};
@@ -27,64 +20,6 @@ void scree_scan_free(scree_scan *scan) {
   if (!scan) return;
   scree_mesh_free(&scan->mesh);
   *scan = (scree_scan){0};
-}
-
-scree_status scree_reading_fail(const scree_reading *r, scree_status status, const char *format,
-                                ...) {
-  char sentence[512];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(sentence, sizeof sentence, format, arguments);
-  va_end(arguments);
-  return scree_fail(r->error, status, "%s: %s", r->name, sentence);
-}
-
-scree_text scree_reading_text(const scree_reading *r) {
-  const char *begin = (const char *)r->bytes, *end = begin + r->byte_count, *p = begin;
-  if (r->byte_count >= 3 && !memcmp(p, "\xef\xbb\xbf", 3)) p += 3;
-  return (scree_text){begin, p, end, r->name, r->unit_m, r->error};
-}
-
-typedef struct scaled_positions {
-  const double *positions;
-  double unit_m;
-} scaled_positions;
-
-static void fetch_scaled(const void *context, size_t first, size_t count, double *out) {
-  const scaled_positions *scaled = context;
-  const double *p = scaled->positions + 3 * first;
-  for (size_t i = 0; i < 3 * count; i++) out[i] = p[i] * scaled->unit_m;
-}
-
-static scree_status weld_source(scree_reading *r, const double *positions, size_t position_count,
-                                const uint32_t *triangles, size_t triangle_count) {
-  scaled_positions scaled = {positions, r->unit_m};
-  scree_corner_source source = {fetch_scaled, &scaled, position_count, triangles, triangle_count};
-  r->scan->facet_count = triangle_count;
-  return scree_weld_corners(&source, r->options->weld_tolerance, &r->scan->mesh,
-                            &r->scan->degenerate_count, NULL, r->error);
-}
-
-scree_status scree_reading_weld(scree_reading *r, const double *corner_positions,
-                                size_t triangle_count) {
-  if (triangle_count == 0)
-    return scree_reading_fail(r, SCREE_BAD_FILE, "%s with no facets", r->scan->format);
-  return weld_source(r, corner_positions, 3 * triangle_count, NULL, triangle_count);
-}
-
-scree_status scree_reading_weld_faces(scree_reading *r, const double *positions,
-                                      size_t position_count, scree_face_list *faces) {
-  r->scan->solid_count = 1;
-  size_t face_count = faces->triangles.count + faces->polygons.count;
-  if (face_count == 0)
-    return scree_reading_fail(r, SCREE_BAD_FILE, "%s with no facets (%zu vertices)",
-                              r->scan->format, position_count);
-  SCREE_TRY(scree_face_list_triangulate(faces, positions, r->name, r->error));
-  SCREE_TRY(weld_source(r, positions, position_count, faces->triangles.items,
-                        faces->triangles.count / 3));
-  r->scan->facet_count += faces->lost_count;
-  r->scan->degenerate_count += faces->lost_count;
-  return SCREE_OK;
 }
 
 /* ---- sniffing ---- */
@@ -113,59 +48,21 @@ static const mark foreign_marks[] = {
      4, "is a program, not a mesh"},
     {"\xff\xfe", 2, "is text in UTF-16; save it as UTF-8"},
     {"\xfe\xff", 2, "is text in UTF-16; save it as UTF-8"},
-    {"ISO-10303-21", 12, "is a STEP model; export it as STL"},
+    {"ISO-10303-21", 12, "is a STEP file, a model of curved faces; export it as STL"},
+    {"LASF", 4, "is a LAS file, a cloud of points; mesh it first"},
+    {"ASTM-E57", 8, "is an E57 file, a cloud of points; mesh it first"},
+    {"# .PCD", 6, "is a PCD file, a cloud of points; mesh it first"},
+    {"BLENDER", 7, "is a Blender file; export it as STL or PLY"},
+    {"#VRML", 5, "is a VRML file; export it as STL or PLY"},
+    {"# vtk DataFile", 14, "is a VTK file; save it as STL or PLY"},
 };
 
 /* Free of control characters other than white space, as far as one looks. */
 static bool looks_like_text(const unsigned char *bytes, size_t count) {
-  if (count > SNIFF_BYTES) count = SNIFF_BYTES;
+  if (count > SCREE_SNIFF_BYTES) count = SCREE_SNIFF_BYTES;
   for (size_t i = 0; i < count; i++)
     if ((bytes[i] < 32 && !(bytes[i] >= 9 && bytes[i] <= 13)) || bytes[i] == 127) return false;
   return true;
-}
-
-/* Of a binary STL's header: so many facets follow. */
-static size_t stl_count(const unsigned char *bytes) {
-  return (size_t)bytes[80] | (size_t)bytes[81] << 8 | (size_t)bytes[82] << 16 |
-         (size_t)bytes[83] << 24;
-}
-
-/* A count made of text is a text file of that very length by chance, and far longer than any. What
- * is shorter than its count is cut off, unless the count is all ones, as writers leave it that did
- * not know it yet. */
-scree_stl_length scree_stl_length_of(const unsigned char *bytes, size_t byte_count) {
-  if (byte_count < SCREE_STL_HEADER) return SCREE_STL_OTHER_LENGTH;
-  unsigned char swapped[SCREE_STL_HEADER] = {0};
-  for (int i = 0; i < 4; i++) swapped[80 + i] = bytes[83 - i];
-  size_t body = byte_count - SCREE_STL_HEADER, room = body / SCREE_STL_FACET;
-  size_t count = stl_count(bytes);
-  if (body != room * SCREE_STL_FACET) return SCREE_STL_OTHER_LENGTH;
-  if (count == room) return SCREE_STL_WHOLE;
-  if (stl_count(swapped) == room) return SCREE_STL_SWAPPED;
-  return room && (count < room || count == UINT32_MAX) ? SCREE_STL_MISCOUNTED
-                                                       : SCREE_STL_OTHER_LENGTH;
-}
-
-/* scree's comment stands in a binary STL's header, behind `solid`, and behind the words for
- * comments of PLY, OBJ and OFF. */
-void scree_reading_take_unit(scree_reading *r, const unsigned char *bytes, size_t byte_count) {
-  static const char *const marks[] = {"", "solid ", "comment ", "# "};
-  enum { LINES = 4 };
-  const char *p = (const char *)bytes;
-  const char *end = p + (byte_count < SNIFF_BYTES ? byte_count : SNIFF_BYTES);
-  double *unit = &r->scan->comment_unit_m;
-  for (int line = 0; line < LINES && p && *unit == 0; line++) {
-    for (size_t i = 0; i < sizeof marks / sizeof *marks && *unit == 0; i++) {
-      size_t length = strlen(marks[i]);
-      if ((size_t)(end - p) >= length && !memcmp(p, marks[i], length))
-        *unit = scree_provenance_unit(p + length, end);
-    }
-    p = memchr(p, '\n', (size_t)(end - p));
-    if (p) p++;
-  }
-  if (*unit == 0 || r->options->ignore_comment_unit) return;
-  r->unit_m = *unit;
-  r->scan->states_unit = true;
 }
 
 /* The first word behind lines of comment. */
@@ -226,30 +123,38 @@ static scree_token xml_root(scree_text text) {
   return (scree_token){text.end, 0};
 }
 
-/* XML formats that assimp reads, by their root. */
-static bool find_xml_format(scree_text text, scree_import_format *format) {
-  static const struct {
-    const char *root;
-    scree_import_format format;
-  } known[] = {
-      {"collada", SCREE_IMPORT_COLLADA}, {"x3d", SCREE_IMPORT_X3D}, {"amf", SCREE_IMPORT_AMF}};
-  scree_token root = xml_root(text);
-  for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-    if (scree_token_is(root, known[i].root)) {
-      *format = known[i].format;
-      return true;
-    }
-  return false;
-}
-
 static bool begins_with(const scree_text *t, const char *word) {
   size_t length = strlen(word);
   return (size_t)(t->end - t->p) >= length && scree_token_is((scree_token){t->p, length}, word);
 }
 
-static scree_status fail_text(scree_reading *r, scree_text text) {
+static scree_status fail_model(const scree_reading *r, const char *what, const char *suffix) {
+  return scree_reading_fail(r, SCREE_UNSUPPORTED,
+                            "is %s, which scree does not read; convert it, for example by "
+                            "`assimp export in.%s out.ply`",
+                            what, suffix);
+}
+
+static bool starts_with(const scree_reading *r, const char *bytes, size_t count) {
+  return r->byte_count >= count && !memcmp(r->bytes, bytes, count);
+}
+
+static const mark *foreign_mark_of(const scree_reading *r) {
+  for (size_t i = 0; i < sizeof foreign_marks / sizeof *foreign_marks; i++)
+    if (starts_with(r, foreign_marks[i].bytes, foreign_marks[i].length)) return &foreign_marks[i];
+  return NULL;
+}
+
+static scree_status fail_text(const scree_reading *r, scree_text text) {
+  static const char *const models[][3] = {{"collada", "a COLLADA model", "dae"},
+                                          {"x3d", "an X3D model", "x3d"},
+                                          {"amf", "an AMF model", "amf"}};
   char quote[SCREE_QUOTE_SIZE];
+  scree_token root = xml_root(text);
+  for (size_t i = 0; i < sizeof models / sizeof *models; i++)
+    if (scree_token_is(root, models[i][0])) return fail_model(r, models[i][1], models[i][2]);
   scree_text_skip_space(&text);
+  if (begins_with(&text, "; fbx")) return fail_model(r, "an FBX model", "fbx");
   if (begins_with(&text, "<!doctype html") || begins_with(&text, "<html"))
     return scree_reading_fail(
         r, SCREE_BAD_FILE,
@@ -258,13 +163,11 @@ static scree_status fail_text(scree_reading *r, scree_text text) {
   if (text.p == text.end)
     return scree_reading_fail(r, SCREE_BAD_FILE, "holds only white space (%zu bytes)",
                               r->byte_count);
+  const mark *foreign = foreign_mark_of(r);
+  if (foreign) return scree_reading_fail(r, SCREE_BAD_FILE, "%s", foreign->advice);
   return scree_reading_fail(r, SCREE_BAD_FILE,
                             "is text, but neither STL, PLY, OBJ nor OFF: it begins with %s",
                             scree_text_quote(&text, text.p, quote));
-}
-
-static bool starts_with(const scree_reading *r, const char *bytes, size_t count) {
-  return r->byte_count >= count && !memcmp(r->bytes, bytes, count);
 }
 
 static uint32_t load_u32(const unsigned char *b) {
@@ -277,14 +180,6 @@ static bool looks_like_3ds(const scree_reading *r) {
   if (r->byte_count <= 16 || b[0] != 0x4d || b[1] != 0x4d) return false;
   unsigned first = b[6] | (unsigned)b[7] << 8;
   return load_u32(b + 2) == r->whole_count || first == 0x0002 || first == 0x3d3d || first == 0x3d3e;
-}
-
-static scree_status read_3ds(scree_reading *r) {
-  uint32_t length = load_u32(r->bytes + 2);
-  if (length <= r->whole_count) return scree_read_import(r, SCREE_IMPORT_3DS);
-  return scree_reading_fail(r, SCREE_BAD_FILE,
-                            "3DS, cut off: its first chunk says %u bytes, but the file has %zu",
-                            length, r->whole_count);
 }
 
 /* The version that stands behind the mark of a binary glTF, or in the member `asset` of a text. */
@@ -310,13 +205,10 @@ static scree_status read_gltf(scree_reading *r, bool is_binary) {
 static scree_status read_glb(scree_reading *r) {
   return read_gltf(r, true);
 }
-static scree_status read_fbx(scree_reading *r) {
-  return scree_read_import(r, SCREE_IMPORT_FBX);
-}
 
 /* Text but for a few bytes, and where the first of these is: no float and no count looks so. */
 static bool is_damaged_text(const scree_reading *r, size_t *first) {
-  size_t count = r->byte_count < SNIFF_BYTES ? r->byte_count : SNIFF_BYTES, bad = 0;
+  size_t count = r->byte_count < SCREE_SNIFF_BYTES ? r->byte_count : SCREE_SNIFF_BYTES, bad = 0;
   for (size_t i = count; i-- > 0;)
     if (!looks_like_text(r->bytes + i, 1)) {
       *first = i;
@@ -338,12 +230,11 @@ static bool is_binary_off(scree_text text) {
   return scree_is_off_word(word) && scree_token_is(scree_text_next(&text), "binary");
 }
 
-/* How binary files begin that are read; STL and 3DS have no such mark. */
+/* How binary files begin that are read; STL has no such mark. */
 static const struct {
   const char *bytes;
   scree_status (*read)(scree_reading *r);
-} binary_marks[] = {
-    {"PK\x03\x04", scree_read_3mf}, {"glTF", read_glb}, {"Kaydara FBX Binary", read_fbx}};
+} binary_marks[] = {{"PK\x03\x04", scree_read_3mf}, {"glTF", read_glb}};
 enum { BINARY_MARK_COUNT = sizeof binary_marks / sizeof *binary_marks };
 
 /* BINARY_MARK_COUNT: none. */
@@ -358,12 +249,10 @@ static size_t binary_mark_of(const scree_reading *r) {
 static scree_status read_binary_or_fail(scree_reading *r) {
   size_t marked = binary_mark_of(r);
   if (marked < BINARY_MARK_COUNT) return binary_marks[marked].read(r);
-  if (looks_like_3ds(r)) return read_3ds(r);
-  for (size_t i = 0; i < sizeof foreign_marks / sizeof *foreign_marks; i++) {
-    const mark *m = &foreign_marks[i];
-    if (starts_with(r, m->bytes, m->length))
-      return scree_reading_fail(r, SCREE_BAD_FILE, "%s", m->advice);
-  }
+  if (looks_like_3ds(r)) return fail_model(r, "a 3DS model", "3ds");
+  if (starts_with(r, FBX_MARK, sizeof FBX_MARK - 1)) return fail_model(r, "an FBX model", "fbx");
+  const mark *foreign = foreign_mark_of(r);
+  if (foreign) return scree_reading_fail(r, SCREE_BAD_FILE, "%s", foreign->advice);
   scree_text text = scree_reading_text(r);
   size_t damaged = 0;
   if (is_binary_off(text)) return scree_read_off(r);
@@ -378,6 +267,13 @@ static scree_status read_binary_or_fail(scree_reading *r) {
   return scree_read_stl_binary(r, scree_stl_length_of(r->bytes, r->whole_count));
 }
 
+/* A full block of a disk, or a tape's, ends in them. */
+static size_t length_without_nuls(const scree_reading *r) {
+  size_t length = r->byte_count;
+  while (length && !r->bytes[length - 1]) length--;
+  return length;
+}
+
 static scree_status read_any(scree_reading *r) {
   if (r->byte_count == 0) return scree_reading_fail(r, SCREE_BAD_FILE, "the file is empty");
   scree_reading_take_unit(r, r->bytes, r->byte_count);
@@ -385,17 +281,13 @@ static scree_status read_any(scree_reading *r) {
   if (scree_token_is(scree_text_next(&start), "ply")) return scree_read_ply(r);
   if (scree_stl_length_of(r->bytes, r->whole_count) == SCREE_STL_WHOLE)
     return scree_read_stl_binary(r, SCREE_STL_WHOLE);
-  if (!looks_like_text(r->bytes, r->byte_count)) return read_binary_or_fail(r);
   start = text;
-  scree_token word = scree_text_next(&start);
-  if (scree_token_is(word, "solid")) return scree_read_stl_ascii(r);
+  bool is_solid = scree_token_is(scree_text_next(&start), "solid");
+  if (is_solid && looks_like_text(r->bytes, length_without_nuls(r))) return scree_read_stl_ascii(r);
+  if (!looks_like_text(r->bytes, r->byte_count)) return read_binary_or_fail(r);
   if (looks_like_off(text)) return scree_read_off(r);
   if (looks_like_obj(text)) return scree_read_obj(r);
   if (looks_like_gltf(text)) return read_gltf(r, false);
-  scree_import_format format;
-  if (find_xml_format(text, &format)) return scree_read_import(r, format);
-  scree_text_skip_space(&text);
-  if (begins_with(&text, "; fbx")) return read_fbx(r);
   return fail_text(r, text);
 }
 
@@ -444,15 +336,14 @@ scree_status scree_scan_parse(const void *bytes, size_t byte_count, const char *
 }
 
 /* What a stream is may show at its end only where it begins with white space or comments, or where
- * glTF or one of assimp's formats may follow. */
+ * glTF may follow. */
 static bool may_be_text_format(scree_text text) {
   scree_text start = text;
   scree_token word = first_word(text);
   if (word.begin + word.length == text.end) return true;
   scree_text_skip_space(&start);
-  return *start.p == '{' || *start.p == '<' || begins_with(&start, "; fbx") ||
-         scree_token_is(scree_text_next(&text), "solid") || scree_is_off_word(word) ||
-         looks_like_obj(start);
+  return *start.p == '{' || scree_token_is(scree_text_next(&text), "solid") ||
+         scree_is_off_word(word) || looks_like_obj(start);
 }
 
 /* No more of it than says what it is, where it is none of ours; of a binary STL that is a stream so
@@ -472,12 +363,12 @@ static size_t judge(const char *beginning, size_t byte_count, size_t whole_count
   if (scree_token_is(scree_text_next(&start), "ply")) return SIZE_MAX;
   if (scree_stl_length_of(bytes, whole_count) == SCREE_STL_WHOLE) return SIZE_MAX;
   if (looks_like_text(bytes, byte_count)) return may_be_text_format(text) ? SIZE_MAX : byte_count;
-  if (binary_mark_of(&r) < BINARY_MARK_COUNT || starts_with(&r, "MM", 2)) return SIZE_MAX;
-  for (size_t i = 0; i < sizeof foreign_marks / sizeof *foreign_marks; i++)
-    if (starts_with(&r, foreign_marks[i].bytes, foreign_marks[i].length)) return byte_count;
+  if (binary_mark_of(&r) < BINARY_MARK_COUNT) return SIZE_MAX;
+  if (looks_like_3ds(&r) || starts_with(&r, FBX_MARK, sizeof FBX_MARK - 1)) return byte_count;
+  if (foreign_mark_of(&r)) return byte_count;
   if (is_binary_off(text) || is_damaged_text(&r, &damaged)) return byte_count;
   if (scree_stl_length_of(bytes, whole_count) != SCREE_STL_OTHER_LENGTH) return SIZE_MAX;
-  size_t enough = SCREE_STL_HEADER + (stl_count(bytes) + 1) * SCREE_STL_FACET;
+  size_t enough = SCREE_STL_HEADER + (scree_stl_count(bytes) + 1) * SCREE_STL_FACET;
   bool cut_off = whole_count < enough - SCREE_STL_FACET;
   return cut_off ? byte_count : enough;
 }

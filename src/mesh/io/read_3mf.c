@@ -9,10 +9,8 @@
  * Studio, OrcaSlicer). */
 #include "mesh/io/model_3mf.h"
 
-#include "base/number.h"
-#include "mesh/weld.h"
+#include "mesh/io/write.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { MOST_DEPTH = 32, MOST_PLACED = 1 << 16, MOST_VOLUMES = 4096 };
@@ -149,16 +147,24 @@ static void tell_left_out(scree_reading *r, const scree_3mf *m) {
   if (others)
     SCREE_ADD_TEXT(r->scan->warning, "%s%zu modifier%s or support%s left out", negative ? "; " : "",
                    others, others == 1 ? "" : "s", others == 1 ? " is" : "s are");
+  if (m->unprinted)
+    SCREE_ADD_TEXT(r->scan->warning, "%s%zu item%s not to be printed %s left out",
+                   negative || others ? "; " : "", m->unprinted, m->unprinted == 1 ? "" : "s",
+                   m->unprinted == 1 ? "is" : "are");
   if (m->unread)
     SCREE_ADD_TEXT(r->scan->warning, "%sits %s, which it can do without, is not read",
-                   negative || others ? "; " : "", m->unread);
+                   *r->scan->warning ? "; " : "", m->unread);
 }
 
 static scree_status place_build(scree_reading *r, scree_3mf *m) {
   placing p = {.r = r, .model = m};
   scree_status status = SCREE_OK;
+  for (size_t i = 0; i < m->items.count; i++) m->unprinted += m->items.items[i].is_unprinted;
+  bool none_printed = m->unprinted == m->items.count; /* all that there is, then */
+  if (none_printed) m->unprinted = 0;
   for (size_t i = 0; i < m->items.count && status == SCREE_OK; i++)
-    status = place(&p, &m->items.items[i], &scree_affine_none, 0);
+    if ((none_printed || !m->items.items[i].is_unprinted) && scree_placed_wants(r, NULL))
+      status = place(&p, &m->items.items[i], &scree_affine_none, 0);
   if (status == SCREE_OK) status = scree_placed_weld(r, &p.placed);
   if (status == SCREE_OK) tell_left_out(r, m);
   scree_placed_free(&p.placed);
@@ -199,7 +205,7 @@ scree_status scree_read_3mf(scree_reading *r) {
   SCREE_CLEANUP(scree_3mf_free) scree_3mf m = {.unit_name = "millimeter"};
   snprintf(r->scan->format, sizeof r->scan->format, "3MF");
   SCREE_TRY(read_parts(r, &m));
-  r->unit_m = scree_unit_of_root(m.unit_name);
+  r->unit_m = scree_3mf_unit_m(m.unit_name);
   r->scan->states_unit = true;
   snprintf(r->scan->format, sizeof r->scan->format, "3MF, %s", m.unit_name);
   mark_volumes(&m);

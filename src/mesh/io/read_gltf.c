@@ -3,8 +3,9 @@
  *
  * What a file requires is refused by name unless it changes no shape (materials, textures, lights)
  * or is read: KHR_mesh_quantization. Data lie in the file, in its text, or in files beside it. Of
- * primitives triangles, strips and fans are taken; skins, morph targets and animations are not
- * applied. The unit is the metre. */
+ * primitives triangles, strips and fans are taken; skins and weights of morph targets are not
+ * applied and told, animations not applied; hidden nodes are left out and told. The unit is the
+ * metre. */
 #include "base/array.h"
 #include "mesh/io/placed.h"
 #include "mesh/io/vendor/cgltf.h"
@@ -67,7 +68,8 @@ typedef struct model {
   struct {
     double *items;
     size_t count, capacity;
-  } vertices; /* of one primitive */
+  } vertices;                      /* of one primitive */
+  size_t hidden, morphed, skinned; /* nodes */
 } model;
 
 static scree_status fail(model *m, scree_status status, const char *what) {
@@ -77,9 +79,9 @@ static scree_status fail(model *m, scree_status status, const char *what) {
 /* ---- Extensions ---- */
 
 static bool is_harmless(const char *extension) {
-  static const char *const beginnings[] = {"KHR_materials_",       "KHR_texture_", "EXT_texture_",
-                                           "MSFT_texture_",        "KHR_lights_",  "KHR_xmp",
-                                           "KHR_mesh_quantization"};
+  static const char *const beginnings[] = {
+      "KHR_node_visibility", "KHR_materials_", "KHR_texture_", "EXT_texture_",
+      "MSFT_texture_",       "KHR_lights_",    "KHR_xmp",      "KHR_mesh_quantization"};
   for (size_t i = 0; i < sizeof beginnings / sizeof *beginnings; i++)
     if (!strncmp(extension, beginnings[i], strlen(beginnings[i]))) return true;
   return false;
@@ -105,39 +107,30 @@ static scree_status check_extensions(model *m) {
 
 /* ---- Buffers ---- */
 
-/* A name relative to the file's folder, without a scheme. */
-static bool is_beside(const char *uri) {
-  return uri[0] != '/' && uri[0] != '\\' && !strchr(uri, ':');
+/* In place, what cgltf leaves to its callers; false where the text would hold a NUL. */
+static bool decode(char *uri, cgltf_size (*decoder)(char *text)) {
+  size_t length = decoder(uri);
+  return length == strlen(uri);
 }
 
 static scree_status read_beside(model *m, cgltf_buffer *b, size_t index) {
   scree_reading *r = m->r;
-  char path[4096];
-  const char *slash = r->path ? strrchr(r->path, '/') : NULL;
   char *bytes;
-  size_t count;
-  if (!is_beside(b->uri) || !r->path)
+  if (!r->path || !decode(b->uri, cgltf_decode_uri))
     return scree_reading_fail(
         r, SCREE_BAD_FILE, "as %s: buffer %zu lies in '%.100s'; %s", r->scan->format, index, b->uri,
         r->path ? "only files beside this one are read" : "a stream has no files beside it");
-  cgltf_decode_uri(b->uri);
-  int length = snprintf(path, sizeof path, "%.*s%s", slash ? (int)(slash + 1 - r->path) : 0,
-                        r->path, b->uri);
-  if (length < 0 || (size_t)length >= sizeof path)
-    return fail(m, SCREE_LIMIT, "a path is too long");
-  SCREE_TRY(scree_file_read(path, r->options->max_bytes, &bytes, &count, r->error));
-  scree_checksum sums[2] = {r->beside, scree_checksum_of(bytes, count)};
+  if (r->options->max_bytes && b->size > r->options->max_bytes)
+    return scree_reading_fail(r, SCREE_LIMIT, "as %s: buffer %zu has more than %zu bytes",
+                              r->scan->format, index, r->options->max_bytes);
+  SCREE_TRY(scree_file_read_beneath(r->path, b->uri, b->size, &bytes, r->error));
+  scree_checksum sums[2] = {r->beside, scree_checksum_of(bytes, b->size)};
   r->beside = scree_checksum_of(sums, sizeof sums);
-  void *copy = count >= b->size ? give(&m->pool, b->size) : NULL;
-  if (copy) memcpy(copy, bytes, b->size);
-  scree_free(bytes);
-  b->data = copy;
+  b->data = give(&m->pool, b->size);
   b->data_free_method = cgltf_data_free_method_memory_free;
-  if (copy) return SCREE_OK;
-  if (m->pool.is_out) return scree_fail_memory(r->error, b->size, "a buffer of a glTF");
-  return scree_reading_fail(r, SCREE_BAD_FILE,
-                            "as %s: buffer %zu should have %zu bytes; '%.100s' has %zu",
-                            r->scan->format, index, b->size, b->uri, count);
+  if (b->data) memcpy(b->data, bytes, b->size);
+  scree_free(bytes);
+  return b->data ? SCREE_OK : scree_fail_memory(r->error, b->size, "a buffer of a glTF");
 }
 
 static scree_status decode_text(model *m, cgltf_buffer *b, size_t index) {
@@ -159,6 +152,8 @@ static scree_status load_buffers(model *m) {
   cgltf_data *d = m->data;
   for (size_t i = 0; i < d->buffers_count; i++) {
     cgltf_buffer *b = &d->buffers[i];
+    if (b->uri && !decode(b->uri, cgltf_decode_string))
+      return fail(m, SCREE_BAD_FILE, "a buffer's place holds a NUL");
     if (i == 0 && !b->uri && d->bin) {
       if (d->bin_size < b->size)
         return scree_reading_fail(m->r, SCREE_BAD_FILE,
@@ -272,7 +267,7 @@ static scree_status load_positions(model *m, const cgltf_accessor *a) {
   size_t size = size_of_component(a->component_type);
   elements e;
   if (a->type != cgltf_type_vec3 || !size || a->component_type == cgltf_component_type_r_32u ||
-      !elements_of(a, 3, &e) || a->count > SCREE_IMPORT_MOST)
+      !elements_of(a, 3, &e) || a->count > SCREE_PLACED_MOST)
     return fail(m, SCREE_BAD_FILE, bad);
   if (!SCREE_RESERVE(&m->vertices, 3 * a->count))
     return scree_fail_memory(m->r->error, 3 * a->count * sizeof(double), "positions of a glTF");
@@ -358,13 +353,40 @@ static scree_affine placement_of(const cgltf_node *n) {
   return p;
 }
 
+/* KHR_node_visibility: a node that is not shown, with all below it. */
+static bool is_hidden(const cgltf_node *n) {
+  for (size_t i = 0; i < n->extensions_count; i++) {
+    const cgltf_extension *e = &n->extensions[i];
+    if (!e->name || !e->data || strcmp(e->name, "KHR_node_visibility") != 0) continue;
+    const char *value = strstr(e->data, "\"visible\"");
+    if (value) value = strchr(value, ':');
+    return value && !strncmp(value + 1 + strspn(value + 1, " \t\r\n"), "false", 5);
+  }
+  return false;
+}
+
+/* What stands elsewhere, or is another shape, in the file's own opinion. */
+static void count_unapplied(model *m, const cgltf_node *n) {
+  const float *weights = n->weights ? n->weights : n->mesh->weights;
+  size_t count = n->weights ? n->weights_count : n->mesh->weights_count, i = 0;
+  while (i < count && weights[i] == 0) i++;
+  m->morphed += i < count;
+  m->skinned += n->skin != NULL;
+}
+
 static scree_status place_node(model *m, const cgltf_node *n, const scree_affine *outer,
                                int depth) {
+  if (is_hidden(n)) {
+    m->hidden++;
+    return SCREE_OK;
+  }
   scree_affine inner = placement_of(n), where = scree_affine_in(outer, &inner);
   if (depth > MOST_DEPTH)
     return scree_reading_fail(m->r, SCREE_LIMIT, "as %s: nodes lie more than %d deep in each other",
                               m->r->scan->format, MOST_DEPTH);
-  for (size_t i = 0; n->mesh && i < n->mesh->primitives_count; i++)
+  if (n->mesh) count_unapplied(m, n);
+  bool wanted = n->mesh && scree_placed_wants(m->r, n->name ? n->name : n->mesh->name);
+  for (size_t i = 0; wanted && i < n->mesh->primitives_count; i++)
     SCREE_TRY(place_primitive(m, &n->mesh->primitives[i], &where));
   for (size_t i = 0; i < n->children_count; i++)
     SCREE_TRY(place_node(m, n->children[i], &where, depth + 1));
@@ -380,6 +402,20 @@ static scree_status place_scene(model *m) {
   for (size_t i = 0; !scene && i < d->nodes_count; i++)
     if (!d->nodes[i].parent) SCREE_TRY(place_node(m, &d->nodes[i], &scree_affine_none, 0));
   return SCREE_OK;
+}
+
+static void tell_unapplied(const model *m) {
+  const struct {
+    size_t count;
+    const char *what;
+  } told[] = {{m->hidden, "hidden, and left out"},
+              {m->morphed, "morphed in the file: its weights are not applied"},
+              {m->skinned, "placed by bones: its skin is not applied"}};
+  char *warning = m->r->scan->warning;
+  for (size_t i = 0; i < sizeof told / sizeof *told; i++)
+    if (told[i].count)
+      SCREE_ADD_TEXT(m->r->scan->warning, "%s%zu node%s %s", *warning ? "; " : "", told[i].count,
+                     told[i].count == 1 ? " is" : "s are", told[i].what);
 }
 
 static scree_status explain(model *m, cgltf_result result) {
@@ -407,6 +443,7 @@ scree_status scree_read_gltf(scree_reading *r, bool is_binary) {
   if (is_parsed && status == SCREE_OK) status = place_scene(&m);
   strncat(r->scan->format, ", meter", sizeof r->scan->format - strlen(r->scan->format) - 1);
   if (status == SCREE_OK) status = scree_placed_weld(r, &m.placed);
+  if (status == SCREE_OK) tell_unapplied(&m);
   scree_placed_free(&m.placed);
   scree_free(m.vertices.items);
   cgltf_free(m.data);

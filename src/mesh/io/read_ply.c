@@ -254,7 +254,7 @@ static bool spans_lines(const char *begin, const char *end) {
   return memchr(begin, '\n', (size_t)(end - begin)) || memchr(begin, '\r', (size_t)(end - begin));
 }
 
-/* Of a text: what stands on the row's line behind its values. */
+/* Passes over what stands in a text on the row's line behind its values. */
 static scree_status finish_line(ply *p, const char *begin) {
   scree_text *t = &p->text;
   const char *values_end = t->p;

@@ -3,16 +3,17 @@
  * Binary: 80 bytes of header, which may say anything (also `solid`), a 32-bit count, then 50 bytes
  * per facet: normal and three corners as 12 little-endian floats, and an attribute word (colours;
  * ignored). Normals are ignored: the order of the corners says what is outside. The count must fit
- * the file; fewer than 50 bytes may follow the last facet, as some writers pad.
+ * the file; fewer than 50 bytes may follow the last facet, as some writers pad. Where each
+ * attribute word says how many bytes of attributes follow it, and the file has them all, they are
+ * passed over.
  *
- * ASCII: words in any case, any white space between them. A solid's name goes to the end of its
- * line, unless a facet begins on that line. Every solid must be ended: a file that stops before was
- * cut. */
+ * ASCII: words in any case, any white space between them; `end solid` is `endsolid`. A solid's name
+ * goes to the end of its line, unless a facet begins on that line. Every solid must be ended: a
+ * file that stops before was cut. NUL bytes behind the last are passed over. */
 #include "base/array.h"
 #include "mesh/io/read.h"
 #include "mesh/weld.h"
 
-#include <math.h>
 #include <string.h>
 
 enum {
@@ -34,6 +35,26 @@ static float load_float(const unsigned char *p) {
 }
 
 /* ---- binary ---- */
+
+size_t scree_stl_count(const unsigned char *bytes) {
+  return load_u32(bytes + 80);
+}
+
+/* A count made of text is a text file of that very length by chance, and far longer than any. What
+ * is shorter than its count is cut off, unless the count is all ones, as writers leave it that did
+ * not know it yet. */
+scree_stl_length scree_stl_length_of(const unsigned char *bytes, size_t byte_count) {
+  if (byte_count < SCREE_STL_HEADER) return SCREE_STL_OTHER_LENGTH;
+  unsigned char swapped[SCREE_STL_HEADER] = {0};
+  for (int i = 0; i < 4; i++) swapped[80 + i] = bytes[83 - i];
+  size_t body = byte_count - SCREE_STL_HEADER, room = body / SCREE_STL_FACET;
+  size_t count = scree_stl_count(bytes);
+  if (body != room * SCREE_STL_FACET) return SCREE_STL_OTHER_LENGTH;
+  if (count == room) return SCREE_STL_WHOLE;
+  if (scree_stl_count(swapped) == room) return SCREE_STL_SWAPPED;
+  return room && (count < room || count == UINT32_MAX) ? SCREE_STL_MISCOUNTED
+                                                       : SCREE_STL_OTHER_LENGTH;
+}
 
 typedef struct binary_facets {
   const unsigned char *first;
@@ -97,10 +118,48 @@ static void describe_length(scree_scan *scan, scree_stl_length length, size_t co
   }
 }
 
+/* The bytes of attributes behind all facets, where each facet's word says how many are its own and
+ * together they end the file; 0: it is no such file. */
+static size_t attribute_bytes(const scree_reading *r, size_t count) {
+  size_t at = HEADER_BYTES, sum = 0;
+  for (size_t f = 0; f < count; f++) {
+    if (r->byte_count - at < FACET_BYTES) return 0;
+    const unsigned char *word = r->bytes + at + FACET_BYTES - 2;
+    size_t own = (size_t)word[0] | (size_t)word[1] << 8;
+    at += FACET_BYTES;
+    if (own > r->byte_count - at) return 0;
+    at += own;
+    sum += own;
+  }
+  return at == r->whole_count ? sum : 0;
+}
+
+/* Reads the file without them. */
+static scree_status read_without_attributes(scree_reading *r, size_t count, size_t sum) {
+  const size_t size = HEADER_BYTES + count * FACET_BYTES;
+  SCREE_SCRATCH(unsigned char, plain, size, r->error);
+  const unsigned char *from = r->bytes + HEADER_BYTES;
+  memcpy(plain, r->bytes, HEADER_BYTES);
+  for (size_t f = 0; f < count; f++) {
+    memcpy(plain + HEADER_BYTES + f * FACET_BYTES, from, FACET_BYTES);
+    from += FACET_BYTES + (from[FACET_BYTES - 2] | (size_t)from[FACET_BYTES - 1] << 8);
+  }
+  scree_reading inner = *r;
+  inner.bytes = plain;
+  inner.byte_count = inner.whole_count = size;
+  SCREE_TRY(scree_read_stl_binary(&inner, SCREE_STL_WHOLE));
+  r->scan->ignored_byte_count = sum;
+  SCREE_ADD_TEXT(r->scan->warning, "%zu bytes of attributes behind the facets are passed over",
+                 sum);
+  return SCREE_OK;
+}
+
 scree_status scree_read_stl_binary(scree_reading *r, scree_stl_length length) {
   scree_scan *scan = r->scan;
   size_t count = load_u32(r->bytes + 80), room = (r->whole_count - HEADER_BYTES) / FACET_BYTES;
   bool swapped = length == SCREE_STL_SWAPPED;
+  size_t sum = length == SCREE_STL_WHOLE ? 0 : attribute_bytes(r, count);
+  if (sum) return read_without_attributes(r, count, sum);
   if (r->whole_count == SCREE_NO_END)
     return scree_reading_fail(
         r, SCREE_BAD_FILE,
@@ -229,9 +288,19 @@ static scree_status fail_expected(const scree_text *t, const char *at, const cha
   return scree_text_fail(t, at, "expected `%s`, found %s", expected, quote);
 }
 
+/* "endsolid" and its like, which some write as two words; moves t behind the second. */
+static bool is_ending(scree_text *t, scree_token token, const char *word) {
+  scree_text probe = *t;
+  if (scree_token_is(token, word)) return true;
+  if (strncmp(word, "end", 3) != 0 || !scree_token_is(token, "end")) return false;
+  bool is_two = scree_token_is(scree_text_next(&probe), word + 3);
+  if (is_two) *t = probe;
+  return is_two;
+}
+
 static scree_status expect_word(scree_text *t, const char *word) {
   scree_token token = scree_text_next(t);
-  return scree_token_is(token, word) ? SCREE_OK : fail_expected(t, token.begin, word);
+  return is_ending(t, token, word) ? SCREE_OK : fail_expected(t, token.begin, word);
 }
 
 static scree_status skip_normal(scree_text *t) {
@@ -279,7 +348,7 @@ static scree_status read_solids(scree_reading *r, scree_text *t, corner_list *co
     }
     if (inside && scree_token_is(token, "facet"))
       status = read_facet(t, corners);
-    else if (inside && scree_token_is(token, "endsolid")) {
+    else if (inside && is_ending(t, token, "endsolid")) {
       inside = false;
       scree_text_skip_line(t);
     } else if (!inside && scree_token_is(token, "solid")) {
@@ -298,6 +367,11 @@ scree_status scree_read_stl_ascii(scree_reading *r) {
   snprintf(r->scan->format, sizeof r->scan->format, "STL ASCII");
   scree_text text = scree_reading_text(r);
   SCREE_CLEANUP(scree_free_at) corner_list corners = {0};
+  while (text.end > text.p && !text.end[-1]) text.end--;
+  r->scan->ignored_byte_count = r->byte_count - (size_t)(text.end - text.begin);
+  if (r->scan->ignored_byte_count)
+    SCREE_ADD_TEXT(r->scan->warning, "ASCII STL, followed by %zu NUL bytes",
+                   r->scan->ignored_byte_count);
   SCREE_TRY(read_solids(r, &text, &corners));
   return scree_reading_weld(r, corners.items, corners.count / 9);
 }

@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
+#include "base/quote.h"
 #include "mesh/weld.h"
 
 #include <float.h>
@@ -239,12 +240,11 @@ static scree_status check_mesh(const scree_mesh *mesh, const char *path,
 }
 
 void scree_provenance_text(double unit_m, const char *comment, char text[SCREE_PROVENANCE_SIZE]) {
-  char unit[SCREE_NUMBER_SIZE];
+  char unit[SCREE_NUMBER_SIZE], made[SCREE_PROVENANCE_SIZE];
   scree_number_format(unit_m, unit);
-  snprintf(text, SCREE_PROVENANCE_SIZE, "scree %s, unit %s m%s%s", scree_version(), unit,
-           comment ? "; " : "", comment ? comment : "");
-  for (char *p = text; *p; p++)
-    if ((unsigned char)*p < ' ' || *p == 127) *p = ' ';
+  snprintf(made, sizeof made, "scree %s, unit %s m%s%s", scree_version(), unit, comment ? "; " : "",
+           comment ? comment : "");
+  scree_quote_text(SCREE_QUOTE_COMMENT, made, text, SCREE_PROVENANCE_SIZE);
 }
 
 double scree_provenance_unit(const char *begin, const char *end) {

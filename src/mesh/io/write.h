@@ -33,6 +33,8 @@ double scree_provenance_unit(const char *begin, const char *end);
 
 /* write_3mf.c. The name that 3MF has for the unit; where it has none, *unit_m becomes 1, metre. */
 const char *scree_3mf_unit(double *unit_m);
+/* The metres of a unit of this name; 0: there is none. */
+double scree_3mf_unit_m(const char *name);
 /* The whole file, its unit one of these; errors are the stream's. */
 void scree_write_3mf(const scree_writing *w);
 

@@ -6,6 +6,7 @@
 #include "mesh/io/write.h"
 
 #include "base/number.h"
+#include "base/quote.h"
 
 #include <math.h>
 #include <string.h>
@@ -66,21 +67,22 @@ static void put_relations(sink *out, const scree_writing *w) {
            "</Relationships>\n");
 }
 
-/* Text as XML; bytes that are no ASCII become '?', which is always valid. */
-static void put_escaped(sink *out, const char *text) {
-  for (; *text; text++) {
-    char one[2] = {(unsigned char)*text < 128 ? *text : '?', 0};
-    put(out, *text == '<' ? "&lt;" : *text == '>' ? "&gt;" : *text == '&' ? "&amp;" : one);
-  }
+/* Units that a 3MF may name (3MF Core 1.3, 3.4). */
+static const struct {
+  const char *name;
+  double unit_m;
+} units[] = {{"micron", 1e-6}, {"millimeter", 1e-3}, {"centimeter", 1e-2},
+             {"inch", 0.0254}, {"foot", 0.3048},     {"meter", 1}};
+enum { UNIT_COUNT = sizeof units / sizeof *units };
+
+double scree_3mf_unit_m(const char *name) {
+  for (size_t i = 0; i < UNIT_COUNT; i++)
+    if (!strcmp(units[i].name, name)) return units[i].unit_m;
+  return 0;
 }
 
 const char *scree_3mf_unit(double *unit_m) {
-  static const struct {
-    const char *name;
-    double unit_m;
-  } units[] = {{"micron", 1e-6}, {"millimeter", 1e-3}, {"centimeter", 1e-2},
-               {"inch", 0.0254}, {"foot", 0.3048},     {"meter", 1}};
-  for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+  for (size_t i = 0; i < UNIT_COUNT; i++)
     if (fabs(*unit_m / units[i].unit_m - 1) < 1e-12) return units[i].name;
   *unit_m = 1;
   return "meter";
@@ -100,12 +102,13 @@ static void put_vertices(sink *out, const scree_writing *w) {
 
 static void put_model(sink *out, const scree_writing *w) {
   double unit_m = w->unit_m;
+  char provenance[6 * SCREE_PROVENANCE_SIZE];
   put(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"");
   put(out, scree_3mf_unit(&unit_m));
   put(out, "\" xml:lang=\"en\" "
            "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n"
            "<metadata name=\"Application\">");
-  put_escaped(out, w->provenance);
+  put(out, scree_quote_text(SCREE_QUOTE_XML, w->provenance, provenance, sizeof provenance));
   put(out, "</metadata>\n<resources>\n<object id=\"1\" type=\"model\">\n<mesh>\n<vertices>\n");
   put_vertices(out, w);
   put(out, "</vertices>\n<triangles>\n");

@@ -8,6 +8,7 @@
 #include "base/alloc.h"
 
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 #include <zlib.h>
@@ -70,8 +71,8 @@ typedef struct entry {
   uint32_t method, crc;
 } entry;
 
-/* Of content_count, stored_count and local those that are all ones stand in a field of the extra
- * ones, in this order. */
+/* Reads those of content_count, stored_count and local that are all ones from one of the extra
+ * fields, where they stand in this order. */
 static bool widen(entry *e) {
   const unsigned char *fields = e->name + e->name_length;
   size_t at = 0, length = get16(e->head + 30);
@@ -89,8 +90,7 @@ static bool widen(entry *e) {
 
 /* Where the entry's content lies: behind a local header whose own lengths count. */
 static bool locate(const unsigned char *bytes, size_t byte_count, entry *e) {
-  uint32_t flags = get16(e->head + 8);
-  if (!widen(e) || (flags & 1) || (e->method != STORED && e->method != DEFLATED)) return false;
+  if (!widen(e)) return false;
   if (byte_count < LOCAL_SIZE || e->local > byte_count - LOCAL_SIZE) return false;
   const unsigned char *local = bytes + e->local;
   if (memcmp(local, "PK\3\4", 4) != 0) return false;
@@ -117,21 +117,35 @@ static bool next_entry(const unsigned char *bytes, size_t byte_count, uint64_t *
   return *at <= byte_count;
 }
 
-bool scree_zip_find(const unsigned char *bytes, size_t byte_count, const char *name,
-                    scree_zip_member *member) {
+scree_zip_answer scree_zip_find(const unsigned char *bytes, size_t byte_count, const char *name,
+                                scree_zip_member *member) {
   directory d;
   entry e;
-  if (!find_directory(bytes, byte_count, &d)) return false;
+  if (!find_directory(bytes, byte_count, &d)) return SCREE_ZIP_DAMAGED;
   for (uint64_t i = 0, at = d.at; i < d.entry_count; i++) {
-    if (!next_entry(bytes, byte_count, &at, &e)) return false;
+    if (!next_entry(bytes, byte_count, &at, &e)) return SCREE_ZIP_DAMAGED;
     if (e.name_length != strlen(name) ||
         strncasecmp((const char *)e.name, name, e.name_length) != 0)
       continue;
-    if (!locate(bytes, byte_count, &e)) return false;
+    bool encrypted = get16(e.head + 8) & 1;
+    if (encrypted || (e.method != STORED && e.method != DEFLATED)) return SCREE_ZIP_METHOD;
+    if (!locate(bytes, byte_count, &e)) return SCREE_ZIP_DAMAGED;
     *member = (scree_zip_member){e.content, (size_t)e.stored_count, e.crc, e.method == DEFLATED};
-    return true;
+    return SCREE_ZIP_FOUND;
   }
-  return false;
+  return SCREE_ZIP_ABSENT;
+}
+
+void scree_zip_first_name(const unsigned char *bytes, size_t byte_count,
+                          char name[SCREE_ZIP_NAME]) {
+  directory d;
+  entry e;
+  uint64_t at = 0;
+  *name = 0;
+  if (!find_directory(bytes, byte_count, &d) || !d.entry_count) return;
+  at = d.at;
+  if (next_entry(bytes, byte_count, &at, &e))
+    snprintf(name, SCREE_ZIP_NAME, "%.*s", (int)e.name_length, (const char *)e.name);
 }
 
 static void *zip_alloc(void *context, unsigned count, unsigned size) {

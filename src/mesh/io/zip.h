@@ -10,10 +10,19 @@ typedef struct scree_zip_member {
   bool is_deflated;
 } scree_zip_member;
 
-/* The member of this name, in any case of letters; false where the archive's directory is damaged,
- * the archive is cut off, or there is none. */
-bool scree_zip_find(const unsigned char *bytes, size_t byte_count, const char *name,
-                    scree_zip_member *member);
+typedef enum scree_zip_answer {
+  SCREE_ZIP_FOUND,
+  SCREE_ZIP_ABSENT,
+  SCREE_ZIP_DAMAGED, /* or cut off */
+  SCREE_ZIP_METHOD,  /* compressed by a method that is not read, or encrypted */
+} scree_zip_answer;
+
+/* The member of this name, in any case of letters. */
+scree_zip_answer scree_zip_find(const unsigned char *bytes, size_t byte_count, const char *name,
+                                scree_zip_member *member);
+/* The name of the first member; "" where there is none, or the archive is damaged. */
+enum { SCREE_ZIP_NAME = 100 };
+void scree_zip_first_name(const unsigned char *bytes, size_t byte_count, char name[SCREE_ZIP_NAME]);
 
 /* Is given the content piece by piece; false ends it. */
 typedef bool scree_zip_taker(void *context, const unsigned char *bytes, size_t count, bool is_last);

@@ -22,6 +22,7 @@
  * Facets are visited in the order of their tree, so that each query starts from the triangle found
  * by the one before; blocks have a fixed size and start afresh. */
 #include "base/alloc.h"
+#include "base/owned.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/sum.h"
@@ -33,13 +34,14 @@
 enum {
   BLOCK = 512,             /* vertices or facets that share a start */
   CHUNK = 256 * BLOCK,     /* between two reports of progress */
+  EDGE_MOST = 1 << 12,     /* samples of an edge: of needles it would be any number */
   HEAP_MOST = 1 << 16,     /* parts of a block's facets that wait to be cut */
   SAMPLE_LEAST = 10000,    /* by default, to begin with */
   SAMPLE_LIMIT = 1 << 28,  /* per surface */
   CONVERGE_MOST = 1 << 24, /* samples per surface while converging */
 };
 
-/* Of the size of the bodies: distances below are rounding, and not worth cutting facets for. */
+/* Share of the bodies' size: distances below are rounding, and not worth cutting facets for. */
 #define ROUNDING 1e-12
 /* Twice the density each way changes mean and rms by no more than this share. The error left is
  * a fraction of the change, so that the results are within 1 per cent. */
@@ -111,11 +113,10 @@ typedef struct point_query {
   double *distances;
 } point_query;
 
-static void query_points(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void query_points(void *context, scree_block block) {
   const point_query *q = context;
   uint32_t near = 0;
-  for (size_t i = begin; i < end; i++)
+  for (size_t i = block.begin; i < block.end; i++)
     q->distances[i] = scree_surface_nearest(q->surface, vec3_load(q->points + 3 * i), &near);
 }
 
@@ -123,6 +124,30 @@ void scree_surface_distances(const scree_surface *surface, const double *points,
                              double *distances) {
   point_query q = {surface, points, distances};
   scree_parallel_for(point_count, BLOCK, query_points, &q);
+}
+
+/* Most of three rays that run along no axis leave the body first where the point is inside: one
+ * may meet an edge, and miss. */
+static void sign_points(void *context, scree_block block) {
+  static const vec3 rays[] = {{0.36, 0.48, 0.8}, {-0.768, 0.64, 0.024}, {0.28, -0.576, -0.768}};
+  const point_query *q = context;
+  for (size_t i = block.begin; i < block.end; i++) {
+    int inside = 0;
+    for (int k = 0; k < 3; k++) {
+      double facing = -1;
+      scree_ray_meet(&q->surface->bvh, vec3_load(q->points + 3 * i), vec3_unit(rays[k]), 0,
+                     &facing);
+      inside += facing > 0;
+    }
+    if (inside > 1) q->distances[i] = -q->distances[i];
+  }
+}
+
+void scree_surface_signed_distances(const scree_surface *surface, const double *points,
+                                    size_t point_count, double *distances) {
+  point_query q = {surface, points, distances};
+  scree_surface_distances(surface, points, point_count, distances);
+  scree_parallel_for(point_count, BLOCK, sign_points, &q);
 }
 
 scree_status scree_mesh_distance_field(const scree_mesh *mesh, const scree_mesh *reference,
@@ -177,12 +202,11 @@ static void note(tally *t, double distance, vec3 at) {
   if (distance > t->maximum) t->maximum = distance, t->at = at;
 }
 
-static void sweep_vertices(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void sweep_vertices(void *context, scree_block block) {
   const sweep *s = context;
   tally t = {.maximum = -1};
   uint32_t near = 0;
-  for (size_t v = s->first + begin; v < s->first + end; v++) {
+  for (size_t v = s->first + block.begin; v < s->first + block.end; v++) {
     vec3 p = vec3_load(s->from->bvh.mesh.positions + 3 * v);
     double distance = scree_surface_nearest(s->to, p, &near);
     s->vertex_distance[v] = distance;
@@ -191,7 +215,7 @@ static void sweep_vertices(void *context, size_t begin, size_t end, size_t block
     scree_sum_add(&t.square, distance * distance);
     note(&t, distance, p);
   }
-  s->tallies[block] = t;
+  s->tallies[block.index] = t;
 }
 
 static vec3 part_middle(const part *p) {
@@ -301,7 +325,7 @@ static double sweep_whole_facet(const sweep *s, const part *facet, const uint32_
 static void sweep_edges(const sweep *s, const part *facet, double m, uint32_t near, tally *t) {
   for (int k = 0; k < 3; k++) {
     vec3 from = facet->corner[k], to = facet->corner[(k + 1) % 3];
-    double parts = round(vec3_distance(from, to) * sqrt(s->density));
+    double parts = fmin(round(vec3_distance(from, to) * sqrt(s->density)), EDGE_MOST);
     if (m > 1 && parts <= 2 * m) continue;
     for (double i = 1; i < parts; i++) {
       vec3 at = vec3_lerp(from, to, i / parts);
@@ -314,11 +338,10 @@ static double cuts_of(double area, double density) {
   return round(sqrt(area * density));
 }
 
-static void sweep_facets(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void sweep_facets(void *context, scree_block block) {
   const sweep *s = context;
   tally t = {.maximum = -1};
-  for (size_t i = s->first + begin; i < s->first + end; i++) {
+  for (size_t i = s->first + block.begin; i < s->first + block.end; i++) {
     const uint32_t *corners = s->from->bvh.mesh.triangles + 3 * i;
     double c[9];
     scree_bvh_corners(&s->from->bvh, i, c);
@@ -334,7 +357,7 @@ static void sweep_facets(void *context, size_t begin, size_t end, size_t block, 
     t.bound = fmax(t.bound, bound);
     if (s->facet_bound) s->facet_bound[i] = bound;
   }
-  s->tallies[block] = t;
+  s->tallies[block.index] = t;
 }
 
 /* ---- Cutting, the part of the largest bound first ---- */
@@ -400,13 +423,13 @@ static void cut_in_four(cutting *c, const queued *whole) {
   }
 }
 
-static void sweep_bounds(void *context, size_t begin, size_t end, size_t block, int worker) {
+static void sweep_bounds(void *context, scree_block block) {
   const sweep *s = context;
   cutting c = {.sweep = s,
-               .heap = s->heaps + (size_t)worker * HEAP_MOST,
+               .heap = s->heaps + (size_t)block.worker * HEAP_MOST,
                .settled = 0,
                .tally = {.maximum = -1}};
-  for (size_t i = s->first + begin; i < s->first + end; i++) {
+  for (size_t i = s->first + block.begin; i < s->first + block.end; i++) {
     uint32_t corner = s->from->bvh.mesh.triangles[3 * i];
     double p[9];
     scree_bvh_corners(&s->from->bvh, i, p);
@@ -414,14 +437,14 @@ static void sweep_bounds(void *context, size_t begin, size_t end, size_t block, 
                             .bound = s->facet_bound[i],
                             .near = s->vertex_near[corner]});
   }
-  double left = s->budget * (double)(end - begin);
+  double left = s->budget * (double)(block.end - block.begin);
   for (; c.count && c.heap[0].bound > enough(&c) && left >= 4 && c.count + 4 <= HEAP_MOST;
        left -= 4) {
     queued top = heap_pop(c.heap, &c.count);
     cut_in_four(&c, &top);
   }
   c.tally.bound = fmax(c.settled, c.count ? c.heap[0].bound : 0);
-  s->tallies[block] = c.tally;
+  s->tallies[block.index] = c.tally;
 }
 
 static void add_tally(tally *total, const tally *t) {
@@ -604,12 +627,9 @@ scree_status scree_mesh_distance(const scree_mesh *a, const scree_mesh *b,
                                  const scree_distance_options *options,
                                  const scree_progress *progress, scree_distance *distance,
                                  scree_error *error) {
-  scree_surface *first = NULL, *second = NULL;
-  scree_status status = scree_surface_create(a, &first, error);
-  if (status == SCREE_OK) status = scree_surface_create(b, &second, error);
-  if (status == SCREE_OK)
-    status = scree_surface_distance(first, second, options, progress, distance, error);
-  scree_surface_free(first);
-  scree_surface_free(second);
-  return status;
+  SCREE_OWNED(scree_surface, first);
+  SCREE_OWNED(scree_surface, second);
+  SCREE_TRY(scree_surface_create(a, &first, error));
+  SCREE_TRY(scree_surface_create(b, &second, error));
+  return scree_surface_distance(first, second, options, progress, distance, error);
 }

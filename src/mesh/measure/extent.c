@@ -11,7 +11,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Of two opposite nodes the one whose last coordinate that is not 0 is above 0; axes come first. */
+/* Whether the node stands for itself and its opposite: its last coordinate that is not 0 is above
+ * 0, and it is no axis, which come first. */
 static bool is_kept(int i, int j, int k) {
   enum { N = SCREE_EXTENT_STEPS };
   if (abs(i) + abs(j) + k != N || abs(i) == N || abs(j) == N || k == N) return false;

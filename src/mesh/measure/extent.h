@@ -17,12 +17,12 @@ typedef struct scree_extent {
   double low[SCREE_EXTENT_COUNT], high[SCREE_EXTENT_COUNT];
 } scree_extent;
 
-/* Of nothing yet. The frame's rows are orthonormal. The directions are the same whichever way round
- * and in whichever order these come. */
+/* The extent of nothing yet. The frame's rows are orthonormal. The directions are the same
+ * whichever way round and in whichever order these come. */
 void scree_extent_start(scree_extent *extent, const double frame[3][3]);
 void scree_extent_add(scree_extent *extent, vec3 p);
 
-/* Of a mesh's facets. O(N). */
+/* The extent of a mesh's facets. O(N). */
 void scree_extent_of_mesh(scree_extent *extent, const double frame[3][3], const scree_mesh *mesh);
 
 static inline double scree_extent_along(const scree_extent *extent, int i, vec3 p) {

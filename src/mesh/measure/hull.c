@@ -8,6 +8,7 @@
 #include "base/sum.h"
 
 #include <libqhull_r/qhull_ra.h>
+#include <string.h>
 
 /* qhull fails on flat input by design, and very rarely on wide merges, which Q12 allows. To merge
  * facets is quadratic in the corners that lie in one plane, so of many points the hull is found
@@ -104,26 +105,23 @@ static scree_status keep_all(const vec3 *points, size_t point_count, scree_hull 
 
 scree_status scree_hull_build(const vec3 *points, size_t point_count, scree_hull *hull,
                               scree_error *error) {
-  scree_hull made = {0};
+  SCREE_CLEANUP(scree_hull_free) scree_hull made = {0};
   bool many = point_count > MANY;
   if (point_count > INT32_MAX)
     return scree_fail(error, SCREE_LIMIT, "%zu points, above the limit of %d for a convex hull",
                       point_count, INT32_MAX);
-  scree_status status = find_hull(points, point_count, many ? joggled : merged, &made, error);
-  if (status == SCREE_OK && many && made.point_count <= MANY) {
-    scree_hull rough = made;
+  SCREE_TRY(find_hull(points, point_count, many ? joggled : merged, &made, error));
+  if (many && made.point_count <= MANY) {
+    SCREE_CLEANUP(scree_hull_free) scree_hull rough = made;
     made = (scree_hull){0};
-    status = find_hull(rough.points, rough.point_count, merged, &made, error);
-    scree_hull_free(&rough);
+    SCREE_TRY(find_hull(rough.points, rough.point_count, merged, &made, error));
   }
-  if (status == SCREE_OK) measure_hull(&made);
-  if (status == SCREE_OK && !(made.volume > FLAT * made.area * sqrt(made.area)))
-    status = keep_all(points, point_count, &made, error);
-  if (status == SCREE_OK)
-    *hull = made;
-  else
-    scree_hull_free(&made);
-  return status;
+  measure_hull(&made);
+  if (!(made.volume > FLAT * made.area * sqrt(made.area)))
+    SCREE_TRY(keep_all(points, point_count, &made, error));
+  *hull = made;
+  made = (scree_hull){0};
+  return SCREE_OK;
 }
 
 void scree_hull_free(scree_hull *hull) {
@@ -131,4 +129,15 @@ void scree_hull_free(scree_hull *hull) {
   scree_free(hull->points);
   scree_free(hull->triangles);
   *hull = (scree_hull){0};
+}
+
+scree_status scree_hull_mesh(const vec3 *points, size_t point_count, scree_mesh *mesh,
+                             scree_error *error) {
+  SCREE_CLEANUP(scree_hull_free) scree_hull hull = {0};
+  SCREE_TRY(scree_hull_build(points, point_count, &hull, error));
+  SCREE_TRY(scree_mesh_make(hull.point_count, hull.triangle_count, mesh, error));
+  for (size_t v = 0; v < hull.point_count; v++) vec3_store(mesh->positions + 3 * v, hull.points[v]);
+  if (hull.triangles)
+    memcpy(mesh->triangles, hull.triangles, 3 * hull.triangle_count * sizeof *mesh->triangles);
+  return SCREE_OK;
 }

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/vec.h"
+#include "mesh/mesh.h"
 
 /* The hull as a triangulated surface. Where the points lie in a plane, on a line or in one point to
  * within rounding, there are no triangles, area and volume are 0, and points holds all of them. */
@@ -20,3 +21,7 @@ typedef struct scree_hull {
 scree_status scree_hull_build(const vec3 *points, size_t point_count, scree_hull *hull,
                               scree_error *error);
 void scree_hull_free(scree_hull *hull);
+
+/* The hull as a mesh; one of flat points has no triangles. */
+scree_status scree_hull_mesh(const vec3 *points, size_t point_count, scree_mesh *mesh,
+                             scree_error *error);

@@ -9,13 +9,12 @@
  *
  * d is taken as a . n, not a . (b x c): the error then scales with the triangle, not with its
  * distance. Sums are compensated, in blocks of a fixed size that are combined in order. */
-#include "mesh/measure/measure.h"
+#include "mesh/measure/bounds.h"
 
 #include "base/alloc.h"
 #include "base/eigen.h"
 #include "base/parallel.h"
 #include "base/sum.h"
-#include "mesh/measure/minimum_box.h"
 
 #include <string.h>
 
@@ -57,11 +56,10 @@ static void add_moments(scree_sum *sums, vec3 a, vec3 b, vec3 c, double d) {
 #undef MOMENT
 }
 
-static void integrate_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void integrate_block(void *context, scree_block block) {
   const integrator *in = context;
   scree_sum sums[INTEGRALS] = {{0}};
-  for (size_t t = begin; t < end; t++) {
+  for (size_t t = block.begin; t < block.end; t++) {
     vec3 p = scree_mesh_corner(in->mesh, t, 0), q = scree_mesh_corner(in->mesh, t, 1),
          r = scree_mesh_corner(in->mesh, t, 2);
     vec3 normal = vec3_triangle_normal(p, q, r), a = vec3_sub(p, in->origin);
@@ -71,7 +69,7 @@ static void integrate_block(void *context, size_t begin, size_t end, size_t bloc
     if (in->integral_count > 2)
       add_moments(sums, a, vec3_sub(q, in->origin), vec3_sub(r, in->origin), d);
   }
-  memcpy(in->sums + block * (size_t)in->integral_count, sums,
+  memcpy(in->sums + block.index * (size_t)in->integral_count, sums,
          (size_t)in->integral_count * sizeof *sums);
 }
 
@@ -89,40 +87,6 @@ static scree_status integrate(const scree_mesh *mesh, vec3 origin, int integral_
   }
   scree_free(in.sums);
   return SCREE_OK;
-}
-
-void scree_mesh_bounds(const scree_mesh *mesh, vec3 *low, vec3 *high) {
-  *low = (vec3){INFINITY, INFINITY, INFINITY};
-  *high = vec3_neg(*low);
-  for (size_t c = 0; c < 3 * mesh->triangle_count; c++) {
-    vec3 p = vec3_load(mesh->positions + 3 * (size_t)mesh->triangles[c]);
-    *low = vec3_min(*low, p);
-    *high = vec3_max(*high, p);
-  }
-}
-
-/* splitmix64's finalizer (Steele, Lea, Flood 2014). */
-static uint64_t mix(uint64_t x) {
-  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ x >> 27) * 0x94d049bb133111ebu;
-  return x ^ x >> 31;
-}
-
-bool scree_mesh_is_cycle(const scree_mesh *mesh) {
-  uint64_t sum[2] = {0, 0};
-  for (size_t t = 0; t < mesh->triangle_count; t++) {
-    const uint32_t *c = mesh->triangles + 3 * t;
-    for (int k = 0; k < 3; k++) {
-      uint32_t from = c[k], to = c[(k + 1) % 3];
-      bool up = from < to;
-      uint64_t pair = up ? (uint64_t)from << 32 | to : (uint64_t)to << 32 | from;
-      uint64_t one = mix(pair + 0x9e3779b97f4a7c15u), two = mix(pair ^ 0xd1b54a32d192ed03u);
-      if (from == to) continue;
-      sum[0] += up ? one : -one;
-      sum[1] += up ? two : -two;
-    }
-  }
-  return sum[0] == 0 && sum[1] == 0;
 }
 
 /* ---- The whole set ---- */

@@ -9,11 +9,12 @@
  * boxes, prisms and the regular tetrahedron, the least of all boxes flush with a face where the
  * hull has few faces, and else a local minimum, in practice within a few per cent of the least
  * volume. Starts are worked on side by side, each by one worker, and compared in their order. */
-#include "mesh/measure/minimum_box.h"
+#include "mesh/measure/bounds.h"
 
 #include "base/array.h"
 #include "base/eigen.h"
 #include "base/parallel.h"
+#include "base/radix.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -58,11 +59,7 @@ typedef struct fitter {
   point2 *projected, *outline;
 } fitter;
 
-static int compare_points(const void *a, const void *b) {
-  const point2 *p = a, *q = b;
-  if (p->x != q->x) return p->x < q->x ? -1 : 1;
-  return (p->y > q->y) - (p->y < q->y);
-}
+SCREE_ORDER_BY2(compare_points, point2, x, y)
 
 static double turn(point2 a, point2 b, point2 c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -208,10 +205,7 @@ typedef struct start_list {
   size_t count, capacity;
 } start_list;
 
-static int compare_starts(const void *a, const void *b) {
-  const start *s = a, *t = b;
-  return (s->rank > t->rank) - (s->rank < t->rank);
-}
+SCREE_ORDER_BY(compare_starts, start, rank)
 
 static bool push_direction(start_list *list, vec3 direction, double rank) {
   double length = vec3_norm(direction);
@@ -280,20 +274,19 @@ typedef struct searcher {
   start *starts;
 } searcher;
 
-static void fit_starts(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block;
+static void fit_starts(void *context, scree_block block) {
   const searcher *s = context;
-  fitter *f = &s->fitters[worker];
-  for (size_t i = begin; i < end; i++) {
+  fitter *f = &s->fitters[block.worker];
+  for (size_t i = block.begin; i < block.end; i++) {
     s->starts[i].axes = fit_about(f, s->starts[i].axis);
     s->starts[i].rank = cost(f->hull, &s->starts[i].axes);
   }
 }
 
-static void settle_starts(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block;
+static void settle_starts(void *context, scree_block block) {
   const searcher *s = context;
-  for (size_t i = begin; i < end; i++) settle(&s->fitters[worker], &s->starts[i].axes);
+  for (size_t i = block.begin; i < block.end; i++)
+    settle(&s->fitters[block.worker], &s->starts[i].axes);
 }
 
 static mat3 search(fitter *fitters, start_list *list, const mat3 *axes) {

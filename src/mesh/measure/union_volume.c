@@ -11,7 +11,7 @@
  * The volume is the sum of the cones over these cells (measure.c). Cuts are moved by the rounding
  * of coordinates over the sine of the angle at which facets cross; where that is no longer small,
  * it is said that the volume is not known. */
-#include "mesh/measure/union_volume.h"
+#include "mesh/measure/bounds.h"
 
 #include "base/array.h"
 #include "base/parallel.h"
@@ -271,16 +271,15 @@ static bool add_piece(work *w, slicer *s, size_t asked, scree_sum *sum) {
   return true;
 }
 
-static void add_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void add_block(void *context, scree_block block) {
   work *w = context;
   slicer s = {0};
   scree_sum sum = {0};
   bool good = true;
-  for (size_t i = begin; i < end && good && !atomic_load(&w->unknown); i++)
+  for (size_t i = block.begin; i < block.end && good && !atomic_load(&w->unknown); i++)
     good = i < w->cut_count ? add_cut(w, &s, w->asked[i], &sum) : add_piece(w, &s, i, &sum);
   if (!good) atomic_store(&w->failed, true);
-  w->sums[block] = sum;
+  w->sums[block.index] = sum;
   scree_free(s.points.items);
   scree_free(s.cells.items);
 }

@@ -239,10 +239,7 @@ typedef struct half_site {
   double along;
 } half_site;
 
-static int compare_along(const void *p, const void *q) {
-  const half_site *x = p, *y = q;
-  return (x->along > y->along) - (x->along < y->along);
-}
+SCREE_ORDER_BY(compare_along, half_site, along)
 
 /* Segments within facet t along the edges of the other facet; true in *any where there are some. */
 static bool add_edge_segments(arranger *a, uint32_t t, const scree_site_facet *other,
@@ -390,14 +387,10 @@ static bool place_all(arranger *a, bool *any) {
 
 /* ---- Vertices near each other ---- */
 
-static int compare_sweep(const void *p, const void *q) {
-  const sweep_key *x = p, *y = q;
-  if (x->at != y->at) return x->at < y->at ? -1 : 1;
-  return (x->vertex > y->vertex) - (x->vertex < y->vertex);
-}
+SCREE_ORDER_BY2(compare_sweep, sweep_key, at, vertex)
 
-/* Of the vertices of facets that meet, and of all new ones, those within the tolerance of each
- * other become one: the lowest. */
+/* Vertices of facets that meet, and all new ones, become one, the lowest, within the tolerance of
+ * each other. */
 static scree_status merge_vertices(arranger *a, size_t old_count, scree_error *error) {
   size_t count = a->positions.count / 3;
   scree_free(a->merged);
@@ -428,26 +421,11 @@ static scree_status merge_vertices(arranger *a, size_t old_count, scree_error *e
 
 /* ---- Lists in order ---- */
 
-static int compare_edge_points(const void *p, const void *q) {
-  const edge_point *x = p, *y = q;
-  if (x->low != y->low) return x->low < y->low ? -1 : 1;
-  if (x->high != y->high) return x->high < y->high ? -1 : 1;
-  if (x->along != y->along) return x->along < y->along ? -1 : 1;
-  return (x->vertex > y->vertex) - (x->vertex < y->vertex);
-}
+SCREE_ORDER_BY4(compare_edge_points, edge_point, low, high, along, vertex)
 
-static int compare_facet_points(const void *p, const void *q) {
-  const facet_point *x = p, *y = q;
-  if (x->facet != y->facet) return x->facet < y->facet ? -1 : 1;
-  return (x->vertex > y->vertex) - (x->vertex < y->vertex);
-}
+SCREE_ORDER_BY2(compare_facet_points, facet_point, facet, vertex)
 
-static int compare_segments(const void *p, const void *q) {
-  const facet_segment *x = p, *y = q;
-  if (x->facet != y->facet) return x->facet < y->facet ? -1 : 1;
-  if (x->a != y->a) return x->a < y->a ? -1 : 1;
-  return (x->b > y->b) - (x->b < y->b);
-}
+SCREE_ORDER_BY3(compare_segments, facet_segment, facet, a, b)
 
 /* Each edge's vertices in their order along it, each once. */
 static void order_edge_points(arranger *a) {
@@ -593,12 +571,10 @@ static scree_status cut_all(arranger *a, scree_error *error) {
 static scree_status find_meetings(arranger *a, const scree_mesh *mesh,
                                   const scree_progress *progress, scree_meetings *found,
                                   scree_error *error) {
-  SCREE_CLEANUP(scree_facet_tree_free) scree_facet_tree tree = {0};
   SCREE_SCRATCH(bool, settled, a->facets.count, error);
   for (size_t t = 0; t < a->facets.count; t++) settled[t] = a->facets.items[t].settled;
-  SCREE_TRY(scree_facet_tree_build(mesh, &tree, error));
-  SCREE_TRY(scree_facet_meetings_new(&tree, a->first ? NULL : settled, scree_arrange_limit(mesh),
-                                     progress, found, error));
+  SCREE_TRY(scree_mesh_meetings(mesh, a->first ? NULL : settled, scree_arrange_limit(mesh),
+                                progress, found, error));
   /* of more than the limit there is the count alone */
   for (size_t i = 0; !found->truncated && i < found->count; i++) {
     facet *f = &a->facets.items[found->items[i].first],

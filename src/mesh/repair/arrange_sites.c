@@ -5,6 +5,7 @@
 #include "mesh/repair/arrange_sites.h"
 
 #include "base/array.h"
+#include "base/radix.h"
 #include "mesh/predicates.h"
 
 #include <stdlib.h>
@@ -225,11 +226,7 @@ static bool list_leaf(const scree_facet_tree *tree, const scree_tree_node *n, ui
   return true;
 }
 
-static int compare_pairs(const void *a, const void *b) {
-  const scree_facet_pair *x = a, *y = b;
-  if (x->first != y->first) return x->first < y->first ? -1 : 1;
-  return (x->second > y->second) - (x->second < y->second);
-}
+SCREE_ORDER_BY2(compare_pairs, scree_facet_pair, first, second)
 
 bool scree_near_pairs(const scree_facet_tree *tree, double tolerance, scree_facet_pairs *pairs) {
   size_t first = pairs->count;

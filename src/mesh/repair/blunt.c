@@ -7,7 +7,6 @@
  * strips' ends. An edge whose ends have one sector each stays. */
 #include "base/alloc.h"
 #include "mesh/repair/repair.h"
-#include "mesh/repair/sharp.h"
 
 /* How far either side moves: this share of how far apart the sides are where their facets end. */
 #define PARTING 0.05
@@ -43,7 +42,7 @@ static double rise_of(const blunting *b, uint32_t h) {
                   vec3_unit(scree_facet_normal(&b->r->mesh, h / 3)));
 }
 
-/* Of both ends of a sharp edge, the least that is asked for. */
+/* Sets the way of a sharp edge: the least that is asked for at its two ends. */
 static void set_way(blunting *b, uint32_t h) {
   uint32_t g = b->adjacency.ring[h];
   double there = rise_of(b, h), back = rise_of(b, g),

@@ -7,21 +7,18 @@
  * ones in material take theirs away, and shells in material that are no cavities change nothing.
  * Where facets meet it is counted piece by piece (mesh/measure/union_volume.c). Open or inside-out
  * shells leave the volume unknown. */
-#include "mesh/repair/check.h"
+#include "mesh/repair/repair.h"
 
 #include "base/alloc.h"
-#include "base/ending.h"
 #include "base/parallel.h"
+#include "base/path.h"
 #include "base/sum.h"
 #include "mesh/adjacency.h"
 #include "mesh/index/apart.h"
 #include "mesh/index/intersect.h"
-#include "mesh/measure/measure.h"
-#include "mesh/measure/union_volume.h"
+#include "mesh/measure/bounds.h"
 #include "mesh/mesh.h"
-#include "mesh/repair/sharp.h"
 #include "mesh/repair/shells.h"
-#include "mesh/topology.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -95,12 +92,18 @@ static void take_topology(const scree_topology *t, scree_check *check) {
   defect[SCREE_DEFECT_UNUSED_VERTEX] = t->unused_vertex_count;
 }
 
-static scree_status count_meetings(const scree_facet_tree *tree, const scree_adjacency *adjacency,
-                                   const scree_shells *shells, const scree_progress *progress,
+static scree_status need_tree(const scree_mesh *mesh, scree_facet_tree *tree, scree_error *error) {
+  return tree->mesh ? SCREE_OK : scree_facet_tree_build(mesh, tree, error);
+}
+
+static scree_status count_meetings(const scree_mesh *mesh, const scree_adjacency *adjacency,
+                                   const scree_shells *shells, scree_searched *searched,
+                                   const scree_progress *progress, scree_facet_tree *tree,
                                    scree_shell_pairs *pairs, scree_check *check,
                                    scree_error *error) {
   SCREE_CLEANUP(scree_free_at) scree_meetings found = {0};
-  SCREE_TRY(scree_facet_meetings(tree, SCREE_PAIR_LIMIT, progress, &found, error));
+  SCREE_TRY(
+      scree_searched_meetings(searched, mesh, tree, SCREE_PAIR_LIMIT, progress, &found, error));
   check->intersections_known = true;
   if (found.truncated) {
     check->too_many_pairs = true;
@@ -115,6 +118,7 @@ static scree_status count_meetings(const scree_facet_tree *tree, const scree_adj
   SCREE_TRY(scree_shell_pairs_find(shells, &found, pairs, error));
   check->defects[SCREE_DEFECT_OVERLAPPING_SHELLS] = pairs->count;
   if (found.count == 0 || !scree_shells_closed(shells)) return SCREE_OK;
+  SCREE_TRY(need_tree(mesh, tree, error));
   return scree_union_volume(tree, adjacency, &found, &check->volume, &check->volume_known, error);
 }
 
@@ -163,17 +167,17 @@ typedef struct connection {
   scree_error error[WALKS];
 } connection;
 
-static void connect(void *context, size_t begin, size_t end, size_t walk, int worker) {
-  (void)begin, (void)end, (void)worker;
+static void connect(void *context, scree_block block) {
   connection *c = context;
-  c->status[walk] = SCREE_OK;
-  if (walk == 0)
-    c->status[walk] = scree_shells_find(c->mesh, c->adjacency, &c->shells, &c->error[walk]);
-  else if (walk == 1)
+  c->status[block.index] = SCREE_OK;
+  if (block.index == 0)
+    c->status[block.index] =
+        scree_shells_find(c->mesh, c->adjacency, &c->shells, &c->error[block.index]);
+  else if (block.index == 1)
     c->sharp_count = scree_sharp_edges(c->mesh, c->adjacency, NULL);
   else
-    c->status[walk] =
-        scree_topology_count(c->mesh, c->adjacency, walk - 2, &c->topology, &c->error[walk]);
+    c->status[block.index] = scree_topology_count(c->mesh, c->adjacency, block.index - 2,
+                                                  &c->topology, &c->error[block.index]);
 }
 
 /* Topology and shells. */
@@ -199,9 +203,18 @@ static bool fans_are_whole(const scree_check *check) {
          !check->defects[SCREE_DEFECT_DEGENERATE_FACET];
 }
 
+/* Whether some edge has so many facets that pairs of these alone, each with each, would take too
+ * long. Such a surface is of no use anyway. */
+static bool has_crowded_edge(const scree_adjacency *adjacency) {
+  enum { CROWD = 8192 };
+  for (size_t e = 0; e < adjacency->edge_count; e++)
+    if (scree_edge_facet_count(adjacency, adjacency->edges[e]) > CROWD) return true;
+  return false;
+}
+
 static scree_status examine(const scree_mesh *mesh, const scree_check_options *options,
-                            const scree_progress *progress, scree_check *check,
-                            scree_error *error) {
+                            scree_searched *searched, const scree_progress *progress,
+                            scree_check *check, scree_error *error) {
   SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
   SCREE_CLEANUP(scree_shells_free) scree_shells shells = {0};
   SCREE_CLEANUP(scree_free_at) scree_shell_pairs pairs = {0};
@@ -214,11 +227,15 @@ static scree_status examine(const scree_mesh *mesh, const scree_check_options *o
   if (options->intersections && shells.count == 1 && mesh->triangle_count >= PROOF_FACETS)
     SCREE_TRY(scree_facets_apart(mesh, fans_are_whole(check) ? &adjacency : NULL, &clear, error));
   check->intersections_known = clear;
-  bool look = options->intersections && !clear;
-  if (look || shells.count > 1) SCREE_TRY(scree_facet_tree_build(mesh, &tree, error));
-  if (look) SCREE_TRY(count_meetings(&tree, &adjacency, &shells, progress, &pairs, check, error));
+  bool look = options->intersections && !clear && !has_crowded_edge(&adjacency);
+  if (look)
+    SCREE_TRY(
+        count_meetings(mesh, &adjacency, &shells, searched, progress, &tree, &pairs, check, error));
   if (check->too_many_pairs) return SCREE_OK;
-  if (shells.count > 1) SCREE_TRY(scree_shells_wind(&shells, &pairs, &tree, error));
+  if (shells.count > 1) {
+    SCREE_TRY(need_tree(mesh, &tree, error));
+    SCREE_TRY(scree_shells_wind(&shells, &pairs, &tree, error));
+  }
   count_kinds(&shells, check);
   return SCREE_OK;
 }
@@ -281,6 +298,12 @@ static void conclude(scree_check *check) {
 scree_status scree_mesh_check(const scree_mesh *mesh, const scree_check_options *options,
                               const scree_progress *progress, scree_check *check,
                               scree_error *error) {
+  return scree_check_searched(mesh, options, NULL, progress, check, error);
+}
+
+scree_status scree_check_searched(const scree_mesh *mesh, const scree_check_options *options,
+                                  scree_searched *searched, const scree_progress *progress,
+                                  scree_check *check, scree_error *error) {
   scree_check_options defaults = scree_default_check_options();
   scree_check made = {.triangle_count = mesh->triangle_count, .vertex_count = mesh->vertex_count};
   SCREE_TRY(verify_indices(mesh, error));
@@ -292,7 +315,8 @@ scree_status scree_mesh_check(const scree_mesh *mesh, const scree_check_options 
     scree_mesh_bounds(mesh, &low, &high);
     vec3_store(made.size, vec3_sub(high, low));
   }
-  if (finite) SCREE_TRY(examine(mesh, options ? options : &defaults, progress, &made, error));
+  if (finite)
+    SCREE_TRY(examine(mesh, options ? options : &defaults, searched, progress, &made, error));
   conclude(&made);
   *check = made;
   return SCREE_OK;

@@ -8,8 +8,8 @@
  * and stays. None of this is done to a shell that meets another: what is inside what has no answer
  * there; and while it may be merged with the other it is no debris: together they are one body. */
 #include "base/alloc.h"
+#include "base/radix.h"
 #include "mesh/repair/repair.h"
-#include "mesh/repair/sharp.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -168,21 +168,50 @@ static scree_status turn_outward(scree_repair *r, nest *n, scree_error *error) {
 
 /* ---- What stays ---- */
 
-static size_t largest_shell(const nest *n) {
-  size_t largest = 0;
+/* The largest shell, bodies alone or any, that comes after this one by area; the count of shells
+ * where there is none. after NO_SHELL: of all. */
+static size_t next_largest(const nest *n, bool bodies, size_t after) {
+  const scree_shell *items = n->shells.items;
+  size_t found = n->shells.count;
+  for (size_t i = 0; i < n->shells.count; i++) {
+    if (bodies && scree_shell_kind_of(&items[i]) != SCREE_SHELL_BODY) continue;
+    bool later = after == SCREE_NO_SHELL || items[i].area < items[after].area ||
+                 (items[i].area == items[after].area && i > after);
+    if (later && (found == n->shells.count || items[i].area > items[found].area)) found = i;
+  }
+  return found;
+}
+
+static size_t count_bodies(const nest *n) {
+  size_t count = 0;
   for (size_t i = 0; i < n->shells.count; i++)
-    if (n->shells.items[i].area > n->shells.items[largest].area) largest = i;
-  return largest;
+    count += scree_shell_kind_of(&n->shells.items[i]) == SCREE_SHELL_BODY;
+  return count;
+}
+
+/* That which is kept where only one is. */
+static size_t chosen_shell(const nest *n, size_t body) {
+  if (body < 2 || count_bodies(n) < 2) return next_largest(n, false, SCREE_NO_SHELL);
+  size_t found = SCREE_NO_SHELL;
+  for (size_t k = 0; k < body; k++) found = next_largest(n, true, found);
+  return found;
+}
+
+static scree_status verify_body(const scree_repair *r, const nest *n, scree_error *error) {
+  size_t bodies = count_bodies(n), body = r->options->keep_body;
+  if (body <= bodies || bodies < 2) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_ARGUMENT, "there is no body %zu: there are %zu", body, bodies);
 }
 
 static void judge_shells(scree_repair *r, nest *n) {
   const scree_repair_options *o = r->options;
-  size_t *done = r->report.done, largest = largest_shell(n);
+  const bool one = o->keep_largest || o->keep_body > 0;
+  size_t *done = r->report.done, kept = chosen_shell(n, o->keep_body);
   for (size_t i = 0; i < n->shells.count; i++) {
     const scree_shell *s = &n->shells.items[i];
     scree_shell_kind kind = scree_shell_kind_of(s);
     bool cavity = kind == SCREE_SHELL_CAVITY && !is_tangled(n, i);
-    bool of_largest = cavity && s->depth == 1 && s->outermost == largest;
+    bool of_kept = cavity && s->depth == 1 && s->outermost == kept;
     bool waits = is_tangled(n, i) && !r->apart; /* it is to be merged first */
     if (cavity && o->drop_cavities) {
       n->drop[i] = true;
@@ -190,8 +219,8 @@ static void judge_shells(scree_repair *r, nest *n) {
     } else if (kind == SCREE_SHELL_NESTED && !is_tangled(n, i)) {
       n->drop[i] = true;
       done[SCREE_REPAIR_DROP_NESTED]++;
-    } else if (!waits && ((!cavity && s->area < o->debris_share * n->largest_area) ||
-                          (o->keep_largest && i != largest && !of_largest))) {
+    } else if (!waits && i != kept &&
+               ((!cavity && s->area < o->debris_share * n->largest_area) || (one && !of_kept))) {
       n->drop[i] = true;
       done[SCREE_REPAIR_DROP_DEBRIS]++;
     }
@@ -205,11 +234,7 @@ typedef struct cavity {
   size_t shell;
 } cavity;
 
-static int compare_cavities(const void *a, const void *b) {
-  const cavity *x = a, *y = b;
-  if (x->volume != y->volume) return x->volume < y->volume ? -1 : 1;
-  return (x->shell > y->shell) - (x->shell < y->shell);
-}
+SCREE_ORDER_BY2(compare_cavities, cavity, volume, shell)
 
 /* Marks them from the smallest on, as long as all that was filled stays under the share. */
 static scree_status fill_cavities(scree_repair *r, nest *n, scree_error *error) {
@@ -245,6 +270,7 @@ scree_status scree_repair_shells(scree_repair *r, scree_error *error) {
   SCREE_TRY(find_nest(r, &n, error));
   SCREE_TRY(find_pairs(r, &n, error));
   SCREE_TRY(turn_outward(r, &n, error));
+  SCREE_TRY(verify_body(r, &n, error));
   judge_shells(r, &n);
   SCREE_TRY(fill_cavities(r, &n, error));
   return drop_shells(r, &n, error);
@@ -282,7 +308,8 @@ scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, scr
   SCREE_CLEANUP(scree_free_at) scree_meetings found = {0};
   *cut_count = 0;
   SCREE_TRY(find_nest(r, &n, error));
-  SCREE_TRY(scree_mesh_meetings(&r->mesh, MEETING_LIMIT, r->progress, &found, error));
+  SCREE_TRY(scree_searched_meetings(&r->searched, &r->mesh, NULL, MEETING_LIMIT, r->progress,
+                                    &found, error));
   if (found.truncated) return SCREE_OK;
   SCREE_SCRATCH_ZERO(bool, marked, r->mesh.triangle_count, error);
   SCREE_SCRATCH(bool, vertex, r->mesh.vertex_count, error);

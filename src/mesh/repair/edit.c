@@ -1,5 +1,6 @@
 /* Changes to the mesh under repair. */
 #include "base/array.h"
+#include "base/radix.h"
 #include "mesh/repair/repair.h"
 
 #include <stdlib.h>
@@ -76,13 +77,7 @@ typedef struct corner_key {
   uint32_t low, middle, high, facet;
 } corner_key;
 
-static int compare_corner_keys(const void *a, const void *b) {
-  const corner_key *x = a, *y = b;
-  if (x->low != y->low) return x->low < y->low ? -1 : 1;
-  if (x->middle != y->middle) return x->middle < y->middle ? -1 : 1;
-  if (x->high != y->high) return x->high < y->high ? -1 : 1;
-  return (x->facet > y->facet) - (x->facet < y->facet);
-}
+SCREE_ORDER_BY4(compare_corner_keys, corner_key, low, middle, high, facet)
 
 static corner_key key_of(const scree_mesh *mesh, size_t t) {
   const uint32_t *c = mesh->triangles + 3 * t;

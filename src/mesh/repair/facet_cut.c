@@ -421,11 +421,7 @@ static void insert_segment(scree_facet_cutter *c, int a, int b) {
   relax(c);
 }
 
-static int compare_stops(const void *a, const void *b) {
-  const stop *x = a, *y = b;
-  if (x->along != y->along) return x->along < y->along ? -1 : 1;
-  return (x->corner > y->corner) - (x->corner < y->corner);
-}
+SCREE_ORDER_BY2(compare_stops, stop, along, corner)
 
 /* Makes the segment edges from each corner that it passes within the tolerance to the next: a
  * sliver beside it would stand in the way later. */
@@ -474,11 +470,7 @@ static bool start(scree_facet_cutter *c) {
   return true;
 }
 
-static int compare_names(const void *a, const void *b) {
-  const name *x = a, *y = b;
-  return x->id != y->id ? (x->id > y->id) - (x->id < y->id)
-                        : (x->corner > y->corner) - (x->corner < y->corner);
-}
+SCREE_ORDER_BY2(compare_names, name, id, corner)
 
 static bool list_names(scree_facet_cutter *c) {
   c->names.count = 0;

@@ -14,6 +14,7 @@
  * (conjugate gradients, as for other cascades). The weights are those of the shape before, twice at
  * each size. */
 #include "base/array.h"
+#include "base/radix.h"
 #include "mesh/repair/repair.h"
 
 #include <float.h>
@@ -141,10 +142,7 @@ typedef struct name {
   uint32_t vertex, place;
 } name;
 
-static int compare_names(const void *a, const void *b) {
-  const name *x = a, *y = b;
-  return (x->vertex > y->vertex) - (x->vertex < y->vertex);
-}
+SCREE_ORDER_BY(compare_names, name, vertex)
 
 /* The mesh's facets from first_facet on, with the rim's vertices by their places. */
 static scree_status take_facets(patch *p, scree_error *error) {

@@ -8,9 +8,10 @@
  * forbidden: a third facet there would not be a surface. Larger loops are cut ear by ear, the
  * flattest and smallest first.
  *
- * Where large holes are asked for, fillings of more than SMOOTH_EDGES edges are then refined and
- * smoothed (repair_fair.c). One that then meets the surface, or another, is taken back: a surface
- * that is coarse there is better than one that crosses itself. */
+ * A filling that neither is a missing flat face nor follows the surface over its rim within what a
+ * choice tolerates is then refined and smoothed (repair_fair.c). One that then meets the surface,
+ * or another, is taken back: a surface that is coarse there is better than one that crosses itself.
+ * No rule asks for the number of edges, so that a body is filled alike at every resolution. */
 #include "base/alloc.h"
 #include "base/array.h"
 #include "base/radix.h"
@@ -21,9 +22,8 @@
 #include <string.h>
 
 enum {
-  EXACT_EDGES = 160, /* n^3 / 6 steps: 0.1 s */
-  MOST_EDGES = 4096,
-  SMOOTH_EDGES = 32,      /* fillings with more are made smooth */
+  EXACT_EDGES = 160,      /* n^3 / 6 steps: 0.1 s */
+  MOST_EDGES = 16384,     /* n^2: a second */
   MEETING_LIMIT = 100000, /* pairs: with more, it is not told apart which smooth filling meets */
 };
 
@@ -244,7 +244,8 @@ typedef struct smooth_filling {
 typedef struct hole_work {
   scree_repair *r;
   scree_adjacency adjacency;
-  size_t edge_limit;
+  double area;     /* of the surface before, m^2 */
+  bool own;        /* the holes were cut by the repair itself: they are filled plainly */
   bool *seen;      /* by half-edge */
   uint32_t *place; /* by vertex: 1 + its position in the chain, or 0 */
   chain chain;
@@ -272,12 +273,27 @@ static scree_status make_smooth(hole_work *w, const loop *l, size_t first, scree
 #define RIM_ROUGHNESS 0.25
 /* The cosine of the angle beyond which the surface does not go on over the rim (45 degrees). */
 #define RIM_BEND 0.7
+/* What a choice keeps by default: the largest and the mean distance over the body's size. */
+#define LARGEST_OFF 0.04
+#define MEAN_OFF    0.003
+/* A filling of a larger share of the area is a guess, whatever its rim. */
+#define GUESSED_SHARE 0.01
 
-/* Whether the rim is plane and the surface comes to it at an edge, as where a flat face is missing
- * or what stood on a plane was scanned: its filling is that plane. */
-static bool stands_on_plane(const loop *l) {
+static const double pi = 3.14159265358979323846;
+
+/* How a filling goes on from its rim. */
+typedef struct rim_fit {
+  double area, share; /* of the filling, m^2; of the whole surface then */
+  bool is_flat;       /* a missing face: the rim is plane, and the surface comes to it at an edge */
+  bool follows; /* the surface, continued over the rim, is within a choice's tolerances of it */
+} rim_fit;
+
+/* The surface that goes on with the rim's slope is a cap over the hole: of height r tan(slope / 2),
+ * r the radius of the filling's area. */
+static rim_fit fit_rim(const hole_work *w, const loop *l, size_t first_facet) {
   vec3 normal = {0, 0, 0}, first = at(l, 0);
-  double length = 0, along = 0, low = 0, high = 0;
+  double length = 0, along = 0, steep = 0, low = 0, high = 0;
+  rim_fit fit = {0};
   for (size_t i = 0; i < l->count; i++) {
     vec3 p = at(l, i), q = at(l, (i + 1) % l->count);
     normal = vec3_add(normal, vec3_cross(vec3_sub(p, first), vec3_sub(q, first)));
@@ -286,12 +302,22 @@ static bool stands_on_plane(const loop *l) {
   normal = vec3_unit(normal);
   for (size_t i = 0; i < l->count; i++) {
     vec3 p = at(l, i), q = at(l, (i + 1) % l->count);
-    along += vec3_distance(p, q) * fabs(vec3_dot(normal_across(l, i), normal));
+    double cosine = vec3_dot(normal_across(l, i), normal);
+    along += vec3_distance(p, q) * cosine;
+    steep += vec3_distance(p, q) * fabs(cosine);
     low = fmin(low, vec3_dot(vec3_sub(p, first), normal));
     high = fmax(high, vec3_dot(vec3_sub(p, first), normal));
   }
-  return 0.5 * (high - low) <= RIM_ROUGHNESS * length / (double)l->count &&
-         along < RIM_BEND * length;
+  for (size_t t = first_facet; t < l->r->mesh.triangle_count; t++)
+    fit.area += 0.5 * vec3_norm(scree_facet_normal(&l->r->mesh, t));
+  double slope = fmax(along / length, -1), size = sqrt((w->area + fit.area) / pi),
+         cap = sqrt(fit.area / pi) * sqrt((1 - slope) / (1 + slope + DBL_MIN)),
+         off = fmax(0.5 * (high - low), cap);
+  fit.share = fit.area / (w->area + fit.area);
+  fit.is_flat =
+      0.5 * (high - low) <= RIM_ROUGHNESS * length / (double)l->count && steep < RIM_BEND * length;
+  fit.follows = off <= LARGEST_OFF * size && 0.5 * off * fit.share <= MEAN_OFF * size;
+  return fit;
 }
 
 /* One loop of half-edges, in the order of the boundary (against the filling's). */
@@ -300,7 +326,7 @@ static scree_status fill_loop(hole_work *w, const uint32_t *half_edges, size_t c
   scree_repair *r = w->r;
   bool filled = false;
   size_t before = r->mesh.triangle_count;
-  if (count < 3 || count > w->edge_limit || count > MOST_EDGES) return SCREE_OK;
+  if (count < 3 || count > MOST_EDGES) return SCREE_OK;
   if (count == 3 && half_edges[0] / 3 == half_edges[1] / 3) return SCREE_OK; /* a lone facet */
   SCREE_SCRATCH(uint32_t, vertex, count, error);
   SCREE_SCRATCH(uint32_t, half_edge, count, error);
@@ -312,13 +338,19 @@ static scree_status fill_loop(hole_work *w, const uint32_t *half_edges, size_t c
     half_edge[i] = h;
   }
   SCREE_TRY((count <= EXACT_EDGES ? fill_best : fill_by_ears)(r, &l, &filled, error));
-  if (filled && count > SMOOTH_EDGES && r->options->fill_large_holes &&
-      !r->options->flat_large_holes && !stands_on_plane(&l))
-    SCREE_TRY(make_smooth(w, &l, before, error));
-  if (filled) {
-    r->report.done[SCREE_REPAIR_FILL_HOLE]++;
-    r->report.done[SCREE_REPAIR_FILL_FACET] += r->mesh.triangle_count - before;
+  if (!filled) return SCREE_OK;
+  rim_fit fit = fit_rim(w, &l, before);
+  if (!w->own && fit.share > r->options->hole_share) {
+    r->mesh.triangle_count = before;
+    r->report.refused_share = fmax(r->report.refused_share, fit.share);
+    return SCREE_OK;
   }
+  if (!w->own && !r->options->flat_holes && !fit.is_flat && !fit.follows)
+    SCREE_TRY(make_smooth(w, &l, before, error));
+  if (!w->own && (fit.share >= GUESSED_SHARE || !(fit.is_flat || fit.follows)))
+    r->report.guessed_area += fit.area;
+  r->report.done[SCREE_REPAIR_FILL_HOLE]++;
+  r->report.done[SCREE_REPAIR_FILL_FACET] += r->mesh.triangle_count - before;
   return SCREE_OK;
 }
 
@@ -389,9 +421,15 @@ static scree_status take_back(hole_work *w, const scree_meetings *found, scree_e
 
 static scree_status judge_smooth(hole_work *w, scree_error *error) {
   SCREE_CLEANUP(scree_free_at) scree_meetings found = {0};
+  const scree_mesh *mesh = &w->r->mesh;
   if (w->smooth.count == 0) return SCREE_OK;
+  SCREE_SCRATCH(bool, others, mesh->triangle_count, error);
+  memset(others, true, mesh->triangle_count);
+  for (size_t i = 0; i < w->smooth.count; i++)
+    memset(others + w->smooth.items[i].begin, false,
+           w->smooth.items[i].end - w->smooth.items[i].begin);
   if (w->r->options->intersections)
-    SCREE_TRY(scree_mesh_meetings(&w->r->mesh, MEETING_LIMIT, w->r->progress, &found, error));
+    SCREE_TRY(scree_mesh_meetings(mesh, others, MEETING_LIMIT, w->r->progress, &found, error));
   return take_back(w, &found, error);
 }
 
@@ -404,9 +442,11 @@ static void free_work(hole_work *w) {
   scree_adjacency_free(&w->adjacency);
 }
 
-scree_status scree_repair_holes(scree_repair *r, size_t edge_limit, scree_error *error) {
-  SCREE_CLEANUP(free_work) hole_work w = {.r = r, .edge_limit = edge_limit};
+scree_status scree_repair_holes(scree_repair *r, bool own, scree_error *error) {
+  SCREE_CLEANUP(free_work) hole_work w = {.r = r, .own = own};
   size_t half_edge_count = 3 * r->mesh.triangle_count;
+  for (size_t t = 0; t < r->mesh.triangle_count; t++)
+    w.area += 0.5 * vec3_norm(scree_facet_normal(&r->mesh, t));
   SCREE_TRY(scree_adjacency_build(&r->mesh, &w.adjacency, error));
   SCREE_TRY_ALLOC_ZERO(w.seen, half_edge_count, error);
   SCREE_TRY_ALLOC_ZERO(w.place, r->mesh.vertex_count, error);

@@ -17,7 +17,7 @@
  * Winding. Neighbours across edges of two facets are turned to agree, piece by piece; of each piece
  * the smaller area is turned. */
 #include "base/alloc.h"
-#include "base/array.h"
+#include "base/radix.h"
 #include "mesh/repair/repair.h"
 
 #include <stdlib.h>
@@ -89,11 +89,7 @@ scree_status scree_repair_fins(scree_repair *r, scree_error *error) {
 
 /* ---- Pairing the facets at edges ---- */
 
-static int compare_spokes(const void *a, const void *b) {
-  const scree_spoke *x = a, *y = b;
-  if (x->angle != y->angle) return x->angle < y->angle ? -1 : 1;
-  return (x->half_edge > y->half_edge) - (x->half_edge < y->half_edge);
-}
+SCREE_ORDER_BY2(compare_spokes, scree_spoke, angle, half_edge)
 
 bool scree_repair_spokes(const scree_mesh *mesh, const scree_adjacency *adjacency, uint32_t first,
                          scree_spoke *spokes, int count) {

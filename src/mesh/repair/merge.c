@@ -75,8 +75,8 @@ static scree_status find_tangle(scree_repair *r, tangle *t, scree_error *error) 
   t->closed = scree_shells_closed(&shells);
   t->crowded = is_crowded(&adjacency);
   if (!t->closed) return SCREE_OK;
-  SCREE_TRY(
-      scree_mesh_meetings(&r->mesh, scree_arrange_limit(&r->mesh), r->progress, &found, error));
+  SCREE_TRY(scree_searched_meetings(&r->searched, &r->mesh, NULL, scree_arrange_limit(&r->mesh),
+                                    r->progress, &found, error));
   if (found.truncated) r->unmerged = scree_arrange_too_many;
   return found.truncated ? SCREE_OK : count_tangled(&shells, &found, t, error);
 }

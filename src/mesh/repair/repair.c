@@ -10,12 +10,13 @@
  * cut out with their neighbourhood, wider each time, shells that meet each other are merged, sharp
  * edges that are too many to cut out are made blunt, and the round starts over.
  *
+ * Short handles of the closed surface that comes of it are cut.
+ *
  * Every round ends with a weld, so vertices and facets are always in canonical order and the result
  * does not depend on the order of the input. Nothing is called repaired that the check has not
  * passed. */
 #include "mesh/repair/repair.h"
 #include "base/alloc.h"
-#include "mesh/repair/check.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -46,12 +47,13 @@ const char *scree_repair_action_text(scree_repair_action action, size_t count) {
 
 scree_repair_options scree_default_repair_options(void) {
   return (scree_repair_options){.seam_tolerance = 1e-4,
-                                .hole_edges = 128,
+                                .hole_share = 0.45,
                                 .debris_share = 0.01,
                                 .cut_intersections = true,
                                 .merge_shells = true,
                                 .intersections = true,
                                 .cavity_share = 1e-3,
+                                .handle_edges = 6,
                                 .volume_change = 0.01};
 }
 
@@ -62,6 +64,9 @@ static scree_status verify_options(const scree_repair_options *o, scree_error *e
   if (!(o->debris_share >= 0 && o->debris_share < 1))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "debris_share is %g; the range is [0, 1)",
                       o->debris_share);
+  if (!(o->hole_share >= 0 && o->hole_share <= 1))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "hole_share is %g; the range is [0, 1]",
+                      o->hole_share);
   if (!(o->cavity_share >= 0 && o->cavity_share <= 1))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "cavity_share is %g; the range is [0, 1]",
                       o->cavity_share);
@@ -83,40 +88,6 @@ void scree_repair_take(scree_repair *r, scree_mesh *mesh) {
   r->diagonal = r->mesh.vertex_count ? vec3_distance(box.low, box.high) : 0;
   vec3 far = vec3_max(vec3_neg(box.low), box.high);
   r->largest = fmax(far.x, fmax(far.y, far.z));
-}
-
-static bool is_before(const double *a, const double *b) {
-  for (int k = 0; k < 3; k++)
-    if (a[k] != b[k]) return a[k] < b[k];
-  return false;
-}
-
-/* Whether vertices are distinct and sorted, no zero is negative, no coordinate is bad. */
-static bool vertices_are_canonical(const scree_mesh *mesh) {
-  for (size_t v = 0; v < mesh->vertex_count; v++) {
-    const double *p = mesh->positions + 3 * v;
-    if (scree_vertex_is_bad(p) || (v && !is_before(p - 3, p))) return false;
-    for (int k = 0; k < 3; k++)
-      if (p[k] == 0 && signbit(p[k])) return false;
-  }
-  return true;
-}
-
-static bool triangles_are_canonical(const scree_mesh *mesh) {
-  for (size_t t = 0; t < mesh->triangle_count; t++) {
-    const uint32_t *c = mesh->triangles + 3 * t, *before = t ? c - 3 : c;
-    if (c[1] <= c[0] || c[2] <= c[0] || c[1] == c[2]) return false;
-    if (t && (c[0] != before[0]   ? c[0] < before[0]
-              : c[1] != before[1] ? c[1] < before[1]
-                                  : c[2] < before[2]))
-      return false;
-  }
-  return true;
-}
-
-/* Whether welding would give back the same bits; every vertex must be known to be in use. */
-static bool is_canonical(const scree_mesh *mesh) {
-  return vertices_are_canonical(mesh) && triangles_are_canonical(mesh);
 }
 
 /* Replaces the mesh under repair by `mesh` welded exactly and put in canonical order; facets with
@@ -150,10 +121,10 @@ scree_status scree_repair_duplicates(scree_repair *r, scree_error *error) {
 
 /* ---- Rounds ---- */
 
-static scree_status check_now(const scree_repair *r, bool intersections, scree_check *check,
+static scree_status check_now(scree_repair *r, bool intersections, scree_check *check,
                               scree_error *error) {
   scree_check_options options = {.intersections = intersections};
-  return scree_mesh_check(&r->mesh, &options, r->progress, check, error);
+  return scree_check_searched(&r->mesh, &options, &r->searched, r->progress, check, error);
 }
 
 static bool surface_is_sound(const scree_check *check) {
@@ -163,12 +134,10 @@ static bool surface_is_sound(const scree_check *check) {
 }
 
 static scree_status mend_open(scree_repair *r, scree_error *error) {
-  const scree_repair_options *o = r->options;
   /* the holes of a surface that was closed are all of the repair's own cutting */
   bool was_closed = r->report.before.defects[SCREE_DEFECT_BOUNDARY_EDGE] == 0;
-  size_t edge_limit = o->fill_large_holes || was_closed ? SIZE_MAX : o->hole_edges;
   SCREE_TRY(scree_repair_scraps(r, error));
-  return scree_repair_holes(r, edge_limit, error);
+  return scree_repair_holes(r, was_closed, error);
 }
 
 static scree_status mend_surface(scree_repair *r, const scree_check *check, scree_error *error) {
@@ -217,7 +186,8 @@ static scree_status take_volume(scree_repair *r, scree_error *error) {
   return SCREE_OK;
 }
 
-/* Of a surface whose coordinates may be bad, or that has no facets; NaN, 0. */
+/* Area and volume of a surface whose coordinates may be bad, then NaN, or that has no facets, then
+ * 0. */
 static scree_status measure(const scree_mesh *mesh, const scree_check *check, double *area,
                             double *volume, scree_error *error) {
   *area = *volume = check->defects[SCREE_DEFECT_BAD_COORDINATE] ? NAN : 0;
@@ -235,7 +205,7 @@ static scree_status report_untouched(const scree_mesh *mesh, scree_repair_report
   return SCREE_OK;
 }
 
-/* Of the result, as a share. */
+/* The change of the result's volume, as a share. */
 static double volume_change(const scree_repair *r) {
   return isnan(r->volume) ? 0 : fabs(r->report.volume_after - r->volume) / fabs(r->volume);
 }
@@ -351,7 +321,7 @@ static scree_status mend(scree_repair *r, const scree_mesh *mesh, scree_error *e
   size_t unused = r->report.before.defects[SCREE_DEFECT_UNUSED_VERTEX];
   size_t used = r->report.before.vertex_count - unused;
   scree_mesh copy;
-  if (unused || !is_canonical(mesh)) {
+  if (unused || !scree_is_canonical(mesh)) {
     SCREE_TRY(weld(r, mesh, &done[SCREE_REPAIR_DROP_BAD], &collapsed, error));
   } else { /* as every reader gives it */
     SCREE_TRY(scree_mesh_copy(mesh, &copy, error));
@@ -385,8 +355,10 @@ static scree_status mend_otherwise(scree_repair *r, const scree_mesh *mesh, scre
   scree_repair other = {.options = &options,
                         .progress = r->progress,
                         .volume = NAN,
+                        .searched = r->searched,
                         .report.before = r->report.before};
   scree_error reason;
+  r->searched = (scree_searched){.met = NULL};
   options.merge_folds = true;
   scree_status status = mend(&other, mesh, &reason);
   other.options = r->options;
@@ -399,33 +371,103 @@ static scree_status mend_otherwise(scree_repair *r, const scree_mesh *mesh, scre
     *r = other;
   } else {
     scree_mesh_free(&other.mesh);
+    r->searched = other.searched;
   }
   if (status != SCREE_CANCELLED && status != SCREE_OUT_OF_MEMORY) return SCREE_OK;
   if (error) *error = reason;
   return status;
 }
 
-/* Whether mend would come to a copy. */
-static bool needs_nothing(const scree_mesh *mesh, const scree_check *check) {
-  return check->usable && check->shell_count == 1 && !check->defects[SCREE_DEFECT_UNUSED_VERTEX] &&
-         is_canonical(mesh);
+/* ---- Handles ---- */
+
+/* The handles of a closed manifold surface, by Euler's characteristic. */
+static size_t handle_count(const scree_check *check) {
+  size_t vertices = check->vertex_count - check->defects[SCREE_DEFECT_UNUSED_VERTEX];
+  return check->shell_count - (vertices - check->triangle_count / 2) / 2;
 }
 
-/* mesh with its check known. */
+static bool may_cut_handles(const scree_repair_options *o, const scree_check *check) {
+  return o->handle_edges > 0 && check->usable && handle_count(check) > 0;
+}
+
+/* Nothing is cut where the surface would not be as sound as it was. */
+static scree_status cut_handles(scree_repair *r, scree_error *error) {
+  enum { HANDLE_ROUNDS = 16 };
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh cut = {0};
+  scree_handles told = {0};
+  scree_check check;
+  for (int round = 0; round < HANDLE_ROUNDS; round++) {
+    scree_mesh next;
+    size_t before = told.count;
+    const scree_mesh *from = round ? &cut : &r->mesh;
+    SCREE_TRY(scree_handles_cut(from, r->options->handle_edges, &next, &told, error));
+    scree_mesh_free(&cut);
+    cut = next;
+    SCREE_TRY(scree_mesh_canonicalize(&cut, error));
+    if (told.count == before) break;
+  }
+  if (told.count == 0) return SCREE_OK;
+  scree_check_options how = {.intersections = r->options->intersections};
+  SCREE_TRY(scree_check_searched(&cut, &how, &r->searched, r->progress, &check, error));
+  if (!check.usable || check.shell_count != r->report.after.shell_count) return SCREE_OK;
+  if (isnan(r->report.volume_before)) r->report.volume_before = r->report.volume_after;
+  scree_repair_take(r, &cut);
+  r->report.done[SCREE_REPAIR_CUT_HANDLE] = told.count;
+  r->report.handle_length = told.length;
+  memcpy(r->report.handle_place, told.place, sizeof told.place);
+  r->report.after = check;
+  return measure(&r->mesh, &check, &r->report.area_after, &r->report.volume_after, error);
+}
+
+/* ---- What became of it ---- */
+
+/* Where the area tells that something is missing, or new: how far off that is. */
+static scree_status measure_move(const scree_mesh *mesh, const scree_repair *r,
+                                 scree_repair_report *report, scree_error *error) {
+  static const double NOTABLE_AREA = 1e-3;
+  enum { MOVE_POINTS = 20000 };
+  scree_distance_options how = scree_default_distance_options();
+  scree_distance found;
+  double change = report->area_after / report->area_before - 1;
+  if (!(fabs(change) > NOTABLE_AREA)) return SCREE_OK; /* NaN: it has bad coordinates */
+  how.sample_count = MOVE_POINTS;
+  how.hausdorff_gap = 0; /* the largest found, not what none exceeds */
+  SCREE_TRY(scree_mesh_distance(mesh, &r->mesh, &how, r->progress, &found, error));
+  const scree_deviation *far =
+      found.forward.maximum > found.backward.maximum ? &found.forward : &found.backward;
+  report->moved_mean = fmax(found.forward.mean, found.backward.mean);
+  report->moved_most = far->maximum;
+  memcpy(report->moved_place, far->at, sizeof far->at);
+  return SCREE_OK;
+}
+
+/* Whether mend would come to a copy. */
+static bool needs_nothing(const scree_mesh *mesh, const scree_repair_options *options,
+                          const scree_check *check) {
+  return !may_cut_handles(options, check) && check->usable && check->shell_count == 1 &&
+         !check->defects[SCREE_DEFECT_UNUSED_VERTEX] && scree_is_canonical(mesh);
+}
+
+/* mesh with its check and what it searched known, which it takes over. */
 static scree_status repair_checked(const scree_mesh *mesh, const scree_check *before,
-                                   const scree_repair_options *options,
+                                   scree_searched *searched, const scree_repair_options *options,
                                    const scree_progress *progress, scree_mesh *repaired,
                                    scree_repair_report *report, scree_error *error) {
   scree_repair r = {.options = options,
                     .progress = progress,
                     .apart = !options->merge_shells,
                     .volume = NAN,
+                    .searched = *searched,
                     .report.before = *before};
   double area_before, unsaid;
-  SCREE_TRY(measure(mesh, before, &area_before, &unsaid, error));
-  scree_status status = mend(&r, mesh, error);
+  *searched = (scree_searched){.met = NULL};
+  scree_status status = measure(mesh, before, &area_before, &unsaid, error);
+  if (status == SCREE_OK) status = mend(&r, mesh, error);
   if (status == SCREE_OK && options->merge_shells && !options->merge_folds && has_lost(&r))
     status = mend_otherwise(&r, mesh, error);
+  if (status == SCREE_OK && may_cut_handles(options, &r.report.after))
+    status = cut_handles(&r, error);
+  scree_searched_free(&r.searched);
   r.report.area_before = area_before;
   if (report && (status == SCREE_OK || status == SCREE_BAD_MESH)) *report = r.report;
   if (status == SCREE_OK && !r.report.after.usable)
@@ -434,6 +476,7 @@ static scree_status repair_checked(const scree_mesh *mesh, const scree_check *be
                    r.report.after.verdict, r.unmerged ? "; shells were not merged: " : "",
                    r.unmerged ? r.unmerged : "");
   if (status == SCREE_OK) status = refuse_loss(&r, error);
+  if (status == SCREE_OK && report) status = measure_move(mesh, &r, report, error);
   if (status == SCREE_OK)
     *repaired = r.mesh;
   else
@@ -459,7 +502,8 @@ static scree_status repair_cut_off(const scree_mesh *mesh, const scree_repair_op
   SCREE_TRY(scree_repair_cut_off(mesh, chosen.cut == SCREE_CUT_GIVEN ? &chosen.plane : NULL, &plane,
                                  &dropped, &above, error));
   chosen.cut = SCREE_CUT_NONE;
-  chosen.keep_largest = chosen.fill_large_holes = chosen.flat_large_holes = true;
+  chosen.keep_largest = chosen.flat_holes = true;
+  chosen.hole_share = 1;
   scree_status status = scree_mesh_repair(&above, &chosen, progress, &whole, &made, error);
   made.done[SCREE_REPAIR_CUT_OFF] = dropped;
   made.plane = plane;
@@ -483,14 +527,15 @@ scree_status scree_mesh_repair(const scree_mesh *mesh, const scree_repair_option
   SCREE_TRY(verify_options(&chosen, error));
   if (chosen.cut != SCREE_CUT_NONE)
     return repair_cut_off(mesh, &chosen, progress, repaired, report, error);
-  SCREE_TRY(scree_mesh_check(mesh, &how, progress, before, error));
-  if (mesh == repaired && needs_nothing(mesh, before)) {
+  SCREE_CLEANUP(scree_searched_free) scree_searched searched = {.met = NULL};
+  SCREE_TRY(scree_check_searched(mesh, &how, &searched, progress, before, error));
+  if (mesh == repaired && needs_nothing(mesh, &chosen, before)) {
     SCREE_TRY(report_untouched(mesh, &untouched, error));
     if (report) *report = untouched;
     return SCREE_OK;
   }
   scree_mesh made;
-  SCREE_TRY(repair_checked(mesh, before, &chosen, progress, &made, report, error));
+  SCREE_TRY(repair_checked(mesh, before, &searched, &chosen, progress, &made, report, error));
   if (mesh == repaired) scree_mesh_free(repaired);
   *repaired = made;
   return SCREE_OK;

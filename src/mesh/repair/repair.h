@@ -3,14 +3,18 @@
  * interface is in scree/check.h; repair.c tells the whole. */
 #pragma once
 
+#include "base/error.h"
+#include "base/vec.h"
 #include "mesh/adjacency.h"
 #include "mesh/index/intersect.h"
 #include "mesh/mesh.h"
+#include "mesh/repair/searched.h"
 #include "mesh/repair/shells.h"
 
 typedef struct scree_repair {
   scree_mesh mesh; /* owned */
   size_t vertex_capacity, triangle_capacity;
+  scree_searched searched;
   size_t came_in; /* triangles, when the rounds began */
   const scree_repair_options *options;
   const scree_progress *progress;
@@ -80,8 +84,8 @@ scree_status scree_repair_membranes(scree_repair *r, scree_error *error);
 scree_status scree_repair_edges(scree_repair *r, scree_error *error);
 scree_status scree_repair_winding(scree_repair *r, scree_error *error);
 scree_status scree_repair_vertices(scree_repair *r, scree_error *error);
-/* repair_holes.c */
-scree_status scree_repair_holes(scree_repair *r, size_t edge_limit, scree_error *error);
+/* repair_holes.c; own: those that the repair has cut itself */
+scree_status scree_repair_holes(scree_repair *r, bool own, scree_error *error);
 
 /* A hole and its filling, the mesh's facets from first_facet on, of the hole's vertices alone. */
 typedef struct scree_filling {
@@ -113,3 +117,40 @@ scree_status scree_repair_blunt(scree_repair *r, size_t *blunted, scree_error *e
  * ways; *merged is false, and r->unmerged may tell why, where they do not. `early`, before other
  * stages: not where a shell only meets itself, unless the options say so. */
 scree_status scree_repair_merge(scree_repair *r, bool early, bool *merged, scree_error *error);
+
+/* Handles that are no wider than what a scan can tell: slots that its net has bridged, and holes
+ * that it has made. They cannot be decimated away. */
+typedef struct scree_handles {
+  size_t count;
+  double length, place[3]; /* of the longest loop that was cut, m */
+} scree_handles;
+
+/* Cuts loops of a closed manifold surface along which it does not fall apart, of at most so many
+ * mean edges and a tenth of the body's size, and caps both rims. What touches no other is cut at
+ * once: call again until nothing is. *cut is to be put in canonical order; *told adds up. O(N) and
+ * the searches round the handles. */
+scree_status scree_handles_cut(const scree_mesh *mesh, double edges, scree_mesh *cut,
+                               scree_handles *told, scree_error *error);
+
+/* ---- sharp.c: edges too sharp for contact, for check, repair and particles ---- */
+
+/* Whether neighbours with these normals, of any lengths, make an angle of less than
+ * SCREE_LEAST_EDGE_DEG, in material or outside; false where one has no area. */
+bool scree_normals_are_sharp(vec3 a, vec3 b);
+/* Whether the facets of half-edges h and its only twin do; false where they are wound unlike. */
+bool scree_edge_is_sharp(const scree_mesh *mesh, const scree_adjacency *adjacency, uint32_t h);
+/* The number of such edges; marked (may be NULL) gets true for their facets. */
+size_t scree_sharp_edges(const scree_mesh *mesh, const scree_adjacency *adjacency, bool *marked);
+
+/* ---- check.c: shared by check and repair; the interface is in scree/check.h ---- */
+
+/* A coordinate is not finite, or beyond what exact predicates bear. */
+bool scree_vertex_is_bad(const double *position);
+
+bool scree_defect_is_grave(scree_defect defect);
+
+/* scree_mesh_check of a mesh that is being mended: facets that meet are sought by what is known,
+ * which learns of it. */
+scree_status scree_check_searched(const scree_mesh *mesh, const scree_check_options *options,
+                                  scree_searched *searched, const scree_progress *progress,
+                                  scree_check *check, scree_error *error);

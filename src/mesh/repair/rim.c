@@ -16,11 +16,7 @@ void scree_rim_free(scree_rim *rim) {
   *rim = (scree_rim){0};
 }
 
-static int compare_rim(const void *a, const void *b) {
-  const scree_rim_vertex *x = a, *y = b;
-  if (x->at != y->at) return x->at < y->at ? -1 : 1;
-  return (x->vertex > y->vertex) - (x->vertex < y->vertex);
-}
+SCREE_ORDER_BY2(compare_rim, scree_rim_vertex, at, vertex)
 
 void scree_rim_count(const scree_adjacency *a, size_t *open, size_t *crowded) {
   *open = *crowded = 0;
@@ -72,12 +68,7 @@ scree_status scree_rim_find(const scree_mesh *mesh, scree_rim *b, scree_error *e
 
 /* ---- T-junctions ---- */
 
-static int compare_junctions(const void *a, const void *b) {
-  const scree_junction *x = a, *y = b;
-  if (x->half_edge != y->half_edge) return x->half_edge < y->half_edge ? -1 : 1;
-  if (x->share != y->share) return x->share < y->share ? -1 : 1;
-  return (x->vertex > y->vertex) - (x->vertex < y->vertex);
-}
+SCREE_ORDER_BY3(compare_junctions, scree_junction, half_edge, share, vertex)
 
 static bool find_on_edge(const scree_mesh *m, const scree_rim *b, const scree_junction_rule *rule,
                          uint32_t h, size_t *work, scree_junctions *found) {

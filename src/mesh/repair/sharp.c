@@ -1,6 +1,6 @@
 /* Normals of neighbours that point against each other: cos(180 - angle) is compared without roots.
  */
-#include "mesh/repair/sharp.h"
+#include "mesh/repair/repair.h"
 
 /* The square of the cosine of SCREE_LEAST_EDGE_DEG. */
 static double least_cosine_squared(void) {

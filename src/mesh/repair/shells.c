@@ -145,7 +145,7 @@ static void find_owners(const scree_shells *shells, const scree_mesh *mesh, uint
     }
 }
 
-/* Of each shell's vertices the farthest along x, then y, then z; one of its own goes before one
+/* The vertex of each shell that is farthest along x, then y, then z; one of its own goes before one
  * that it shares. */
 static void find_starts(const scree_shells *shells, const scree_mesh *mesh, const uint32_t *owner,
                         uint32_t *start) {
@@ -207,10 +207,7 @@ typedef struct hits {
   size_t count, capacity;
 } hits;
 
-static int compare_hits(const void *a, const void *b) {
-  const hit *x = a, *y = b;
-  return (x->label > y->label) - (x->label < y->label);
-}
+SCREE_ORDER_BY(compare_hits, hit, label)
 
 static bool shoot(const scree_shells *shells, const scree_facet_tree *tree, uint32_t own,
                   uint32_t start, hits *found) {

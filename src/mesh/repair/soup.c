@@ -15,17 +15,116 @@
 #include "mesh/repair/soup.h"
 
 #include "base/alloc.h"
-#include "base/array.h"
+#include "base/radix.h"
 #include "mesh/adjacency.h"
 #include "mesh/index/closest.h"
 #include "mesh/index/facet_tree.h"
 #include "mesh/measure/solid_angle.h"
 #include "mesh/repair/repair.h"
-#include "mesh/repair/soup_tidy.h"
+#include "mesh/repair/rim.h"
+#include "mesh/weld.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* T-junctions (mesh/repair/rim.h) are looked for on edges of one facet alone: the others have what
+ * they need. A dropped sliver leaves such a junction behind too. */
+
+static const double share = 2e-6; /* of the diagonal: 2 um in 1 m, far below any body */
+static const double ulp = 1.2e-7; /* of a coordinate in single precision, as STL has them */
+enum { PASSES = 8 };              /* an edge of each corner, and of what these leave */
+
+/* m: what lies closer than this is at one place. */
+static double soup_tolerance(const scree_mesh *mesh) {
+  const scree_box box = scree_box_of_points(mesh->positions, mesh->vertex_count);
+  vec3 far = vec3_max(vec3_neg(box.low), box.high);
+  double largest = scree_larger(far.x, scree_larger(far.y, far.z));
+  return scree_larger(share * vec3_distance(box.low, box.high), 4 * ulp * largest);
+}
+
+/* ---- vertices ---- */
+
+static scree_status weld(scree_mesh *mesh, double tolerance, scree_wall_mending *mending,
+                         scree_error *error) {
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh welded = {0};
+  const scree_box box = scree_box_of_points(mesh->positions, mesh->vertex_count);
+  double diagonal = vec3_distance(box.low, box.high);
+  if (!(diagonal > 0)) return SCREE_OK; /* all of it is flat */
+  SCREE_TRY(scree_mesh_copy(mesh, &welded, error));
+  SCREE_TRY(scree_weld_near(&welded, tolerance / diagonal, error));
+  if (welded.vertex_count == mesh->vertex_count) return SCREE_OK;
+  mending->welded = mesh->vertex_count - welded.vertex_count;
+  mending->flat = mesh->triangle_count - welded.triangle_count;
+  scree_mesh kept = *mesh;
+  *mesh = welded;
+  welded = kept;
+  return SCREE_OK;
+}
+
+/* Over its longest edge, m. */
+static double height_of(const scree_mesh *mesh, size_t t) {
+  vec3 c[3];
+  double longest = 0;
+  for (int k = 0; k < 3; k++) c[k] = scree_mesh_corner(mesh, t, k);
+  for (int k = 0; k < 3; k++) longest = scree_larger(longest, vec3_distance(c[k], c[(k + 1) % 3]));
+  double area2 = vec3_norm(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
+  return longest > 0 ? area2 / longest : 0;
+}
+
+static scree_status drop_flat(scree_mesh *mesh, double tolerance, scree_wall_mending *mending,
+                              scree_error *error) {
+  SCREE_SCRATCH(bool, gone, mesh->triangle_count, error);
+  for (size_t t = 0; t < mesh->triangle_count; t++)
+    gone[t] = scree_names_twice(mesh->triangles + 3 * t) || height_of(mesh, t) <= tolerance;
+  mending->flat += scree_facets_drop(mesh, gone);
+  return SCREE_OK;
+}
+
+/* ---- junctions and doubles ---- */
+
+static scree_status join_once(scree_mesh *mesh, double tolerance, size_t *joined,
+                              scree_error *error) {
+  const scree_junction_rule rule = {tolerance, INFINITY, SIZE_MAX};
+  SCREE_CLEANUP(scree_free_at) scree_junctions found = {0};
+  SCREE_TRY(scree_junctions_find(mesh, &rule, &found, error));
+  size_t count = mesh->triangle_count + found.count;
+  uint32_t *grown = scree_resize(mesh->triangles, count, 3 * sizeof *grown);
+  if (!grown) return scree_fail_memory(error, 3 * count * sizeof *grown, "a wall's facets");
+  mesh->triangles = grown;
+  *joined += scree_junctions_split(mesh, &found);
+  return SCREE_OK;
+}
+
+static scree_status drop_doubles(scree_mesh *mesh, scree_wall_mending *mending,
+                                 scree_error *error) {
+  size_t dropped;
+  SCREE_TRY(scree_facets_drop_doubles(mesh, &dropped, error));
+  mending->doubled += dropped;
+  return SCREE_OK;
+}
+
+/* Sets vertices into edges of one facet that run past them. */
+static scree_status soup_join(scree_mesh *mesh, double tolerance, scree_wall_mending *mending,
+                              scree_error *error) {
+  for (int pass = 0; pass < PASSES; pass++) {
+    size_t before = mending->joined;
+    SCREE_TRY(join_once(mesh, tolerance, &mending->joined, error));
+    if (mending->joined == before) break;
+  }
+  return SCREE_OK;
+}
+
+/* Welds, drops what is flat, sets vertices into edges that run past them, drops facets that name
+ * the same vertices as others. Vertices keep their order where none is welded. */
+static scree_status soup_tidy(scree_mesh *mesh, double tolerance, scree_wall_mending *mending,
+                              scree_error *error) {
+  SCREE_TRY(weld(mesh, tolerance, mending, error));
+  SCREE_TRY(drop_flat(mesh, tolerance, mending, error));
+  SCREE_TRY(drop_doubles(mesh, mending, error)); /* which have no rims */
+  SCREE_TRY(soup_join(mesh, tolerance, mending, error));
+  return drop_doubles(mesh, mending, error);
+}
 
 enum {
   NONE = SCREE_NO_HALF_EDGE,
@@ -180,7 +279,7 @@ typedef struct bulk {
   bool open;
 } bulk;
 
-/* Of each piece, at its lowest facet: volume about that facet's first corner. */
+/* The volume of each piece about the first corner of its lowest facet, kept at that facet. */
 static void measure_pieces(const sheets *s, bulk *bulks) {
   for (uint32_t f = 0; f < s->mesh->triangle_count; f++) {
     bulk *b = &bulks[s->piece[f]];
@@ -278,7 +377,7 @@ static scree_status find_covered(const sheets *s, double tolerance, bool *gone, 
 
 /* ---- the pieces ---- */
 
-/* Of the half-edge's facet, at which of its corners the vertex is. */
+/* The corner of the half-edge's facet at which the vertex is. */
 static uint32_t corner_at(const sheets *s, uint32_t half, uint32_t vertex) {
   return scree_half_edge_from(s->mesh, half) == vertex ? half : scree_half_edge_next(half);
 }
@@ -332,12 +431,7 @@ typedef struct corner_name {
   uint32_t vertex, class, corner;
 } corner_name;
 
-static int by_name(const void *x, const void *y) {
-  const corner_name *a = x, *b = y;
-  if (a->vertex != b->vertex) return a->vertex < b->vertex ? -1 : 1;
-  if (a->class != b->class) return a->class < b->class ? -1 : 1;
-  return a->corner < b->corner ? -1 : a->corner > b->corner;
-}
+SCREE_ORDER_BY3(by_name, corner_name, vertex, class, corner)
 
 /* The result's vertices, in the order of the soup's, and which each corner has. */
 static scree_status number_vertices(sheets *s, uint32_t *number, scree_mesh *made,
@@ -432,7 +526,7 @@ static scree_status divide(scree_mesh *mesh, double tolerance, scree_pieces *out
     if (covered == 0) return put_pieces(&s, out, error);
     scree_facets_drop(mesh, gone);
     out->mending.doubled += covered; /* edges may have lost their other facet */
-    SCREE_TRY(scree_soup_join(mesh, tolerance, &out->mending, error));
+    SCREE_TRY(soup_join(mesh, tolerance, &out->mending, error));
   }
 }
 
@@ -461,9 +555,9 @@ scree_status scree_pieces_make(const scree_mesh *soup, scree_pieces *pieces, scr
   if (soup->triangle_count > UINT32_MAX / 8)
     return scree_fail(error, SCREE_LIMIT, "wall: %zu facets; at most %u", soup->triangle_count,
                       UINT32_MAX / 8);
-  double tolerance = scree_soup_tolerance(soup);
+  double tolerance = soup_tolerance(soup);
   SCREE_TRY(scree_mesh_copy(soup, &mesh, error));
-  SCREE_TRY(scree_soup_tidy(&mesh, tolerance, &made.mending, error));
+  SCREE_TRY(soup_tidy(&mesh, tolerance, &made.mending, error));
   if (mesh.triangle_count == 0) return refuse(soup, error);
   SCREE_TRY(divide(&mesh, tolerance, &made, error));
   *pieces = made;

@@ -2,7 +2,8 @@
 
 #include "base/array.h"
 #include "base/parallel.h"
-#include "mesh/measure/minimum_box.h"
+#include "base/radix.h"
+#include "mesh/measure/bounds.h"
 #include "simplify/morton.h"
 #include "simplify/tuning.h"
 
@@ -18,15 +19,33 @@ enum { BLOCK = 1024 };
 #define DROPPED (-2.0F)
 
 void scree_samples_free(scree_samples *p) {
-  scree_halfmesh_free(&p->scan);
-  scree_surface_tree_free(&p->scan_tree);
-  scree_free(p->end);
+  if (!p->borrows) {
+    scree_halfmesh_free(&p->scan);
+    scree_surface_tree_free(&p->scan_tree);
+    scree_free(p->end);
+  }
   scree_free(p->of);
   scree_free(p->first);
   scree_free(p->worst);
   scree_free(p->next);
   scree_free(p->far);
   *p = (scree_samples){0};
+}
+
+scree_status scree_samples_copy(const scree_samples *p, const scree_halfmesh *surface,
+                                scree_samples *copy, scree_error *error) {
+  *copy = *p;
+  copy->borrows = true;
+  copy->of = copy->first = copy->next = NULL, copy->worst = copy->far = NULL;
+#define COPY(field, count)                                                                         \
+  SCREE_TRY_ALLOC(copy->field, count, error);                                                      \
+  memcpy(copy->field, p->field, (count) * sizeof *copy->field);
+  COPY(of, surface->vertex_count)
+  COPY(first, surface->triangle_count)
+  COPY(worst, surface->triangle_count)
+  COPY(next, p->scan.vertex_count)
+  COPY(far, p->scan.vertex_count)
+  return SCREE_OK;
 }
 
 /* ---- Finding them ---- */
@@ -38,7 +57,7 @@ typedef struct finding {
   bool *stays; /* per vertex of the scan: the surface has it as it was */
 } finding;
 
-/* Of the triangles about the nearest that are as near the largest, whatever their order. */
+/* The largest of the triangles about the nearest that are as near, whatever their order. */
 static uint32_t largest_about(const scree_halfmesh *s, uint32_t nearest, vec3 p, double distance2) {
   vec3 corner[3];
   double area2 = 0;
@@ -58,12 +77,11 @@ static uint32_t largest_about(const scree_halfmesh *s, uint32_t nearest, vec3 p,
   return largest;
 }
 
-static void find_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void find_block(void *context, scree_block block) {
   const finding *f = context;
   scree_samples *p = f->samples;
   uint32_t nearest = SCREE_NONE; /* that of the one before is near */
-  for (size_t v = begin; v < end; v++) {
+  for (size_t v = block.begin; v < block.end; v++) {
     p->far[v] = NOT_YET;
     if (f->stays[v] || p->scan.vertex[v].outgoing == SCREE_NONE) continue;
     double d2 = scree_surface_tree_distance(f->tree, f->s, p->scan.vertex[v].at, 0, &nearest);
@@ -110,10 +128,9 @@ static void link_all(scree_samples *p, const scree_halfmesh *s) {
   }
 }
 
-static void end_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void end_block(void *context, scree_block block) {
   const scree_samples *p = context;
-  for (size_t v = begin; v < end; v++)
+  for (size_t v = block.begin; v < block.end; v++)
     p->end[v] = (int8_t)scree_extent_end(&p->extent, p->scan.vertex[v].at);
 }
 
@@ -179,15 +196,14 @@ typedef struct averaging {
   } * blocks;
 } averaging;
 
-static void average_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
+static void average_block(void *context, scree_block block) {
   const averaging *a = context;
   double sum = 0;
   size_t count = 0;
-  for (size_t v = begin; v < end; v++)
+  for (size_t v = block.begin; v < block.end; v++)
     if (a->samples->far[v] >= 0) sum += (double)a->samples->far[v], count++;
-  a->blocks[block].sum = sum;
-  a->blocks[block].count = count;
+  a->blocks[block.index].sum = sum;
+  a->blocks[block.index].count = count;
 }
 
 scree_status scree_samples_average(scree_samples *p, scree_error *error) {
@@ -304,7 +320,7 @@ static double weight_at(const scree_samples *p, uint32_t v) {
   return p->weight[p->end[v] < 0 ? ~p->end[v] : p->end[v]];
 }
 
-/* Of the width's share that is lost `far - depth` is a bound. */
+/* `far - depth` bounds the share of the width that is lost. */
 double scree_deviation_of(const scree_samples *p, uint32_t v, double far) {
   double depth = scree_extent_depth(&p->extent, p->end[v], p->scan.vertex[v].at);
   return scree_larger(far, (far - depth) * weight_at(p, v));
@@ -325,7 +341,7 @@ typedef struct search {
   double deviation, deviation2, most2;
 } search;
 
-/* Of one sample; start: the fan's triangle to look at first. */
+/* Takes one sample into account; start: the fan's triangle to look at first. */
 static void heed_sample(const scree_samples *p, const scree_fan *f, uint32_t v, uint32_t start,
                         search *w) {
   double enough = far_for(p, v, w->deviation),
@@ -366,13 +382,9 @@ double scree_deviation_find(const scree_samples *p, const scree_halfmesh *s, con
   return w.deviation2 <= w.most2 ? sqrt(w.deviation2) : INFINITY;
 }
 
-static int by_distance(const void *a, const void *b) {
-  const struct scree_sample *x = a, *y = b;
-  if (x->far != y->far) return x->far < y->far ? -1 : 1;
-  return x->sample < y->sample ? -1 : x->sample > y->sample;
-}
+SCREE_ORDER_BY2(by_distance, struct scree_sample, far, sample)
 
-/* Of those that tell little every fourth is dropped, in the order of distance: it does not hang on
+/* Drops every fourth of those that tell little, in the order of distance: it does not hang on
  * their numbers, and what is left has about the same distances. */
 static void thin(scree_samples *p, scree_gathered *g) {
   size_t left = 0, near = 0;

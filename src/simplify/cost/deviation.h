@@ -25,6 +25,7 @@ typedef struct scree_samples {
   float *far;      /* the same: its distance from its triangle; below 0: no sample yet */
   double mean;     /* of the samples' distances, when it was last found */
   size_t count;    /* of them then */
+  bool borrows;    /* the scan, its tree and its ends are another's */
 } scree_samples;
 
 /* Samples about one collapse: scratch of one thread. */
@@ -45,6 +46,9 @@ scree_status scree_samples_start(scree_samples *samples, scree_error *error);
 /* Makes samples of all its vertices that the surface, whose tree is tight, has left. */
 scree_status scree_samples_find(const scree_halfmesh *surface, const scree_surface_tree *tree,
                                 scree_samples *samples, scree_error *error);
+/* A copy for a squeezed surface, which borrows the scan; to be freed also where it fails. */
+scree_status scree_samples_copy(const scree_samples *samples, const scree_halfmesh *surface,
+                                scree_samples *copy, scree_error *error);
 void scree_samples_free(scree_samples *samples);
 
 /* Finds the mean anew; in parallel, the same bits for any number of threads. */

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* Of so many triangles near one collapse, those whose leaves meet its box, there is room without
+/* There is room for so many triangles near one collapse, those whose leaves meet its box, without
  * asking for memory. */
 enum { ROOM = 4096 };
 /* Names of moved vertices, which no vertex has. */

@@ -1,4 +1,4 @@
-#include "simplify/guard/marker.h"
+#include "simplify/guard/apart.h"
 
 #include "base/alloc.h"
 #include "mesh/measure/solid_angle.h"
@@ -24,7 +24,7 @@ void scree_markers_follow(scree_markers *markers, const scree_fan *fan) {
     if (markers->vertex[i] == fan->b) markers->vertex[i] = fan->a;
 }
 
-/* Of a triangle seen from p. */
+/* Half the solid angle of a triangle seen from p. */
 static double half_angle(vec3 p, vec3 a, vec3 b, vec3 c) {
   return scree_half_solid_angle(vec3_sub(a, p), vec3_sub(b, p), vec3_sub(c, p));
 }

@@ -1,11 +1,11 @@
-#include "simplify/guard/shape.h"
+#include "simplify/guard/apart.h"
 
 #include "simplify/tuning.h"
 
 /* Height over longest edge, below which a triangle has no area but that of rounding. */
 #define FLAT 1e-9
 
-/* Of a set of triangles and the edges between them. */
+/* The worst of a set of triangles and of the edges between them. */
 typedef struct worst {
   double shape; /* least height over longest edge */
   double fold;  /* least cosine over an edge */
@@ -40,7 +40,7 @@ static uint32_t beyond(const scree_halfmesh *s, const scree_fan *f, uint32_t i) 
   return s->half[f->edge[i]].twin;
 }
 
-/* Of what is there: every edge of the fan's triangles and of those that go. */
+/* The worst of what is there: every edge of the fan's triangles and of those that go. */
 static worst before(const scree_halfmesh *s, const scree_fan *f) {
   worst w = {.shape = 1, .fold = 1};
   vec3 at[3];

@@ -41,6 +41,7 @@ typedef struct pass {
   uint32_t *chosen; /* per vertex: see scree_planned */
   uint8_t *marks;   /* per vertex */
   double limit;     /* the most for this pass */
+  bool drawn;       /* candidates go in an order drawn by lot, not by their costs */
   taken *taken, *sorted;        /* the latter: to sort */
   vec3 *target, *sorted_target; /* of those taken */
   size_t taken_count, room;
@@ -79,11 +80,10 @@ static scree_status pass_allocate(pass *p, scree_decimator *d) {
 
 /* ---- Ranking ---- */
 
-static void renew_sums(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void renew_sums(void *context, scree_block block) {
   scree_decimator *d = context;
   scree_halfmesh *s = &d->s;
-  for (size_t v = begin; v < end; v++) {
+  for (size_t v = block.begin; v < block.end; v++) {
     if (s->vertex[v].outgoing == SCREE_NONE || !(s->flags[v] & SCREE_VERTEX_STALE)) continue;
     if (!d->coster->merge) d->coster->sum(s, (uint32_t)v);
   }
@@ -119,13 +119,12 @@ static bool is_stale(const scree_halfmesh *s, uint32_t v) {
   return stale;
 }
 
-static void rank_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void rank_block(void *context, scree_block block) {
   pass *p = context;
   const scree_halfmesh *s = &p->d->s;
   uint32_t edges[SIDE_BY_SIDE];
   size_t count = 0;
-  for (uint32_t v = (uint32_t)begin; v < end; v++) {
+  for (uint32_t v = (uint32_t)block.begin; v < block.end; v++) {
     uint32_t first = s->vertex[v].outgoing, h = first;
     if (h == SCREE_NONE || !is_stale(s, v)) continue;
     p->cost[v] = INFINITY;
@@ -165,7 +164,7 @@ static bool set_limit(pass *p) {
 
 static bool goes_before(const pass *p, uint32_t u, uint32_t v) {
   const uint32_t scatter = 0x9e3779b1u; /* odd: a bijection; else rows of a grid would wait */
-  if (p->cost[u] != p->cost[v]) return p->cost[u] < p->cost[v];
+  if (p->cost[u] != p->cost[v] && !p->drawn) return p->cost[u] < p->cost[v];
   return u * scatter < v * scatter;
 }
 
@@ -197,20 +196,18 @@ static uint32_t *place_of(const pass *p, const four *f, int k) {
   return k < 2 ? &p->leader[f->v[k]] : &p->apex[f->v[k]];
 }
 
-static void claim_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void claim_block(void *context, scree_block block) {
   pass *p = context;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     four f = four_of(&p->d->s, p->best[p->candidates[i]]);
     for (int k = 0; k < 4; k++)
       if (f.v[k] != SCREE_NONE) claim(p, p->candidates[i], place_of(p, &f, k));
   }
 }
 
-static void resign_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void resign_block(void *context, scree_block block) {
   pass *p = context;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     four f = four_of(&p->d->s, p->best[p->candidates[i]]);
     for (int k = 0; k < 4; k++)
       if (f.v[k] != SCREE_NONE) __atomic_store_n(place_of(p, &f, k), SCREE_NONE, __ATOMIC_RELAXED);
@@ -258,17 +255,15 @@ static bool leads(pass *p, uint32_t v) {
   return visit_about(p, f.v[0], v, leads_at) && visit_about(p, f.v[1], v, leads_at);
 }
 
-static void choose_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void choose_block(void *context, scree_block block) {
   pass *p = context;
-  for (size_t i = begin; i < end; i++)
+  for (size_t i = block.begin; i < block.end; i++)
     if (leads(p, p->candidates[i])) set_mark(p, p->candidates[i], TAKEN);
 }
 
-static void touch_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void touch_block(void *context, scree_block block) {
   pass *p = context;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     uint32_t v = p->candidates[i];
     if (!(p->marks[v] & TAKEN)) continue;
     four f = four_of(&p->d->s, p->best[v]);
@@ -318,11 +313,10 @@ static void choose(pass *p) {
 
 /* ---- Judging and doing ---- */
 
-static void judge_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void judge_block(void *context, scree_block block) {
   pass *p = context;
   scree_fan f;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     taken *t = &p->taken[i];
     scree_verdict v = scree_decimate_judge(p->d, t->half_edge, p->limit, &f);
     t->cost = v.cost;
@@ -365,14 +359,13 @@ static void plan(pass *p) {
   p->taken_count = count;
 }
 
-static void guard_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void guard_block(void *context, scree_block block) {
   pass *p = context;
   const scree_decimator *d = p->d;
   const scree_planned planned = {p->chosen, p->target};
   const scree_surroundings around = {&d->s, &d->tree, &d->markers, &planned};
   scree_fan f;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     taken *t = &p->taken[i];
     scree_fan_of_edge(&d->s, t->half_edge, &f);
     scree_fan_set(&f, p->target[i]);
@@ -386,12 +379,11 @@ static void set_stale(scree_halfmesh *s, uint32_t v) {
     __atomic_fetch_or(&s->flags[v], SCREE_VERTEX_STALE, __ATOMIC_RELAXED);
 }
 
-static void collapse_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+static void collapse_block(void *context, scree_block block) {
   pass *p = context;
   scree_decimator *d = p->d;
   scree_fan f;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = block.begin; i < block.end; i++) {
     const taken *t = &p->taken[i];
     if (!t->allowed) continue;
     scree_fan_of_edge(&d->s, t->half_edge, &f);
@@ -448,12 +440,13 @@ static scree_status start_ranks(scree_decimator *d) {
   return SCREE_OK;
 }
 
-static scree_status run_pass(scree_decimator *d, size_t least, size_t *done) {
+static scree_status run_pass(scree_decimator *d, size_t least, bool drawn, size_t *done) {
   SCREE_CLEANUP(pass_free) pass p = {0};
   *done = 0;
   SCREE_TRY(scree_decimate_squeeze(d));
   if (!d->s.best) SCREE_TRY(start_ranks(d));
   SCREE_TRY(pass_allocate(&p, d));
+  p.drawn = drawn;
   rank_stale(&p);
   bool more = set_limit(&p);
   for (int round = 0; more && round < ROUNDS; round++) {
@@ -464,13 +457,19 @@ static scree_status run_pass(scree_decimator *d, size_t least, size_t *done) {
   return SCREE_OK;
 }
 
+/* Where costs rise steadily along the surface, as from a pole of a sphere's net, each edge waits
+ * for its cheaper neighbour, and a pass takes one row: from then on they are drawn by lot. */
 scree_status scree_decimate_in_passes(scree_decimator *d, size_t least) {
-  size_t done = SIZE_MAX, live = 0;
+  bool drawn = false;
   if (least < d->options.stop_count) least = d->options.stop_count;
-  while (d->s.live_triangle_count > least && (double)done > LEAST_SHARE * (double)live) {
-    live = d->s.live_triangle_count;
+  while (d->s.live_triangle_count > least) {
+    const size_t live = d->s.live_triangle_count;
+    size_t done;
     if (!scree_decimate_tick(d)) return SCREE_CANCELLED;
-    SCREE_TRY(run_pass(d, least, &done));
+    SCREE_TRY(run_pass(d, least, drawn, &done));
+    if ((double)done > LEAST_SHARE * (double)live) continue;
+    if (drawn) break;
+    drawn = true;
   }
   scree_parallel_for(d->s.vertex_count, BLOCK, renew_sums, d);
   return SCREE_OK;

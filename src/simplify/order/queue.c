@@ -3,6 +3,7 @@
  * where the whole cost is above the next in the queue, it waits at that. After a collapse the edges
  * about the new vertex get new costs, and edges beside it that could not be done before are looked
  * at again; others are found out when their turn comes. */
+#include "base/rng.h"
 #include "simplify/decimate.h"
 #include "simplify/tuning.h"
 
@@ -76,10 +77,17 @@ static void set(queue *q, uint32_t e, double cost, bool known) {
 
 /* ---- Costs ---- */
 
+/* What the edge waits at: the cost, in all orders but the first shifted. */
+static double shifted(const queue *q, uint32_t edge, double cost) {
+  if (q->d->order == 0) return cost;
+  scree_rng rng = {(uint64_t)q->d->order, edge, q->d->record.count};
+  return cost * (1 + scree_tune.shift * scree_rng_uniform(&rng));
+}
+
 static void rank(queue *q, const uint32_t *edges, size_t count) {
   scree_candidate c[SIDE_BY_SIDE];
   q->d->coster->evaluate(&q->d->s, edges, count, c);
-  for (size_t i = 0; i < count; i++) set(q, edges[i], c[i].cost, false);
+  for (size_t i = 0; i < count; i++) set(q, edges[i], shifted(q, edges[i], c[i].cost), false);
 }
 
 /* Every edge; what is usual is set from their costs. */

@@ -1,34 +1,51 @@
-// The search of the manual: sections that have any of the words, or words that begin so; those with more of them, and
-// with them in their title, first. All of it is in sections.js, so that pages opened from disk can search.
+// The search of the manual, by lunr: sections that have any of the words, their stems, words that begin so or differ by a
+// letter or two; nearer ones first. All of it is in sections.js, so that pages opened from disk can search.
 (function () {
+  // What people ask for by another word than the manual's.
+  const SYNONYMS = {
+    licence: ['license'], moisture: ['cohesion'], wet: ['cohesion'], humidity: ['cohesion'], sticky: ['cohesion'], blender: ['mixer', 'export'],
+    inch: ['unit'], inches: ['unit', 'inch'], feet: ['unit'], polygon: ['triangle'], faces: ['triangles'], facets: ['triangles'],
+    reduce: ['simplify'], decimate: ['simplify'], collider: ['particle'], silo: ['hopper'], bin: ['hopper'], screen: ['sieve'], sieve: ['screen'],
+    multisphere: ['clump'], breakage: ['fracture', 'joints'], crush: ['fracture', 'joints'], gpu: ['cuda'], cluster: ['slurm'], fit: ['calibrate'],
+    tune: ['calibrate'], optimize: ['optimise'], meshlab: ['quadric'], watertight: ['closed'], rotation: ['spin'], humid: ['cohesion'],
+  };
   const asked = document.getElementById('asked'), found = document.getElementById('found'), told = document.getElementById('told');
-  const escape = (word) => word.replace(/[.*+?^${}()|[\]\\]/g, '\\$&');
+  const index = lunr(function () {
+    this.ref('number');
+    this.field('title', {boost: 6});
+    this.field('text');
+    screeSections.forEach(([, title, text], number) => this.add({number, title, text}));
+  });
 
-  function rank(section, words) {
-    let points = 0, had = 0;
-    for (const word of words) {
-      const begins = new RegExp('(^|[^\\p{L}\\p{N}])' + escape(word), 'giu');
-      const inTitle = (section[1].match(begins) || []).length, inText = (section[2].match(begins) || []).length;
-      if (inTitle + inText > 0) had++;
-      points += 8 * Math.min(inTitle, 1) + Math.log2(1 + inText);
-    }
-    return had * 100 + points;
+  // Words of five letters may have one that is wrong, of nine two.
+  function ask(words) {
+    return index.query((query) => {
+      const add = (word, boost) => {
+        query.term(lunr.stemmer(new lunr.Token(word)).toString(), {boost, usePipeline: false});
+        query.term(word, {boost: boost / 3, usePipeline: false, wildcard: lunr.Query.wildcard.TRAILING});
+      };
+      for (const word of words) {
+        add(word, 12);
+        for (const other of SYNONYMS[word] || []) add(other, 4);
+        if (word.length > 4) query.term(word, {boost: .3, usePipeline: false, editDistance: word.length > 8 ? 2 : 1});
+      }
+    });
   }
 
   // The words round the first that was asked for.
   function excerpt(text, words) {
-    const places = words.map((word) => text.toLowerCase().indexOf(word.toLowerCase())).filter((at) => at >= 0);
+    const places = words.map((word) => text.toLowerCase().indexOf(word)).filter((at) => at >= 0);
     const start = places.length ? Math.max(0, Math.min(...places) - 60) : 0;
     return (start > 0 ? '... ' : '') + text.substring(start, start + 240) + (start + 240 < text.length ? ' ...' : '');
   }
 
   function show() {
-    const words = asked.value.split(/[^\p{L}\p{N}_.-]+/u).filter((word) => word.length > 1);
-    const hits = screeSections.map((section) => [rank(section, words), section]).filter(([points]) => points > 0)
-      .sort((a, b) => b[0] - a[0]).slice(0, 40);
+    const words = asked.value.toLowerCase().split(/[^\p{L}\p{N}_.-]+/u).filter((word) => word.length > 1);
+    const hits = words.length ? ask(words).slice(0, 40) : [];
     told.textContent = !words.length ? '' : hits.length ? hits.length + (hits.length === 40 ? ' best' : '') + ' sections' : 'Nothing found.';
     found.textContent = '';
-    for (const [, [url, title, text]] of hits) {
+    for (const hit of hits) {
+      const [url, title, text] = screeSections[hit.ref];
       const item = found.appendChild(document.createElement('li')), link = item.appendChild(document.createElement('a'));
       link.href = url;
       link.textContent = title;

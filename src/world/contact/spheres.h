@@ -1,0 +1,30 @@
+/* Pairs of two spheres, or of a sphere and a plane, disc or cylinder. */
+#pragma once
+
+#include "world/state/scratch.h"
+
+/* Neighbours k, a sphere and a wall, have no pair: whether they need none in this step, being
+ * apart; then they sleep. */
+bool scree_spheres_stay_apart(scree_world *world, size_t k);
+/* The whole of a pair's step, as scree_pair_evaluate; `contact` (may be NULL) is what touches. */
+void scree_spheres_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                            scree_contact_point *contact);
+
+/* ---- two spheres (state/spheres.h) ---- */
+
+/* Copies of the state of the sphere at this place. */
+void scree_spheres_load(scree_world *world, size_t place);
+/* Whether a pair touches, or did. */
+bool scree_sphere_pair_is_due(const scree_world *world, const scree_sphere_pair *two);
+typedef struct scree_sphere_result {
+  scree_sphere_load on_a, on_b;
+  scree_pair pair; /* as after the step */
+  scree_pair_work work;
+} scree_sphere_result;
+/* The step of pair k; false where they are apart, which has no result. */
+bool scree_sphere_pair_step(scree_world *world, size_t k, scree_sphere_result *result);
+/* For a device: what acts on the sphere at this place, in the order in which step/spheres.c adds
+ * it; on both of each pair. */
+void scree_spheres_gather(scree_world *world, size_t place, const scree_sphere_load (*loads)[2]);
+/* For whoever looks at pair k: as a pair of neighbours would be after the last step. */
+scree_pair scree_sphere_pair_of(const scree_world *world, size_t k);
