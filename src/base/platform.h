@@ -46,7 +46,8 @@ double scree_now(void);
 double scree_processor_time(void);
 /* Seconds since 1970. */
 double scree_calendar_time(void);
-/* As 2020-06-01T12:00:00Z; empty where it cannot be said. */
+#define SCREE_TIME_END 253402300800.0 /* the end of the year 9999, of four digits */
+/* As 2020-06-01T12:00:00Z; empty where it is not known: NaN, 0 or beyond the year 9999. */
 void scree_format_time(double calendar, char text[32]);
 void scree_sleep(double seconds);
 

@@ -160,9 +160,10 @@ double scree_calendar_time(void) {
 }
 
 void scree_format_time(double calendar, char text[32]) {
+  *text = 0;
+  if (!(calendar > 0 && calendar < SCREE_TIME_END)) return;
   time_t seconds = (time_t)calendar;
   const struct tm *parts = gmtime(&seconds);
-  *text = 0;
   if (parts) strftime(text, 32, "%Y-%m-%dT%H:%M:%SZ", parts);
 }
 

@@ -28,13 +28,17 @@ scree_status scree_provenance_write(const scree_work_start *start, const char *c
   return scree_json_commit(&json, error);
 }
 
+static void json_time(scree_json *json, const char *name, double calendar) {
+  char text[32];
+  scree_format_time(calendar, text);
+  scree_json_text(json, name, *text ? text : NULL);
+}
+
 void scree_json_origin(scree_json *json, const scree_origin *origin) {
-  char text[SCREE_CHECKSUM_TEXT], time[32];
+  char text[SCREE_CHECKSUM_TEXT];
   scree_json_text(json, "command", origin->command);
-  scree_format_time(origin->started, time);
-  scree_json_text(json, "started", origin->started > 0 ? time : NULL);
-  scree_format_time(origin->ended, time);
-  scree_json_text(json, "ended", origin->ended > 0 ? time : NULL);
+  json_time(json, "started", origin->started);
+  json_time(json, "ended", origin->ended);
   scree_json_text(json, "machine", origin->machine);
   SCREE_JSON_LIST (json, "inputs", i, origin->input_count) {
     scree_json_row_object(json, NULL);

@@ -507,7 +507,7 @@ static scree_status make_whole(analysis *a) {
     r->seconds_spent += w->number[SECONDS];
     if (version && strcmp(version, w->version) != 0) r->mixed_versions = true;
     version = w->version;
-    if (!(r->origin.started <= w->started && r->origin.started > 0)) r->origin.started = w->started;
+    if (r->origin.started == 0 || w->started < r->origin.started) r->origin.started = w->started;
     if (w->ended >= r->origin.ended) r->origin.ended = w->ended, r->origin.machine = w->machine;
   }
   r->worker_count = r->counts.leased + r->counts.running;
