@@ -1,11 +1,12 @@
 #!/bin/bash
 # Spheres beside LIGGGHTS on one core, with the same places, stiffness, damping, friction and step on both sides:
-# a lifted tube, a sphere that rolls out. Flow through holes: bench/evidence/orifice.
+# a lifted tube, a sphere that rolls out, rates at rest and falling. Flow through holes: bench/evidence/orifice.
 #
 #   bench/liggghts.sh [SEEDS [SCENE...]]
 #
 # SEEDS (default 10) runs a scene and engine, of half a minute at most; needs liggghts (apt-get install liggghts).
-# Writes results/liggghts.md; of scenes that are named, results/liggghts-SCENE.md by the first of them: tube, roll.
+# Writes results/liggghts.md; of scenes that are named, results/liggghts-SCENE.md by the first of them: tube, roll,
+# rest1000, rest10000, rest100000, fall50000 (particle-steps a second; on an idle machine, three seeds).
 # LIGGGHTS has its rolling model CDT, a constant couple; in the tube also EPSD, a spring up to the same couple, without a
 # dashpot and with one of 0.3 of critical besides. Here it is a spring and such a dashpot, both together up to the same
 # couple.
@@ -13,7 +14,7 @@ set -euo pipefail
 . "$(dirname "$0")/lib.sh"
 seeds=${1:-10}
 named=("${@:2}")
-[ ${#named[@]} -gt 0 ] || named=(tube roll)
+[ ${#named[@]} -gt 0 ] || named=(tube roll rest1000 rest10000 rest100000 fall50000)
 cmake -S "$root" --preset release -B "$build" -DSCREE_BENCH=ON -DBUILD_TESTING=OFF >/dev/null
 cmake --build "$build" --target bench_spheres ${SCREE_BENCH_JOBS:+-j "$SCREE_BENCH_JOBS"} >/dev/null
 scenes=$work/liggghts
@@ -50,6 +51,8 @@ property() { echo "fix $1 all property/global $1 peratomtypepair 2 $2 $3 $3 $2";
 # lammps SCENE PLACES ROLLING [VISCOUS]: the input; damping 2 eta sqrt(m K) of e = 0.3, force cut off at 0.
 lammps() {
   local options='absolute_damping on limitForce on' model="model hooke/stiffness tangential history rolling_friction $3"
+  local side=${5:-} box='-0.5 0.5 -0.5 0.5 -0.02 0.2'
+  [ -z "$side" ] || box="-0.01 $(awk "BEGIN { print $side + 0.01 }") -0.01 $(awk "BEGIN { print $side + 0.01 }") -0.02 2"
   cat <<I
 atom_style granular
 atom_modify map array
@@ -57,7 +60,7 @@ boundary f f f
 newton off
 communicate single vel yes
 units si
-region box block -0.5 0.5 -0.5 0.5 -0.02 0.2 units box
+region box block $box units box
 create_box 2 box
 neighbor 0.001 bin
 neigh_modify delay 0
@@ -81,7 +84,17 @@ I
     echo "fix tube all mesh/surface file $scenes/tube.stl type 2"
     echo "fix walls all wall/gran $model mesh n_meshes 1 meshes tube $options"
   fi
-  if [ "$1" = roll ]; then
+  if [ -n "$side" ]; then
+    local wall=0 plane
+    for plane in 'xplane 0.0' "xplane $side" 'yplane 0.0' "yplane $side"; do
+      echo "fix side$((wall++)) all wall/gran $model primitive type 2 $plane $options"
+    done
+    awk -v box="$box" 'BEGIN { split(box, b, " ") } { at[NR] = $0 } END {
+      printf "places\n\n%d atoms\n2 atom types\n%g %g xlo xhi\n%g %g ylo yhi\n%g %g zlo zhi\n\nAtoms\n\n", NR, b[1], b[2], b[3],
+        b[4], b[5], b[6]
+      for (i = 1; i <= NR; i++) print i, 1, 0.006, 2500, at[i] }' "$2" >"$scenes/places.data"
+    echo "read_data $scenes/places.data add"
+  elif [ "$1" = roll ]; then
     echo 'create_atoms 1 single 0 0 0.003 units box'
   else
     awk '{ print "create_atoms 1 single", $1, $2, $3, "units box" }' "$2"
@@ -97,6 +110,7 @@ run 0
 undump places
 shell mv $scenes/places.txt $scenes"
   case $1 in
+  rest* | fall*) printf 'thermo 1000000\nrun %d\nrun %d\n' $(($6 / 10)) "$6" ;;
   tube) printf 'run 14000\nfix lift all move/mesh mesh tube linear 0. 0. 0.1\nrun 38000\n%s/last.txt\n' "$write" ;;
   roll) printf 'run 40000\n%s/last.txt\n' "$write" ;;
   esac
@@ -114,12 +128,33 @@ peer() {
   seconds=$({ time liggghts -in "$scenes/in" -log "$scenes/log" >"$scenes/screen" 2>&1; } 2>&1) || tail -3 "$scenes/screen" >&2
   echo "$(of_places "$1" "$scenes/last.txt") $seconds"
 }
+# rates SCENE SEED: rows of both, in turns. At rest from a lattice of spheres that nearly touch; falling far apart.
+rates() {
+  local count=${1#[a-z][a-z][a-z][a-z]} pitch=0.006 side steps
+  [[ $1 == rest* ]] || pitch=0.009
+  steps=$((1 + 20000000 / count))
+  side=$(awk "BEGIN { print $pitch * int($count ^ (1 / 3) + 0.999) }")
+  awk -v count="$count" -v pitch=$pitch -v side="$side" -v seed="$2" -v low="$([[ $1 == rest* ]] || echo 0.5)" 'BEGIN {
+    srand(seed); n = int(side / pitch + 0.5)
+    for (k = 0; k < count; k++)
+      printf "%.9g %.9g %.9g\n", pitch * (k % n + 0.5) + (rand() - 0.5) * 2e-4, pitch * (int(k / n) % n + 0.5) + (rand() - 0.5) * 2e-4,
+        low + pitch * (int(k / n / n) + 0.52) + (rand() - 0.5) * 2e-4 }' >"$scenes/lattice"
+  if [[ $1 == rest* ]]; then "$bin/bench_spheres" rest "$scenes/lattice" "$side" >"$scenes/box"; else mv "$scenes/lattice" "$scenes/box"; fi
+  echo "$1 scree $("$bin/bench_spheres" rate "$scenes/box" "$side" "$steps" | awk '{ print $1 / 1e6, $2 }')" >>"$rows"
+  lammps "$1" "$scenes/box" cdt '' "$side" "$steps" >"$scenes/in"
+  liggghts -in "$scenes/in" -log "$scenes/log" >"$scenes/screen" 2>&1 || tail -3 "$scenes/screen" >&2
+  awk -v name="$1" '/^Loop time/ { t = $4; w = $9 * $12 / 1e6; all += t } END { print name, "liggghts,cdt", w / t, all }' "$scenes/log" >>"$rows"
+}
 rows=$scenes/rows
 : >"$rows"
 for ((seed = 1; seed <= seeds; seed++)); do
   places "$seed" >"$scenes/at"
   for scene in "${named[@]}"; do
     [ $scene != roll ] || [ "$seed" = 1 ] || continue
+    case $scene in rest* | fall*)
+      [ "$seed" -gt 3 ] || rates "$scene" "$seed"
+      continue ;;
+    esac
     echo "$scene scree $("$bin/bench_spheres" $scene "$scenes/at")" >>"$rows"
     echo "$scene liggghts,cdt $(peer $scene "$scenes/at" cdt)" >>"$rows"
     [ $scene = tube ] || continue
@@ -137,7 +172,9 @@ done
   echo
   echo '| scene | engine | n | mean | standard error | CPU s a run |'
   echo '|---|---|--:|--:|--:|--:|'
-  awk 'BEGIN { what["tube"] = "lifted tube, rms radius of the heap (mm)"; what["roll"] = "a sphere of 0.5 m/s stops after (mm)" }
+  awk 'BEGIN { what["tube"] = "lifted tube, rms radius of the heap (mm)"; what["roll"] = "a sphere of 0.5 m/s stops after (mm)"
+      split("1000 10000 100000", c, " "); for (i in c) what["rest" c[i]] = c[i] " spheres at rest, 1e6 particle-steps/s"
+      what["fall50000"] = "50000 spheres that fall, 1e6 particle-steps/s" }
     { k = $1 " " $2; if (!(k in n)) order[++m] = k; n[k]++; s[k] += $3; q[k] += $3 * $3; t[k] += $4 }
     END { for (i = 1; i <= m; i++) { k = order[i]; split(k, name, " "); mean = s[k] / n[k]
       v = n[k] > 1 ? (q[k] - n[k] * mean * mean) / (n[k] - 1) : 0

@@ -2,6 +2,8 @@
  *
  *   bench_spheres tube POSITIONS            a lifted tube; prints the heap's rms radius, mm
  *   bench_spheres roll POSITIONS            the first sphere rolls at 0.5 m/s; where it stops, mm
+ *   bench_spheres rest POSITIONS SIDE       at rest in a box open above; prints the centres
+ *   bench_spheres rate POSITIONS SIDE STEPS particle-steps a second of these, after a tenth as many
  *
  * POSITIONS has a centre a line. Printed are the value, and CPU seconds. */
 #include "scree.h"
@@ -15,7 +17,7 @@
 static const double time_step = 2.5e-5;
 static const double diameter = 0.006;
 static const double stiffness = 1000; /* N/m, of a contact */
-enum { SETTLE = 14000, LIFT = 24000, ROLL = 40000 };
+enum { SETTLE = 14000, LIFT = 24000, ROLL = 40000, REST = 4000 };
 
 static void need(scree_status status, const scree_error *error) {
   if (status == SCREE_OK) return;
@@ -104,9 +106,51 @@ static double roll(scree_world *world) {
   return 1000 * body.position[0];
 }
 
+static void add_box(scree_world *world, double side) {
+  add_floor(world);
+  for (int k = 0; k < 2; k++) {
+    scree_wall low = {.kind = SCREE_WALL_PLANE}, high = low;
+    low.axis[k] = 1;
+    high.axis[k] = -1;
+    high.position[k] = side;
+    add_wall(world, &low);
+    add_wall(world, &high);
+  }
+}
+
+static void print_centres(const scree_world *world) {
+  for (size_t i = 0; i < scree_world_body_count(world); i++) {
+    scree_body body;
+    scree_world_get_body(world, i, &body);
+    printf("%.9g %.9g %.9g\n", body.position[0], body.position[1], body.position[2]);
+  }
+}
+
+static double rate(scree_world *world, size_t steps) {
+  step(world, steps / 10);
+  double before = (double)clock();
+  step(world, steps);
+  double spent = ((double)clock() - before) / CLOCKS_PER_SEC;
+  return (double)steps * (double)scree_world_body_count(world) / spent;
+}
+
+static int in_box(char **argv, int argc) {
+  scree_world *world = make_world();
+  add_spheres(world, argv[2], SIZE_MAX);
+  add_box(world, strtod(argv[3], NULL));
+  if (argc > 4)
+    printf("%.0f %.2f\n", rate(world, strtoul(argv[4], NULL, 10)),
+           (double)clock() / CLOCKS_PER_SEC);
+  else
+    step(world, REST), print_centres(world);
+  scree_world_free(world);
+  return 0;
+}
+
 int main(int argc, char **argv) {
   if (argc < 3) return 2;
   scree_set_threads(1);
+  if (argc > 3) return in_box(argv, argc);
   const bool rolls = !strcmp(argv[1], "roll");
   scree_world *world = make_world();
   add_spheres(world, argv[2], rolls ? 1 : SIZE_MAX);
