@@ -28,7 +28,13 @@ if [ "${1:-}" != --no-try ]; then
   # `try NAME COMMAND`: in a bare Debian that has the folder at /data, a scan chosen is the test
   try() {
     printf 'trying %s\n' "$1"
-    DATA_DIR=$PWD/$out BARE_DIR=${BARE_DIR:-build/bare} tools/bare.sh "cd /data && sha256sum -c --quiet SHA256SUMS && $2"
+    code=0
+    DATA_DIR=$PWD/$out BARE_DIR=${BARE_DIR:-build/bare} tools/bare.sh "cd /data && sha256sum -c --quiet SHA256SUMS && $2" || code=$?
+    case $code in
+      0) ;;
+      77) echo "NOT TRIED: $1" ;;
+      *) echo "release.sh: what lies in $out fails on a bare Debian: $1" >&2; exit "$code" ;;
+    esac
   }
   try "Debian packages" "apt-get update -qq && apt-get install -qqy ./scree_*.deb ./libscree0*.deb >/dev/null &&
     scree choose sample:dc-1 -q -o /tmp/check && test -s /tmp/check/report.html"
@@ -37,6 +43,7 @@ if [ "${1:-}" != --no-try ]; then
   try "npm package" "apt-get update -qq && apt-get install -qqy nodejs npm >/dev/null && npm install -s -g ./scree-$version.tgz &&
     scree choose sample:dc-1 -q -o /tmp/check && test -s /tmp/check/report.html"
   printf 'trying scree.exe\n'
+  make build
   tests/windows/run.sh "$out/scree.exe" build/release/bin/scree
 fi
 ls -l "$out"
