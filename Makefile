@@ -60,8 +60,9 @@ deb:
 wheel:
 	@tools/wheel.sh
 
-docs: build
-	@tools/install-packages.sh docs
+docs:
+	@tools/install-packages.sh build docs
+	@$(MAKE) --no-print-directory build
 	@tools/site/build.sh build/$(PRESET) build/docs
 
 evidence: build
