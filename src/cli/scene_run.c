@@ -186,7 +186,7 @@ static void remark_sizes(const scree_scene *scene) {
     const char *source = scree_scene_shape_source(scene, i);
     if (!source || !*source) continue; /* the scene says its size itself */
     scree_particle_measure(scree_scene_shape_particle(scene, i), &m);
-    cli_remark_size(scree_scene_shape_name(scene, i), m.size, "unit: says which it is");
+    cli_remark_size(scree_scene_shape_name(scene, i), m.size, "-u, or unit: in a scene, says it");
   }
 }
 
@@ -303,19 +303,19 @@ void cli_print_repose(FILE *stream, const scree_repose *r) {
             r->spread_deg);
   }
   if (r->peak == 0) return;
-  fprintf(stream, "  height            %5.0f mm, its highest point %.0f mm\n", 1e3 * r->height,
+  fprintf(stream, "  height            %5.4g mm, its highest point %.4g mm\n", 1e3 * r->height,
           1e3 * r->peak);
   if (isfinite(r->base_radius))
-    fprintf(stream, "  base radius       %5.0f mm, the farthest particle reaches %.0f mm\n",
+    fprintf(stream, "  base radius       %5.4g mm, the farthest particle reaches %.4g mm\n",
             1e3 * r->base_radius, 1e3 * r->run_out);
   else
-    fprintf(stream, "  run-out           %5.0f mm\n", 1e3 * r->run_out);
+    fprintf(stream, "  run-out           %5.4g mm\n", 1e3 * r->run_out);
 }
 
 void cli_print_pile(FILE *stream, const scree_pile *pile) {
   cli_print_repose(stream, &pile->repose);
   if (pile->body_count == 0) return;
-  fprintf(stream, "  particles         %5zu in it, of %.1f mm (sphere of equal volume)\n",
+  fprintf(stream, "  particles         %5zu in it, of %.4g mm (sphere of equal volume)\n",
           pile->body_count, 1e3 * pile->size);
   fprintf(stream, "  packing fraction  %5.2f\n", pile->packing_fraction);
 }

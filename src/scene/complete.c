@@ -142,7 +142,7 @@ static void measure_speed(work *w, double now) {
 static double seconds_left(const work *w) {
   scree_scene_costs c = scree_scene_get_costs(w->scene);
   scree_scene_forecast f;
-  if (isnan(w->speed) || !(c.processor_seconds > 0)) return NAN;
+  if (isnan(w->speed) || fmin(c.wall_seconds, c.processor_seconds) < 0.1) return NAN;
   scree_scene_foretell(w->scene, &f);
   return f.seconds * c.wall_seconds / c.processor_seconds;
 }

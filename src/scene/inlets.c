@@ -114,9 +114,11 @@ static scree_status check_shape(scree_scene *scene, size_t index, size_t shape,
   }
   const char *name = scene->plan.shapes.items[shape].place.name;
   if (!within)
-    return scree_scene_fail(scene, place, error,
-                            "is too small for '%s', %.4g x %.4g x %.4g m with the room about it",
-                            name, 2 * p.half.x, 2 * p.half.y, 2 * p.half.z);
+    return scree_scene_fail(
+        scene, place, error,
+        "is too small for '%s', %.4g x %.4g x %.4g m with the room about it: enlarge it, "
+        "and the walls around",
+        name, 2 * p.half.x, 2 * p.half.y, 2 * p.half.z);
   size_t g = scree_scene_wall_geometry(scene, wall);
   return scree_scene_fail(scene, place, error,
                           "lies in '%s': nowhere in it is there room for '%s' clear of that wall",
