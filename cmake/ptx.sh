@@ -14,7 +14,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$root"
 sources=(src/world/device/kernels/*.c src/world/contact/*.c src/base/math.c src/particle/closest.c
   src/world/state/{loop,motion,pairs,parameters,pool,remote,wall_forces,wall_shape,walls}.c
-  src/world/broad/{candidates,grids,lists}.c src/world/observe/sums.c src/world/step/{integrate,step}.c)
+  src/world/broad/{candidates,grids,lists}.c src/world/observe/sums.c src/world/step/{integrate,joints,step}.c)
 flags=(-std=c17 -target nvptx64-nvidia-cuda -Xclang -target-cpu -Xclang sm_70 -O2 -Xclang -disable-llvm-passes
   -ffp-contract=off -fno-math-errno -nostdinc -isystem "$("$clang" -print-resource-dir)/include"
   -isystem src/world/device/kernels/include -Isrc -Iinclude -DNDEBUG -w -emit-llvm -c)

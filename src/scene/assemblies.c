@@ -615,8 +615,8 @@ scree_status scree_scene_admit_assembly(scree_scene *scene, size_t shape, const 
            sizeof one.orientation);
     SCREE_TRY(scree_scene_admit(scene, i, &one, error));
   }
-  const scree_joints *joints = scene->gallery->joints;
-  for (size_t k = 0; joints && k < joints->all.count; k++) {
+  const scree_joints *joints = &scene->gallery->joints;
+  for (size_t k = 0; k < joints->all.count; k++) {
     const scree_world_joint *j = &joints->all.items[k];
     if (j->a < first || j->a >= end) continue;
     double modulus = j->area > 0 ? bond_between(scene, shape, j->a, j->b).weibull : 0;

@@ -1,4 +1,4 @@
-/* Hundreds of random worlds: options, materials, walls and bodies of every
+/* Hundreds of random worlds: options, materials, walls, bodies and joints of every
  * kind, some out of range, some bodies inside each other. Whatever is made, a
  * call answers with a status and a sentence, what runs stays finite, and a
  * checkpoint goes on with the same bits. */
@@ -85,13 +85,33 @@ static void add_bodies(scree_rng *rng, scree_world *world) {
   }
 }
 
-static void check_finite(const scree_world *world) {
+/* Some of them weak, between what is there, or with space; a body may be asked for twice. */
+static void add_joints(scree_rng *rng, scree_world *world) {
+  scree_error error;
+  size_t bodies = scree_world_body_count(world);
+  for (size_t count = bodies ? scree_rng_below(rng, 6) : 0; count > 0; count--) {
+    scree_joint joint = scree_default_joint();
+    scree_joint_of_rectangle((scree_section_kind)scree_rng_below(rng, 3),
+                             pow(10, between(rng, 5, 8)), 0.3, value(rng, 0.005, 0.03),
+                             value(rng, 0.002, 0.02), value(rng, 0.01, 0.1), &joint);
+    joint.a = scree_rng_below(rng, bodies);
+    joint.b = scree_rng_below(rng, 6) ? scree_rng_below(rng, bodies) : SCREE_SPACE;
+    for (int i = 0; i < 3; i++) joint.centre[i] = value(rng, -0.1, 0.1);
+    joint.tension = joint.cohesion = pow(10, between(rng, 3, 7));
+    joint.friction = value(rng, 0, 1);
+    accepted(scree_world_add_joint(world, &joint, NULL, &error), &error);
+  }
+}
+
+static scree_observation check_finite(const scree_world *world) {
   scree_observation o;
   scree_world_observe(world, &o);
   double sum = o.kinetic + o.rotational + o.potential + o.elastic + o.dissipated_dashpot +
-               o.dissipated_friction + o.wall_work + o.mean_rotation + o.largest_overlap;
+               o.dissipated_friction + o.fracture + o.wall_work + o.mean_rotation +
+               o.largest_overlap;
   assert_true(isfinite(sum));
-  assert_true(o.elastic >= 0 && o.kinetic >= 0 && o.rotational >= 0);
+  assert_true(o.elastic >= 0 && o.kinetic >= 0 && o.rotational >= 0 && o.fracture >= 0);
+  return o;
 }
 
 static bool count_contact(void *context, const scree_contact *contact) {
@@ -118,7 +138,7 @@ static void check_checkpoint(scree_world *world) {
   scree_world_free(loaded);
 }
 
-static int run_seed(uint64_t seed, const scree_mesh *sheet, size_t *contacts) {
+static int run_seed(uint64_t seed, const scree_mesh *sheet, size_t *contacts, size_t *broken) {
   scree_rng rng = {.seed = seed, .stream = 7};
   scree_error error;
   scree_world *world = NULL;
@@ -142,17 +162,21 @@ static int run_seed(uint64_t seed, const scree_mesh *sheet, size_t *contacts) {
     accepted(scree_world_set_pair(world, 0, scree_rng_below(&rng, 4), &contact, &error), &error);
   add_walls(&rng, world, sheet);
   add_bodies(&rng, world);
+  add_joints(&rng, world);
   int good = 0;
+  scree_observation last = {0};
   for (int round = 0; round < 4; round++) {
     if (!accepted(scree_world_step(world, 100, &error), &error)) break;
-    check_finite(world);
+    last = check_finite(world);
     CHECK_OK(scree_world_visit_contacts(world, count_contact, contacts, &error), error);
     if (round == 1) add_bodies(&rng, world);
+    if (round == 1 && scree_rng_below(&rng, 2)) add_joints(&rng, world);
     if (round == 2 && scree_world_body_count(world))
       scree_world_remove_body(world, scree_rng_below(&rng, scree_world_body_count(world)));
     check_checkpoint(world);
     good++;
   }
+  *broken += last.broken_joints;
   scree_world_free(world);
   return good;
 }
@@ -172,10 +196,12 @@ static void random_worlds(void **state) {
   CHECK_OK(scree_particle_clump(centres, radii, 2, NULL, &shapes[5], &error), error);
   close(mkstemp(file));
   int rounds = 0;
-  size_t contacts = 0;
-  for (uint64_t seed = 0; seed < SEEDS; seed++) rounds += run_seed(seed, &sheet, &contacts);
-  print_message("%d of %d rounds ran, %zu contacts seen\n", rounds, 4 * SEEDS, contacts);
-  assert_true(rounds > SEEDS / 4 && contacts > 20);
+  size_t contacts = 0, broken = 0;
+  for (uint64_t seed = 0; seed < SEEDS; seed++)
+    rounds += run_seed(seed, &sheet, &contacts, &broken);
+  print_message("%d of %d rounds ran, %zu contacts and %zu broken joints seen\n", rounds, 4 * SEEDS,
+                contacts, broken);
+  assert_true(rounds > SEEDS / 4 && contacts > 20 && broken > 20);
   unlink(file);
   scree_mesh_free(&sheet);
   for (int i = 0; i < SHAPES; i++) scree_particle_free(shapes[i]);

@@ -10,6 +10,7 @@
 #include "world/device/backend.h"
 #include "world/device/cuda_state.h"
 #include "world/observe/sums.h"
+#include "world/state/joints.h"
 #include "world/state/pairs.h"
 #include "world/state/remote.h"
 #include "world/step/stages.h"
@@ -194,6 +195,7 @@ static scree_status launch(scree_world *w, size_t steps) {
                  [SCREE_KERNEL_spheres_load] = spheres,
                  [SCREE_KERNEL_spheres] = w->spheres.list.pairs.count,
                  [SCREE_KERNEL_spheres_gather] = spheres,
+                 [SCREE_KERNEL_joints] = w->joints.all.count,
                  [SCREE_KERNEL_gather] = bodies,
                  [SCREE_KERNEL_advance] = bodies + w->walls.count,
                  [SCREE_KERNEL_end] = 1}};
@@ -242,6 +244,7 @@ static scree_status list_here(scree_world *w, struct scree_device_world *d) {
 /* The device has the state, and neighbours that hold. */
 static scree_status prepare(scree_world *w) {
   struct scree_device_world *d = w->on_device;
+  SCREE_TRY(scree_joints_prepare(w, &w->failure));
   const bool lists_spheres = (d->header.stale || w->pairs_stale) &&
                              (w->spheres.list.count > 1 || scree_spheres_are_there(w));
   if (d->current && lists_spheres) /* which are listed here */
@@ -252,7 +255,7 @@ static scree_status prepare(scree_world *w) {
   scree_cuda_part_with(w, d);
   d->settled = false;
   if (there && (d->header.stale || w->pairs_stale)) SCREE_TRY(list_there(w, d));
-  d->header.stale = d->header.fallen = 0;
+  d->header.stale = d->header.fallen = d->header.parted = 0;
   return SCREE_OK;
 }
 
@@ -284,6 +287,13 @@ static scree_status note_fallen(scree_world *w) {
   for (size_t i = 0; i < w->bodies.count; i++) removed += w->bodies.removed[i];
   w->bodies.removed_count = removed;
   w->pairs_stale = true;
+  return SCREE_OK;
+}
+
+static scree_status note_parted(scree_world *w) {
+  if (!w->on_device->header.parted) return SCREE_OK;
+  SCREE_TRY(scree_world_change(w, SCREE_PART_JOINTS, &w->failure));
+  scree_joints_regroup(w);
   return SCREE_OK;
 }
 
@@ -340,6 +350,7 @@ static scree_status step(scree_world *w, size_t most, size_t *done) {
     if (d->header.too_small) status = make_room(w);
   }
   if (!status) status = note_fallen(w);
+  if (!status) status = note_parted(w);
   if (!status) status = fetch_hardened(w);
   if (status && d->current) scree_cuda_lose(w);
   if (status) return status;

@@ -91,6 +91,10 @@ static size_t list_spans(const scree_world *w, span spans[SCREE_MOST_SPANS]) {
       {FIELD(spheres.place), spheres * sizeof *w->spheres.place, 0, SCREE_PART_LISTS, MADE},
       {FIELD(spheres.motion), spheres * sizeof *w->spheres.motion, 0, SCREE_PART_LISTS, MADE},
       {FIELD(spheres.load), spheres * sizeof *w->spheres.load, 0, SCREE_PART_LISTS, MADE},
+      OF(joints.all.items, w->joints.all.count, JOINTS, COMES_BACK),
+      OF(joints.begin.items, w->joints.all.count ? n + 1 : 0, JOINTS, SENT),
+      OF(joints.sides.items, 2 * w->joints.all.count, JOINTS, SENT),
+      OF(joints.fragment.items, w->joints.fragment.count, JOINTS, SENT),
       OF(motions.items, w->motions.count, WALLS, SENT),
       OF(motion_rows.items, w->motion_rows.count, WALLS, SENT),
   };
@@ -422,8 +426,9 @@ static scree_status send_parts(scree_world *w, struct scree_device_world *d, scr
 scree_status scree_cuda_send_changed(scree_world *w, struct scree_device_world *d,
                                      scree_error *error) {
   if (!d->changed) return SCREE_OK;
-  static const size_t counts[] = {FIELD(bodies.count), FIELD(motions.count),
-                                  FIELD(motion_rows.count)};
+  static const size_t counts[] = {FIELD(bodies.count),       FIELD(motions.count),
+                                  FIELD(motion_rows.count),  FIELD(joints.all.count),
+                                  FIELD(joints.begin.count), FIELD(joints.fragment.count)};
   scree_cuda_place place = scree_cuda_place_of(d);
   const scree_device_address shapes = d->own[BLOCK_SHAPES].at;
   SCREE_TRY(send_shapes(w, d, error));

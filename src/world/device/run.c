@@ -35,9 +35,6 @@ scree_status scree_world_step(scree_world *world, size_t step_count, scree_error
     return world->failure.status;
   }
   const scree_backend *backend = scree_backend_of(world);
-  if (backend != &scree_backend_cpu && world->joints)
-    return scree_fail(error, SCREE_NO_BACKEND,
-                      "world: joints are stepped by the processor alone, not by %s", backend->name);
   scree_status status = check_time_step(world, error);
   if (!status) status = backend->begin(world, scree_backend_device_of(world), error);
   if (status) return status;

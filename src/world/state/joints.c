@@ -14,12 +14,10 @@ static const double pace = 0.2;
 static const double usual_damping = 0.05;
 
 void scree_joints_free(scree_joints *joints) {
-  if (!joints) return;
   scree_free(joints->all.items);
   scree_free(joints->begin.items);
   scree_free(joints->sides.items);
   scree_free(joints->fragment.items);
-  scree_free(joints);
 }
 
 /* ---- who is joined ---- */
@@ -48,7 +46,7 @@ static uint32_t root_of(uint32_t *parent, uint32_t i) {
 }
 
 /* Joined to space is not joined to each other. The lower root wins. */
-void scree_joints_find_fragments(scree_joints *joints) {
+static void find_fragments(scree_joints *joints) {
   uint32_t *parent = joints->fragment.items;
   for (uint32_t i = 0; i < joints->fragment.count; i++) parent[i] = i;
   for (size_t k = 0; k < joints->all.count; k++) {
@@ -60,16 +58,23 @@ void scree_joints_find_fragments(scree_joints *joints) {
   for (uint32_t i = 0; i < joints->fragment.count; i++) parent[i] = root_of(parent, i);
 }
 
-scree_status scree_joints_prepare(const scree_world *world, scree_error *error) {
-  scree_joints *joints = world->joints;
+void scree_joints_regroup(scree_world *world) {
+  find_fragments(&world->joints);
+  world->pairs_stale = true; /* who was held may touch */
+}
+
+scree_status scree_joints_prepare(scree_world *world, scree_error *error) {
+  scree_joints *joints = &world->joints;
   size_t bodies = world->bodies.count;
-  if (!joints || (!joints->stale && joints->fragment.count == bodies)) return SCREE_OK;
+  if (joints->all.count == 0 || (!joints->stale && joints->fragment.count == bodies))
+    return SCREE_OK;
+  SCREE_TRY(scree_world_change(world, SCREE_PART_JOINTS, error));
   if (!SCREE_RESERVE(&joints->begin, bodies + 1) || !SCREE_RESERVE(&joints->fragment, bodies) ||
       !SCREE_RESERVE(&joints->sides, 2 * joints->all.count))
     return scree_fail_memory(error, bodies * sizeof(uint32_t), "joints");
   joints->begin.count = joints->fragment.count = bodies;
   group(joints, bodies);
-  scree_joints_find_fragments(joints);
+  find_fragments(joints);
   joints->stale = false;
   return SCREE_OK;
 }
@@ -114,8 +119,8 @@ static double largest_eigenvalue(double a[6][6]) {
 
 /* w^2 is at most twice the largest eigenvalue of any body alone with its joints; breaks lower it.
  */
-static void find_frequency(const scree_world *world) {
-  scree_joints *joints = world->joints;
+static void find_frequency(scree_world *world) {
+  scree_joints *joints = &world->joints;
   double most = 0;
   for (size_t i = 0; i < joints->fragment.count; i++) {
     double sum[6][6] = {{0}};
@@ -129,9 +134,12 @@ static void find_frequency(const scree_world *world) {
   joints->frequency = sqrt(2 * most);
 }
 
-double scree_joints_time_step(const scree_world *world, size_t *body) {
-  scree_joints *joints = world->joints;
-  if (!joints || scree_joints_prepare(world, NULL) != SCREE_OK) return INFINITY;
+double scree_joints_time_step(const scree_world *of, size_t *body) {
+  scree_world *world = (scree_world *)(uintptr_t)of; /* groups and frequency follow from it */
+  const scree_joints *joints = &world->joints;
+  if (joints->all.count == 0 || scree_joints_prepare(world, NULL) ||
+      scree_world_bring(world, SCREE_PART_JOINTS, NULL))
+    return INFINITY;
   if (!(joints->frequency > 0)) find_frequency(world);
   *body = joints->stiffest;
   return joints->frequency > 0 ? pace / joints->frequency : INFINITY;
@@ -142,8 +150,9 @@ double scree_joints_time_step(const scree_world *world, size_t *body) {
 scree_joint_sums scree_joints_sum(const scree_world *world) {
   scree_sum sums[4] = {{0, 0}};
   size_t broken = 0;
+  (void)scree_world_bring(world, SCREE_PART_JOINTS, NULL);
   for (size_t k = 0; k < scree_world_joint_count(world); k++) {
-    const scree_world_joint *j = &world->joints->all.items[k];
+    const scree_world_joint *j = &world->joints.all.items[k];
     const double of[] = {j->energy, j->fracture, j->rubbed, j->damped};
     for (int i = 0; i < 4; i++) scree_sum_add(&sums[i], of[i]);
     broken += j->mode != SCREE_JOINT_NOT_BROKEN;
@@ -153,15 +162,16 @@ scree_joint_sums scree_joints_sum(const scree_world *world) {
 }
 
 size_t scree_world_joint_count(const scree_world *world) {
-  return world->joints ? world->joints->all.count : 0;
+  return world->joints.all.count;
 }
 
 size_t scree_world_fragments(const scree_world *world, size_t *fragments) {
-  const scree_joints *joints = world->joints;
-  (void)scree_joints_prepare(world, NULL); /* without memory, those of the last step */
+  const scree_joints *joints = &world->joints;
+  (void)scree_joints_prepare((scree_world *)(uintptr_t)world, NULL); /* groups follow from it;
+      without memory, those of the last step */
   size_t count = 0;
   for (size_t i = 0; i < world->bodies.count; i++) {
-    bool alone = !joints || i >= joints->fragment.count || joints->fragment.items[i] == i;
+    bool alone = i >= joints->fragment.count || joints->fragment.items[i] == i;
     fragments[i] = alone ? SIZE_MAX : fragments[joints->fragment.items[i]];
     if (world->bodies.removed[i]) fragments[i] = SIZE_MAX;
     /* a root that was removed leaves its fragment to the next */
@@ -215,7 +225,9 @@ static quat frame_of(vec3 normal, vec3 axis) {
 
 /* Where b would be in the image of a that is nearest, as told in the joint's space. */
 static void place(const scree_world *world, const scree_joint *given, scree_world_joint *j) {
-  const scree_joint_side a = scree_joint_side_of(world, j->a), b = scree_joint_side_of(world, j->b);
+  const scree_frame space = SCREE_SPACE_FRAME;
+  const scree_joint_side a = scree_joint_side_of(world, j->a, &space),
+                         b = scree_joint_side_of(world, j->b, &space);
   quat frame = frame_of(vec3_load(given->normal), vec3_load(given->axis));
   vec3 centre = vec3_load(given->centre);
   j->pa = mat3_tmul_vec(&a.frame->rotation, vec3_sub(centre, a.frame->position));
@@ -267,8 +279,8 @@ static scree_world_joint joint_from(const scree_world *world, const scree_joint 
 }
 
 static scree_status push(scree_world *world, const scree_world_joint *joint, scree_error *error) {
-  if (!world->joints) SCREE_TRY_ALLOC_ZERO(world->joints, 1, error);
-  scree_joints *joints = world->joints;
+  scree_joints *joints = &world->joints;
+  SCREE_TRY(scree_world_change(world, SCREE_PART_JOINTS, error));
   if (joints->all.count > UINT32_MAX / 4)
     return scree_fail(error, SCREE_LIMIT, "world: at most %u joints", UINT32_MAX / 4);
   SCREE_TRY_PUSH(&joints->all, error, *joint);
@@ -283,7 +295,7 @@ scree_status scree_world_add_joint(scree_world *world, const scree_joint *joint,
   SCREE_TRY(scree_world_change(world, SCREE_PART_BODIES | SCREE_PART_POSES, error));
   const scree_world_joint made = joint_from(world, joint);
   SCREE_TRY(push(world, &made, error));
-  if (index) *index = world->joints->all.count - 1;
+  if (index) *index = world->joints.all.count - 1;
   return SCREE_OK;
 }
 
@@ -384,7 +396,7 @@ void scree_joints_code(scree_codec *codec, scree_world *world) {
     if (codec->loading && push(world, &(scree_world_joint){0}, NULL) != SCREE_OK)
       codec->out_of_memory = true;
     if (codec->out_of_memory) return;
-    code_joint(codec, world, &world->joints->all.items[k]);
+    code_joint(codec, world, &world->joints.all.items[k]);
   }
   if (codec->loading && scree_joints_prepare(world, NULL) != SCREE_OK) codec->out_of_memory = true;
 }

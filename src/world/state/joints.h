@@ -10,42 +10,12 @@ typedef struct scree_joint_side {
   quat orientation;
 } scree_joint_side;
 
-/* From pa on, numbers alone: a checkpoint takes them as they stand. */
-typedef struct scree_world_joint {
-  uint32_t a, b; /* b: scree_none for space */
-  uint8_t state, mode;
-  bool silent;             /* it does nothing any more, nor did it in the last step */
-  vec3 pa, pb;             /* the face's centre in each body's frame */
-  quat fa, fb;             /* the section's frame in each body's */
-  vec3 stiffness, turning; /* along x, the normal, and y, z in the section; about them */
-  vec3 damping, turning_damping;
-  vec3 moduli;
-  double area, reach[2];
-  double tension, cohesion, friction, toughness;
-  double anchor[2];                /* of a cracked one's tangential spring, along y and z */
-  double energy, load;             /* J and share of strength, of the last step */
-  double fracture, rubbed, damped; /* J since the start */
-  double broke_at;                 /* s; NaN: it has not */
-  vec3 force, moment;       /* of the last step, on b, in the joint's frame, without dashpots */
-  scree_wrench dashpot;     /* of the last step, on b, in the joint's frame */
-  scree_pair_wrench wrench; /* of the last step, all */
-} scree_world_joint;
+#define SCREE_SPACE_FRAME ((scree_frame){.rotation = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}})
 
-typedef struct scree_joints {
-  SCREE_LIST(scree_world_joint) all;
-  SCREE_LIST(uint32_t) begin;
-  SCREE_LIST(uint32_t) sides;
-  SCREE_LIST(uint32_t) fragment;
-  bool stale;          /* joints or bodies were added */
-  atomic_bool changed; /* a joint's state, in this step */
-  double frequency;    /* rad/s, of the stiffest body; 0: not known */
-  size_t stiffest;     /* that body */
-} scree_joints;
-
-static const scree_frame scree_space_frame = {.rotation = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
-
-static inline scree_joint_side scree_joint_side_of(const scree_world *world, uint32_t body) {
-  if (body == scree_none) return (scree_joint_side){&scree_space_frame, {1, 0, 0, 0}};
+/* space: a frame of the caller's, SCREE_SPACE_FRAME. */
+static inline scree_joint_side scree_joint_side_of(const scree_world *world, uint32_t body,
+                                                   const scree_frame *space) {
+  if (body == scree_none) return (scree_joint_side){space, {1, 0, 0, 0}};
   return (scree_joint_side){&world->bodies.frame[body], world->bodies.orientation[body]};
 }
 
@@ -55,9 +25,9 @@ void scree_joints_free(scree_joints *joints);
 scree_status scree_world_copy_joint(scree_world *to, const scree_world_joint *joint, uint32_t shift,
                                     double strength, scree_error *error);
 /* Before a step: groups and fragments are those of what there is. */
-scree_status scree_joints_prepare(const scree_world *world, scree_error *error);
-/* Finds the fragments of all bodies by the joints that are whole. */
-void scree_joints_find_fragments(scree_joints *joints);
+scree_status scree_joints_prepare(scree_world *world, scree_error *error);
+/* After a joint's state changed: finds the fragments of all bodies by the joints that are whole. */
+void scree_joints_regroup(scree_world *world);
 /* The longest step that the joints bear, s; INFINITY without any. *body: which asks for it. */
 double scree_joints_time_step(const scree_world *world, size_t *body);
 /* What all hold, and what they have cost, J. */
@@ -72,7 +42,7 @@ void scree_joints_code(scree_codec *codec, scree_world *world);
 /* A joint of body a with b, from *place on; NULL: no further. */
 static inline const scree_world_joint *scree_joint_between(const scree_world *world, uint32_t a,
                                                            uint32_t b, uint32_t *place) {
-  const scree_joints *joints = world->joints;
+  const scree_joints *joints = &world->joints;
   for (; *place < joints->begin.items[a + 1]; ++*place) {
     const scree_world_joint *j = &joints->all.items[joints->sides.items[*place] >> 1];
     if ((j->a == a ? j->b : j->a) == b) {
@@ -85,8 +55,8 @@ static inline const scree_world_joint *scree_joint_between(const scree_world *wo
 
 /* Whether two bodies may not touch: they are joined, or hang together by others. */
 static inline bool scree_joints_hold(const scree_world *world, uint32_t a, uint32_t b) {
-  const scree_joints *joints = world->joints;
-  if (!joints || a >= joints->begin.count || b >= joints->begin.count) return false;
+  const scree_joints *joints = &world->joints;
+  if (a >= joints->begin.count || b >= joints->begin.count) return false;
   bool together = joints->fragment.items[a] == joints->fragment.items[b];
   uint32_t place = joints->begin.items[a];
   for (const scree_world_joint *j; (j = scree_joint_between(world, a, b, &place));)
@@ -96,8 +66,8 @@ static inline bool scree_joints_hold(const scree_world *world, uint32_t a, uint3
 
 /* Whether they were held at any time: a contact of such begins from the overlap that there is. */
 static inline bool scree_joints_held(const scree_world *world, uint32_t a, uint32_t b) {
-  const scree_joints *joints = world->joints;
-  if (!joints || a >= joints->begin.count) return false;
+  const scree_joints *joints = &world->joints;
+  if (a >= joints->begin.count) return false;
   uint32_t place = joints->begin.items[a];
   return scree_joint_between(world, a, b, &place) != NULL;
 }
@@ -105,7 +75,7 @@ static inline bool scree_joints_held(const scree_world *world, uint32_t a, uint3
 /* Adds the forces on a body, in the order of its joints. */
 static inline void scree_joints_add(const scree_world *world, size_t body, vec3 *force,
                                     vec3 *torque) {
-  const scree_joints *joints = world->joints;
+  const scree_joints *joints = &world->joints;
   for (uint32_t k = joints->begin.items[body]; k < joints->begin.items[body + 1]; k++) {
     uint32_t side = joints->sides.items[k];
     const scree_world_joint *j = &joints->all.items[side >> 1];

@@ -2,6 +2,7 @@
  * equations. */
 #pragma once
 
+#include "base/array.h"
 #include "base/codec.h"
 #include "base/prefetch.h"
 #include "particle/particle.h"
@@ -346,6 +347,42 @@ typedef struct scree_scratch scree_scratch; /* contact.h */
 typedef scree_status scree_packer(const void *what, unsigned char **bytes, size_t *byte_count,
                                   scree_error *error);
 
+/* ---- joints ---- */
+
+/* From pa on, numbers alone: a checkpoint takes them as they stand. */
+typedef struct scree_world_joint {
+  uint32_t a, b; /* b: scree_none for space */
+  uint8_t state, mode;
+  bool silent;             /* it does nothing any more, nor did it in the last step */
+  vec3 pa, pb;             /* the face's centre in each body's frame */
+  quat fa, fb;             /* the section's frame in each body's */
+  vec3 stiffness, turning; /* along x, the normal, and y, z in the section; about them */
+  vec3 damping, turning_damping;
+  vec3 moduli;
+  double area, reach[2];
+  double tension, cohesion, friction, toughness;
+  double anchor[2];                /* of a cracked one's tangential spring, along y and z */
+  double energy, load;             /* J and share of strength, of the last step */
+  double fracture, rubbed, damped; /* J since the start */
+  double broke_at;                 /* s; NaN: it has not */
+  vec3 force, moment;       /* of the last step, on b, in the joint's frame, without dashpots */
+  scree_wrench dashpot;     /* of the last step, on b, in the joint's frame */
+  scree_pair_wrench wrench; /* of the last step, all */
+} scree_world_joint;
+
+/* begin, sides, fragment: by body where the joints it has are in `sides`, 2 * joint + (1 for b);
+ * these; the lowest body that hangs together with it. */
+typedef struct scree_joints {
+  SCREE_LIST(scree_world_joint) all;
+  SCREE_LIST(uint32_t) begin;
+  SCREE_LIST(uint32_t) sides;
+  SCREE_LIST(uint32_t) fragment;
+  bool stale;          /* joints or bodies were added */
+  atomic_bool changed; /* a joint's state, in this step */
+  double frequency;    /* rad/s, of the stiffest body; 0: not known */
+  size_t stiffest;     /* that body */
+} scree_joints;
+
 /* Parts of the state: of some a device may have a newer copy than these arrays (remote.h). */
 enum {
   SCREE_PART_REMOVED = 1, /* who is removed: never newer there */
@@ -353,7 +390,8 @@ enum {
   SCREE_PART_BODIES = 4,  /* all else of them */
   SCREE_PART_WALLS = 8,
   SCREE_PART_LISTS = 16, /* neighbours, pairs and all that belongs to them */
-  SCREE_ALL_PARTS = 31
+  SCREE_PART_JOINTS = 32,
+  SCREE_ALL_PARTS = 63
 };
 
 struct scree_world {
@@ -437,8 +475,8 @@ struct scree_world {
   int scratch_count;
   double
       *body_path_at_build; /* path of each body when the pairs were made; below 0: put elsewhere */
-  struct scree_joints *joints; /* joints.h; NULL: there never were any */
-  double margin;               /* by which bodies' boxes are grown when the pairs are made, m */
+  scree_joints joints;
+  double margin; /* by which bodies' boxes are grown when the pairs are made, m */
   bool pairs_stale;
   size_t listed_bodies; /* for which neighbours were made */
   double time, time_step;

@@ -59,7 +59,7 @@ static void sum_forces(scree_world *world, size_t i, const uint32_t *acting, siz
     force = vec3_mad(force, w->force, of_b ? -1 : 1);
     torque = vec3_add(torque, of_b ? w->torque_b : w->torque_a);
   }
-  if (world->joints) scree_joints_add(world, i, &force, &torque);
+  if (world->joints.all.count) scree_joints_add(world, i, &force, &torque);
   if (world->bodies.applied) {
     const scree_wrench *applied = &world->bodies.applied[i].now;
     force = vec3_add(force, applied->force);

@@ -31,7 +31,8 @@ static inline bool scree_is_trouble(const scree_trouble *trouble) {
 }
 /* The whole of a step. */
 scree_status scree_take_step(scree_world *world);
-/* joints.c: the forces of all joints, and what breaks. */
+/* joints.c: a joint's force, and whether its state changed; of all, and what comes of breaks. */
+bool scree_joint_step(scree_world *world, size_t joint);
 void scree_joints_evaluate(scree_world *world);
 /* time_step.c */
 double scree_world_choose_time_step(const scree_world *world, char reason[256]);

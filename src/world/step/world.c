@@ -91,7 +91,7 @@ void scree_world_free(scree_world *world) {
   for (size_t i = 0; i < world->walls.count; i++)
     scree_particle_free(world->walls.items[i].surface);
   scree_free(world->walls.items);
-  scree_joints_free(world->joints);
+  scree_joints_free(&world->joints);
   scree_free(world->wall_pairs.items);
   scree_free(world->motions.items);
   scree_free(world->motion_rows.items);

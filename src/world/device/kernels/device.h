@@ -57,6 +57,7 @@ typedef struct scree_device_step {
   uint32_t again;      /* there were more lists to be made than places for them */
   uint32_t stale;      /* the neighbours hold no longer */
   uint32_t fallen;     /* some body was below the floor, and is removed */
+  uint32_t parted;     /* some joint's state changed */
   uint32_t offender;   /* first body that would move too far, or scree_none */
   scree_tally tally;   /* of pairs: of this step; depenetrations of all */
   double last_overlap; /* of the last step that is done */
@@ -79,6 +80,7 @@ typedef struct scree_device_step {
   X(spheres_load)   /* sphere */                                                                   \
   X(spheres)        /* pair of spheres */                                                          \
   X(spheres_gather) /* sphere */                                                                   \
+  X(joints)         /* joint */                                                                    \
   X(gather)         /* body */                                                                     \
   X(advance)        /* body or wall */                                                             \
   X(end)            /* step */

@@ -377,7 +377,13 @@ static void do_spheres_gather(scree_world *world, scree_device_step *step) {
     scree_spheres_gather(world, i, (const scree_sphere_load(*)[2])step->sphere_loads);
 }
 
-/* ---- bodies and walls ---- */
+/* ---- joints, bodies and walls ---- */
+
+static void do_joints(scree_world *world, scree_device_step *step) {
+  if (bodies_wait(step)) return;
+  FOR_EACH (k, world->joints.all.count)
+    if (scree_joint_step(world, k)) raise_flag(&step->parted);
+}
 
 static void do_gather(scree_world *world, scree_device_step *step) {
   if (bodies_wait(step)) return;
@@ -432,7 +438,7 @@ static void do_end(scree_world *world, scree_device_step *step) {
   step->depths_used = 0;
   for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++) step->visit_counts[kind] = 0;
   step->done++;
-  step->stop = step->stale || step->fallen || step->done == step->wanted;
+  step->stop = step->stale || step->fallen || step->parted || step->done == step->wanted;
 }
 
 #define SCREE_KERNEL(name)                                                                         \
