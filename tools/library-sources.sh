@@ -4,7 +4,7 @@
 # usage: library-sources.sh FOLDER
 set -eu
 [ $# -eq 1 ] || { echo "usage: library-sources.sh FOLDER" >&2; exit 2; }
-command -v npm >/dev/null || { echo "library-sources.sh: needs npm, for the sources of SQLite" >&2; exit 1; }
+command -v npm >/dev/null || "$(dirname "$0")/install-packages.sh" npm
 mkdir -p "$1"
 cd "$1"
 [ ! -e complete ] || exit 0
