@@ -46,6 +46,7 @@ typedef struct scree_render_options {
   double value_minimum, value_maximum; /* of the colour map; default 0 and 1 */
   double value_scale;      /* what the values are multiplied by in the bar's labels; default 1 */
   const char *value_label; /* beside the scale bar, for example "distance / mm"; NULL: no bar */
+  bool joints; /* of a world: the map is of the stress of bodies' joints over their strength */
 } scree_render_options;
 
 SCREE_API scree_render_options scree_default_render_options(void);
@@ -236,14 +237,15 @@ typedef struct scree_scene_entry {
  * (docs/reference/formats.md). "-" is stdout. */
 SCREE_API scree_status scree_scene_json_write(const scree_scene_entry *entry, const char *path,
                                               bool overwrite, scree_error *error);
-/* The bodies and the geometry, which is cut open towards the viewer. Errors as scree_render. */
+/* The bodies, what joints hold together in one colour, and the geometry, which is cut open towards
+ * the viewer. Errors as scree_render. */
 SCREE_API scree_status scree_scene_picture(const scree_scene *scene,
                                            const scree_render_options *options,
                                            const scree_progress *progress, scree_image *image,
                                            scree_error *error);
 
-/* The bodies of a world as they stand, each shape in its colour; walls are not drawn. Errors as
- * scree_render. */
+/* The bodies of a world as they stand, each shape or, with joints, fragment in its colour; walls
+ * are not drawn. Errors as scree_render. */
 SCREE_API scree_status scree_world_picture(const scree_world *world,
                                            const scree_render_options *options,
                                            const scree_progress *progress, scree_image *image,

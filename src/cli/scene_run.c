@@ -19,31 +19,19 @@ static const char *const kinds[CLI_FRAME_KINDS] = {"-bodies", "-points", "-conta
 static const char *const collections[CLI_FRAME_KINDS] = {"bodies.pvd", "points.pvd", "contacts.pvd",
                                                          "geometry.pvd"};
 
-static const char *const file_names[] = {"checkpoint.scree",
-                                         "series.csv",
-                                         "motion.scree",
-                                         "scene.yaml",
-                                         "frame-#-bodies.vtp",
-                                         "bodies.pvd",
-                                         "geometry.pvd",
-                                         "scene.png",
-                                         "frame-#-geometry.vtp",
-                                         "result.json",
-                                         "result.txt",
-                                         "stopped.scree",
-                                         "frame-#-points.vtp",
-                                         "points.pvd",
-                                         "contacts.pvd",
-                                         "frame-#-contacts.vtp",
-                                         "frame-#.scree",
-                                         "last.scree",
-                                         "provenance.json",
-                                         "report.html",
-                                         "sensor-*.csv",
-                                         "sensor-*.vts",
-                                         "bodies.csv",
-                                         "shape-#.vtp",
-                                         "walls.vtp"};
+static const char *const file_names[] = {"checkpoint.scree",     "series.csv",
+                                         "motion.scree",         "scene.yaml",
+                                         "frame-#-bodies.vtp",   "bodies.pvd",
+                                         "geometry.pvd",         "scene.png",
+                                         "joints.png",           "frame-#-geometry.vtp",
+                                         "result.json",          "result.txt",
+                                         "stopped.scree",        "frame-#-points.vtp",
+                                         "points.pvd",           "contacts.pvd",
+                                         "frame-#-contacts.vtp", "frame-#.scree",
+                                         "last.scree",           "provenance.json",
+                                         "report.html",          "sensor-*.csv",
+                                         "sensor-*.vts",         "bodies.csv",
+                                         "shape-#.vtp",          "walls.vtp"};
 static const cli_run_files run_files = {file_names, sizeof file_names / sizeof *file_names};
 
 /* A file of the folder, until the end of the block. */
@@ -404,6 +392,9 @@ static void print_summary(FILE *stream, const scree_scene *scene, const char *st
           "  %zu came in, %zu are inside, %zu went out: %.5g kg in, %.5g kg inside, %.5g kg out\n",
           b.entered_count, b.inside_count, b.left_count, b.entered_mass, b.inside_mass,
           b.left_mass);
+  if (b.inside_count + b.left_count > b.entered_count)
+    fprintf(stream, "  some came apart: there are %zu more than came in\n",
+            b.inside_count + b.left_count - b.entered_count);
   for (size_t i = 0; scree_scene_inlet_name(scene, i); i++) {
     size_t waiting;
     scree_scene_inlet_count(scene, i, NULL, &waiting);
@@ -444,18 +435,25 @@ static scree_status write_json(const cli_scene_run *r, const char *stopped, doub
   return scree_scene_json_write(&entry, path, true, error);
 }
 
-static scree_status draw(const cli_scene_run *r, scree_error *error) {
+static scree_status draw_as(const cli_scene_run *r, bool joints, const char *name,
+                            scree_error *error) {
   SCREE_CLEANUP(scree_image_free) scree_image image = {0};
   scree_render_options o = scree_default_render_options();
-  if (r->options->no_picture) return SCREE_OK;
   o.width = 800, o.height = 600; /* in a second or so, beside runs of a few */
   o.samples = r->options->rays;
+  o.joints = joints;
   bool pile = scree_scene_pile_name(r->scene, 0);
   if (pile) o.elevation_deg = 18;
-  scree_status status = (pile ? scree_scene_pile_picture : scree_scene_picture)(
-      r->scene, &o, r->call->progress, &image, error);
-  if (status == SCREE_OK)
-    status = scree_image_write_png(&image, IN_FOLDER(r, "scene.png"), true, error);
+  SCREE_TRY((pile ? scree_scene_pile_picture : scree_scene_picture)(r->scene, &o, r->call->progress,
+                                                                    &image, error));
+  return scree_image_write_png(&image, IN_FOLDER(r, name), true, error);
+}
+
+static scree_status draw(const cli_scene_run *r, scree_error *error) {
+  if (r->options->no_picture) return SCREE_OK;
+  scree_status status = draw_as(r, false, "scene.png", error);
+  if (status == SCREE_OK && scree_world_joint_count(scree_scene_view(r->scene)) > 0)
+    status = draw_as(r, true, "joints.png", error);
   if (status != SCREE_UNSUPPORTED && status != SCREE_CANCELLED) return status;
   fprintf(stderr, "no picture: %s\n", error->message);
   return SCREE_OK;

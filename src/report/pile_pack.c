@@ -244,9 +244,12 @@ static scree_status put_bodies(pile *p) {
   scree_pack_u32(&p->pack, joined);
   if (!joined) return SCREE_OK;
   SCREE_SCRATCH(size_t, fragment, bodies, p->pack.error);
+  SCREE_SCRATCH(float, load, bodies, p->pack.error);
   (void)scree_world_fragments(p->world, fragment);
   for (size_t b = 0; b < bodies; b++) shape[b] = (uint32_t)fragment[b];
-  return scree_pack_vertices(&p->pack, shape, bodies, sizeof *shape);
+  SCREE_TRY(scree_pack_vertices(&p->pack, shape, bodies, sizeof *shape));
+  scree_joint_loads(p->world, load);
+  return scree_pack_vertices(&p->pack, load, bodies, sizeof *load);
 }
 
 /* ---- motion ---- */

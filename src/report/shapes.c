@@ -5,6 +5,7 @@
 #include "base/vec.h"
 
 #include <math.h>
+#include <string.h>
 
 /* ---- how they are shown and told ---- */
 
@@ -20,6 +21,17 @@ void scree_shape_color_linear(size_t shape, float linear[3]) {
   for (int k = 0; k < 3; k++) {
     double s = (scree_shape_color(shape) >> (16 - 8 * k) & 255) / 255.0;
     linear[k] = (float)(s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4));
+  }
+}
+
+void scree_joint_loads(const scree_world *world, float *loads) {
+  memset(loads, 0, scree_world_body_count(world) * sizeof *loads);
+  for (size_t k = 0; k < scree_world_joint_count(world); k++) {
+    scree_joint_observation j;
+    scree_world_observe_joint(world, k, &j);
+    if (j.state != SCREE_JOINT_WHOLE) continue;
+    loads[j.a] = fmaxf(loads[j.a], (float)j.load);
+    if (j.b != SCREE_SPACE) loads[j.b] = fmaxf(loads[j.b], (float)j.load);
   }
 }
 

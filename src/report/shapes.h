@@ -16,6 +16,10 @@ void scree_shapes_free(scree_shapes *shapes);
 scree_status scree_shapes_draw(scree_shapes *shapes, int level, scree_error *error);
 const scree_mesh *scree_shape_surface(const scree_shapes *shapes, size_t shape);
 
+/* Of each body the greatest share of its strength that a whole joint of it uses, as the world
+ * stands; without any, 0. */
+void scree_joint_loads(const scree_world *world, float *loads);
+
 /* Bodies that are in the world. */
 size_t scree_world_live_count(const scree_world *world);
 

@@ -18,6 +18,8 @@ typedef struct drawing {
   scree_mesh *walls;
   scree_render_item *items;
   size_t item_count;
+  double
+      *values; /* of each body's joints, at each of its surface's vertices; NULL: not asked for */
 } drawing;
 
 static void free_drawing(drawing *s) {
@@ -27,8 +29,27 @@ static void free_drawing(drawing *s) {
   scree_shapes_free(&s->shapes);
 }
 
-/* of: where not NULL, the shapes are numbered as it has them. */
-static void add_bodies(const scree_world *world, const scree_scene *of, drawing *s) {
+/* What bodies are coloured by: the first that is not NULL, else their shapes as the world has them.
+ */
+typedef struct coloring {
+  const float *loads;
+  const size_t *fragments;
+  const scree_scene *scene;
+} coloring;
+
+static void color_body(const coloring *by, size_t body, size_t shape, float color[3]) {
+  if (by->loads) {
+    const vec3 c = scree_viridis((double)by->loads[body]);
+    color[0] = (float)c.x, color[1] = (float)c.y, color[2] = (float)c.z;
+    return;
+  }
+  scree_shape_color_linear(by->fragments ? by->fragments[body]
+                           : by->scene   ? scree_scene_body_shape(by->scene, body)
+                                         : shape,
+                           color);
+}
+
+static void add_bodies(const scree_world *world, const coloring *by, drawing *s) {
   for (size_t i = 0; i < scree_world_body_count(world); i++) {
     if (scree_world_body_removed(world, i)) continue;
     size_t shape = s->shapes.of_body[i];
@@ -38,8 +59,7 @@ static void add_bodies(const scree_world *world, const scree_scene *of, drawing 
     *item = (scree_render_item){.mesh = scree_shape_surface(&s->shapes, shape)};
     memcpy(item->position, body.position, sizeof item->position);
     memcpy(item->quaternion, body.orientation, sizeof item->quaternion);
-    shape = of ? scree_scene_body_shape(of, i) : shape;
-    scree_shape_color_linear(shape, item->color);
+    color_body(by, i, shape, item->color);
   }
 }
 
@@ -210,7 +230,7 @@ static crowd find_crowd(const scree_world *world) {
 
 /* ---- pictures ---- */
 
-/* of: see add_bodies. */
+/* of: see coloring. */
 static scree_status draw(const scree_world *world, const scree_scene *of, bool walls,
                          const scree_render_options *options, const scree_progress *progress,
                          scree_image *image, scree_error *error) {
@@ -221,7 +241,14 @@ static scree_status draw(const scree_world *world, const scree_scene *of, bool w
   SCREE_TRY_ALLOC_ZERO(s.walls, s.wall_count, error);
   SCREE_TRY_ALLOC_ZERO(s.items, scree_world_body_count(world) + s.wall_count, error);
   SCREE_TRY(scree_shapes_draw(&s.shapes, SPHERE_LEVEL, error));
-  add_bodies(world, of, &s);
+  SCREE_SCRATCH(size_t, fragments, scree_world_body_count(world), error);
+  SCREE_SCRATCH(float, loads, scree_world_body_count(world), error);
+  bool joints = scree_world_joint_count(world) > 0;
+  (void)scree_world_fragments(world, fragments);
+  scree_joint_loads(world, loads);
+  if (o.joints) o.value_label = "stress of joints over strength";
+  const coloring by = {o.joints ? loads : NULL, joints ? fragments : NULL, of};
+  add_bodies(world, &by, &s);
   const crowd all = find_crowd(world);
   SCREE_TRY(add_walls(world, &o, &all, &s, error));
   const scree_render_cell cell = {s.items, s.item_count, NULL};

@@ -7,7 +7,9 @@
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/folder.h"
+#include "support/law.h"
 #include "support/pot.h"
+#include "support/scene.h"
 
 #include <meshoptimizer.h>
 #include <unistd.h>
@@ -326,6 +328,74 @@ static void a_motion_of_another_scene_is_not_shown(void **state) {
   scree_scene_file_free(file);
 }
 
+/* Pixels left of the scale bar that are as green as the middle of its map; of a build without
+ * pictures `missing`. */
+static size_t count_green(const scree_scene *scene, size_t missing) {
+  scree_render_options o = scree_default_render_options();
+  scree_image image = {0};
+  scree_error error;
+  size_t green = 0;
+  o.width = 400, o.height = 300;
+  o.joints = true;
+  scree_status status = scree_scene_picture(scene, &o, NULL, &image, &error);
+  if (status == SCREE_UNSUPPORTED) return missing;
+  CHECK_OK(status, error);
+  for (size_t i = 0; i < o.width * o.height; i++) {
+    const uint8_t *p = image.pixels + 3 * i;
+    green += i % o.width < o.width / 2 && p[1] > p[0] + 30;
+  }
+  scree_image_free(&image);
+  return green;
+}
+
+/* Three parts in a row, of which the first is drawn half as far as its joint bears. */
+static void page_and_pictures_show_the_stress_of_joints(void **state) {
+  (void)state;
+  static const char text[] =
+      "time: 1\n"
+      "gravity: [0, 0, 0]\n"
+      "materials: {m: {young: 1e7, density: 1000}}\n"
+      "shapes:\n"
+      "  rod:\n"
+      "    parts:\n"
+      "      one: {box: [0.01, 0.01, 0.01]}\n"
+      "      two: {box: [0.01, 0.01, 0.01], at: [0.01, 0, 0]}\n"
+      "      three: {box: [0.01, 0.01, 0.01], at: [0.02, 0, 0]}\n"
+      "    joints: {tension: 1e5, young: 1e7, damping: 0}\n"
+      "inlets: {i: {box: {min: [-0.1, -0.1, -0.1], max: [0.1, 0.1, 0.1]}, shapes: rod, count: 1, "
+      "orientation: fixed}}\n";
+  static const double wanted[3] = {0.5, 0.5, 0};
+  scree_error error;
+  scree_scene *scene = create(text);
+  CHECK_OK(scree_scene_advance(scene, 1, &error), error);
+  scree_world *world = (scree_world *)(uintptr_t)scree_scene_view(scene);
+  assert_int_equal(count_green(scene, 0), 0);
+  scree_body one = body_of(scene, 0);
+  one.position[0] -= 0.5 * 1e5 / 1e7 * 0.01;
+  law_place(world, 0, &one);
+  CHECK_OK(scree_scene_advance(scene, 1, &error), error);
+  assert_true(count_green(scene, 1) > 0);
+  CHECK_OK(scree_scene_save(scene, in_folder("rod.scree"), true, &error), error);
+  scree_scene_free(scene);
+  packed f = {0};
+  CHECK_OK(scree_pile_pack(in_folder("rod.scree"), 1 << 20, &f.bytes, &f.size, &error), error);
+  f.in = (scree_codec){.source = f.bytes, .count = f.size, .loading = true};
+  assert_int_equal(u32(&f), 0);
+  for (uint32_t left = u32(&f); left > 0; left--) (void)skip_surface(&f);
+  assert_int_equal(u32(&f), 3);
+  free(vertices(&f, 3, 4));
+  assert_int_equal(u32(&f), 1);
+  uint32_t *fragments = vertices(&f, 3, 4);
+  float *loads = vertices(&f, 3, 4);
+  for (int b = 0; b < 3; b++) {
+    assert_int_equal(fragments[b], 0);
+    CHECK_NEAR((double)loads[b], wanted[b], 0.02);
+  }
+  free(fragments);
+  free(loads);
+  scree_free(f.bytes);
+}
+
 static scree_status read_again(void *context, scree_error *error) {
   scree_motion m = {0};
   scree_status status = scree_motion_read(context, &m, error);
@@ -354,6 +424,7 @@ int main(void) {
       cmocka_unit_test(what_is_cut_or_damaged_ends_the_motion),
       cmocka_unit_test(the_page_gets_every_frame_or_those_that_fit),
       cmocka_unit_test(a_motion_of_another_scene_is_not_shown),
+      cmocka_unit_test(page_and_pictures_show_the_stress_of_joints),
       cmocka_unit_test(out_of_memory_is_told),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);

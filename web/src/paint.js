@@ -39,6 +39,8 @@ export function bodyPaints(pile, shapes) {
   if (pile.fragmentOf) {
     const fragments = Array.from({ length: 1 + pile.fragmentOf.reduce((a, b) => (b < 0xffffffff ? Math.max(a, b) : a), 0) }, (_, k) => `fragment ${k + 1}`);
     paints.unshift(classes('fragment', fragments, (body) => pile.fragmentOf[body] % fragments.length));
+    const loads = pile.loadOf.map((load) => 100 * load);
+    paints.push(scale('stress of joints at the end', '% of strength', loads, (body) => loads[body]));
   }
   if (families.length > 1 && families.length < shapes.length) paints.push(classes('class', families, (body) => families.indexOf(shapes[pile.shapeOf[body]].family)));
   if (pile.times.length > 1) {

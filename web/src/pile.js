@@ -40,7 +40,9 @@ export class Pile {
     this.shapes = Array.from({ length: reader.u32() }, surface);
     this.bodyCount = reader.u32();
     this.shapeOf = new Uint32Array(decodeVertices(reader.buffer(), this.bodyCount, 4));
-    this.fragmentOf = reader.u32() ? new Uint32Array(decodeVertices(reader.buffer(), this.bodyCount, 4)) : null; // at the end
+    const joined = reader.u32() > 0, numbers = () => decodeVertices(reader.buffer(), this.bodyCount, 4);
+    this.fragmentOf = joined ? new Uint32Array(numbers()) : null; // at the end
+    this.loadOf = joined ? new Float32Array(numbers()) : null; // likewise: the greatest share of its strength that a joint uses
     this.low = reader.reals(3);
     this.step = reader.real();
     const count = reader.u32();
