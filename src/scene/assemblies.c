@@ -23,6 +23,7 @@ static const double longest_strain = 0.005;
 static const double usual_gap = 0.002;
 /* Behind the streams of inlets, of which there are fewer. */
 enum { STRENGTHS = 1 << 20 };
+enum { MOST_SPHERES = 10000 }; /* of a cable, as of a table */
 
 typedef struct piece {
   scree_mesh mesh; /* or a sphere: */
@@ -170,12 +171,44 @@ static scree_status make_hull(const assembly *of, scree_particle **particle, scr
   return scree_particle_from_mesh(&mesh, NULL, particle, error);
 }
 
+/* Spheres along the path, so far apart that together they have a wire's volume. */
+static scree_status make_cable(const scree_plan_cable *plan, scree_particle **particle,
+                               scree_error *error) {
+  const scree_plan_point *points = plan->path.items;
+  const double radius = 0.5 * plan->diameter;
+  double length = 0, before = 0;
+  for (size_t k = 1; k < plan->path.count; k++)
+    length += vec3_distance(vec3_load(points[k - 1].at), vec3_load(points[k].at));
+  const double steps = floor(length / (4. / 3 * radius) + 0.5);
+  if (!(steps >= 1 && steps < MOST_SPHERES))
+    return scree_fail(error, SCREE_BAD_ARGUMENT,
+                      "cable: a path of %.4g m is %.4g spheres %.4g m thick; 2 to %d are possible",
+                      length, steps + 1, plan->diameter, MOST_SPHERES);
+  const size_t count = (size_t)steps + 1;
+  SCREE_SCRATCH(double, centres, 3 * count, error);
+  SCREE_SCRATCH(double, radii, count, error);
+  for (size_t i = 0, k = 0; i < count; i++) {
+    const double along = length * (double)i / steps;
+    vec3 from, to;
+    double part;
+    for (;; k++, before += part) {
+      from = vec3_load(points[k].at), to = vec3_load(points[k + 1].at);
+      part = vec3_distance(from, to);
+      if (along <= before + part || k + 2 == plan->path.count) break;
+    }
+    vec3_store(centres + 3 * i, vec3_lerp(from, to, part > 0 ? (along - before) / part : 0));
+    radii[i] = radius;
+  }
+  return scree_particle_clump(centres, radii, count, NULL, particle, error);
+}
+
 scree_status scree_scene_make_parts(scree_scene *scene, size_t index, const char *folder,
                                     const scree_scene_making *making, scree_error *error) {
   const scree_plan_shape *plan = plan_of(scene, index);
   size_t count = plan->file || plan->clump ? 1 : plan->parts.count;
   scree_particle_free(making->made->particle);
   *making->made = (scree_shape_made){0};
+  if (plan->cable) return make_cable(plan->cable, &making->made->particle, error);
   if (plan->clump || (plan->file && scree_is_clump_table(plan->file)))
     return scree_scene_make_unscaled(plan, folder, 0, making->store, making->progress, making->made,
                                      error);
@@ -316,11 +349,12 @@ static scree_status face_parts(assembly *of, double gap, scree_error *error) {
   return status;
 }
 
-/* Between spheres, those of a wire as thick as the smaller. */
-static scree_status face_spheres(assembly *of, double gap, scree_error *error) {
+/* Between spheres, those of a wire as thick as the smaller; of a cable only from each to the next.
+ */
+static scree_status face_spheres(assembly *of, double gap, bool cable, scree_error *error) {
   static const double pi = 3.14159265358979323846;
   for (size_t i = 0; i < of->pieces.count; i++)
-    for (size_t k = i + 1; k < of->pieces.count; k++) {
+    for (size_t k = i + 1; k < of->pieces.count && (!cable || k == i + 1); k++) {
       const piece *p = &of->pieces.items[i], *q = &of->pieces.items[k];
       vec3 between = vec3_sub(q->at, p->at), n = vec3_unit(between), u, w;
       double distance = vec3_norm(between), r = fmin(p->radius, q->radius), area = pi * r * r;
@@ -433,7 +467,7 @@ static scree_status hold_parts(scree_scene *scene, size_t index, const scree_pro
       if (!made.part || !SCREE_PUSH(&of->pieces, made))
         return scree_fail_memory(error, sizeof made, "spheres");
     }
-    SCREE_TRY(face_spheres(of, gap, error));
+    SCREE_TRY(face_spheres(of, gap, plan->cable != NULL, error));
   } else {
     vec3 by = vec3_neg(mat3_mul_vec(&turn, vec3_load(m->centre)));
     SCREE_TRY(break_parts(plan, of, &turn, by, progress, error));

@@ -59,6 +59,15 @@ static scree_status check_strengths(const scree_reader *r, const void *record) {
 }
 SCREE_RECORD_TABLE(scree_plan_joined, SCREE_PLAN_JOINED, "a pair of parts", NULL, NULL)
 SCREE_RECORD_TABLE(scree_plan_joints, SCREE_PLAN_JOINTS, "joints", NULL, check_strengths)
+SCREE_RECORD_TABLE(scree_plan_point, SCREE_PLAN_POINT, "a point", "at: [x, y, z]", NULL)
+
+static scree_status check_cable(const scree_reader *r, const void *record) {
+  const scree_plan_cable *c = record;
+  if (isnan(c->diameter) || c->path.count < 2)
+    return scree_fail_place(r, &c->place, "needs a diameter and a path of two points or more");
+  return SCREE_OK;
+}
+SCREE_RECORD_TABLE(scree_plan_cable, SCREE_PLAN_CABLE, "a cable", NULL, check_cable)
 SCREE_RECORD_TABLE(scree_plan_component, SCREE_PLAN_COMPONENT, "a part", NULL, NULL)
 
 /* Shapes that break or come apart. */
@@ -72,7 +81,9 @@ static scree_status check_joints(const scree_reader *r, const scree_plan_shape *
                             "the shape has joints between parts: give fracture to a part");
   if (s->joints && (s->size || s->rp || scree_plan_spheres(s)))
     return scree_fail_place(r, &s->place, "size, rp and a number of spheres are not for parts");
-  if (s->joints && !s->file && !s->parts.count && !s->clump)
+  if (s->cable && !s->joints)
+    return scree_fail_place(r, &s->place, "a cable needs joints, with the tension that it bears");
+  if (s->joints && !s->file && !s->parts.count && !s->clump && !s->cable)
     return scree_fail_place(r, &s->joints->place,
                             "needs parts, a file that names them, or spheres");
   for (size_t k = 0; k < s->parts.count; k++) {
@@ -93,16 +104,17 @@ static scree_status check_shape(const scree_reader *r, const void *record) {
                             "clump %.20s: so many spheres stand for a file, sample or box: give it",
                             s->clump);
   const bool there[] = {s->file != NULL, s->sample != NULL, given(&s->sphere),
-                        table,           given(s->box),     s->parts.count > 0 && !s->file};
+                        table,           given(s->box),     s->parts.count > 0 && !s->file,
+                        s->cable != NULL};
   bool none = true;
   SCREE_TRY(check_joints(r, s));
-  for (int i = 0; i < 6; i++) none = none && !there[i];
+  for (int i = 0; i < 7; i++) none = none && !there[i];
   if (s->size && none) return SCREE_OK; /* spheres */
   if (s->size && given(&s->sphere))
     return scree_fail_place(r, &s->place,
                             "size is of a file, sample, clump or box; alone, of spheres");
-  scree_status status = scree_plan_one_of(r, &s->place, there, 6,
-                                          "file, sample, sphere (its diameter), clump, box, parts");
+  scree_status status = scree_plan_one_of(
+      r, &s->place, there, 7, "file, sample, sphere (its diameter), clump, box, parts, cable");
   if (status == SCREE_OK && s->clump && !table) status = check_spheres(r, s);
   if (status != SCREE_OK) return status;
   if (scree_plan_spheres(s) && s->file && scree_is_clump_table(s->file))

@@ -118,14 +118,23 @@ SCREE_RECORD_TYPE(scree_plan_joined, SCREE_PLAN_JOINED)
   SCREE_PLAN_BOND(ROW, T)
 SCREE_RECORD_TYPE(scree_plan_joints, SCREE_PLAN_JOINTS)
 
-/* One of file, sample, sphere, clump (a table), box; a clump that is a count is one of the others'
- * surface. */
+/* A wire along a path. */
+#define SCREE_PLAN_POINT(ROW, T) ROW(T, VECTOR, at, SCREE_NONE, -1e3, 1e3, "m", "")
+SCREE_RECORD_TYPE(scree_plan_point, SCREE_PLAN_POINT)
+#define SCREE_PLAN_CABLE(ROW, T)                                                                   \
+  ROW(T, REAL, diameter, NAN, 1e-9, 1, "m", "")                                                    \
+  ROW(T, LIST, path, scree_plan_point, "straight from point to point")
+SCREE_RECORD_TYPE(scree_plan_cable, SCREE_PLAN_CABLE)
+
+/* One of file, sample, sphere, clump (a table), box, cable; a clump that is a count is one of the
+ * others' surface. */
 #define SCREE_PLAN_SHAPE(ROW, T)                                                                   \
   ROW(T, TEXT, file, "a scan, or a table of spheres")                                              \
   ROW(T, TEXT, sample, "a built-in one, as sp-1")                                                  \
   ROW(T, REAL, sphere, NAN, 1e-9, 1e3, "m", "diameter")                                            \
   ROW(T, TEXT, clump, "a table of spheres: x, y, z, radius; or so many that stand for the shape")  \
   ROW(T, VECTOR, box, SCREE_NONE, 1e-9, 1e3, "m", "three sides")                                   \
+  ROW(T, GROUP, cable, scree_plan_cable, "of spheres that joints hold")                            \
   ROW(T, WORD, unit, -1, SCREE_PLAN_UNITS,                                                         \
       "of the file's lengths; not given: as the file says, else mm")                               \
   ROW(T, REAL, resolution, NAN, 0.02e-3, 5e-3, "m", "of a sample's vertices")                      \

@@ -149,6 +149,51 @@ static void a_battery_falls_out(void **state) {
   LAW_NEAR("J12", "energy at which a battery falls out, share", sqrt(low * high), 1, 0.1);
 }
 
+/* ---- a cable ---- */
+
+/* There and back, its halves so near that they lie in each other: each sphere holds the next alone,
+ * and the ends are the path's. */
+static void a_cable_follows_its_path(void **state) {
+  (void)state;
+  static const char text[] = "time: 1\n"
+                             "gravity: [0, 0, 0]\n"
+                             "materials: {m: {young: 1e8, density: 1000}}\n"
+                             "shapes:\n"
+                             "  wire:\n"
+                             "    cable: {diameter: 0.004, path: [{at: [0, 0, 0]}, {at: [0.1, 0, "
+                             "0]}, {at: [0.1, 0.003, 0]}, "
+                             "{at: [0, 0.003, 0]}]}\n"
+                             "    joints: {tension: 1e6}\n"
+                             "inlets: {i: {box: {min: [-0.1, -0.1, -0.1], max: [0.1, 0.1, 0.1]}, "
+                             "shapes: wire, count: 1}}\n";
+  const double pi = 3.14159265358979, length = 0.203, steps = 76; /* of 4/3 of the radius */
+  scree_error error;
+  scree_scene *scene = create(text);
+  CHECK_OK(scree_scene_advance(scene, 200, &error), error);
+  const scree_world *world = scree_scene_view(scene);
+  size_t bodies = scree_world_body_count(world), held = 0;
+  assert_int_equal(bodies, steps + 1);
+  for (size_t k = 0; k < scree_world_joint_count(world); k++) {
+    scree_joint_observation j;
+    scree_world_observe_joint(world, k, &j);
+    if (!(j.area > 0)) continue;
+    assert_int_equal(j.b, j.a + 1);
+    CHECK_NEAR(j.area, pi * 0.002 * 0.002, 1e-12);
+    held++;
+  }
+  assert_int_equal(held, steps);
+  vec3 first = vec3_load(body_of(scene, 0).position),
+       last = vec3_load(body_of(scene, bodies - 1).position);
+  CHECK_NEAR(vec3_distance(first, last), 0.003, 1e-9);
+  scree_scene_book b;
+  scree_scene_get_book(scene, &b);
+  CHECK_NEAR(b.inside_mass / (1000 * pi * 0.002 * 0.002 * length * (steps + 1) / steps), 1, 2e-3);
+  scree_observation o;
+  scree_world_observe(world, &o);
+  assert_true(o.highest_speed < 1e-9); /* nothing pushes */
+  scree_scene_free(scene);
+}
+
 /* ---- a sheet ---- */
 
 /* A strip of cells, clamped where x = 0, under its weight: the deflection of Euler and Bernoulli.
@@ -332,6 +377,7 @@ int main(void) {
       cmocka_unit_test(faces_are_where_parts_meet),
       cmocka_unit_test(faces_are_apart_where_places_are),
       cmocka_unit_test(a_battery_falls_out),
+      cmocka_unit_test(a_cable_follows_its_path),
       cmocka_unit_test(a_sheet_of_cells_bends),
       cmocka_unit_test(a_device_that_breaks_goes_on_with_the_same_bits),
       cmocka_unit_test(wrong_assemblies_are_told),
