@@ -152,7 +152,8 @@ SCREE_API const char *scree_scene_outlet_name(const scree_scene *scene, size_t i
 SCREE_API size_t scree_scene_body_shape(const scree_scene *scene, size_t index);
 SCREE_API size_t scree_scene_wall_geometry(const scree_scene *scene, size_t index);
 
-/* What came in, is in, went out: at every moment in = inside + out. */
+/* What came in, is in, went out: at every moment in = inside + out. What hangs together by joints
+ * is one body; as it comes apart, there are more inside. */
 typedef struct scree_scene_book {
   size_t entered_count, inside_count, left_count;
   size_t waiting_count;                        /* due, but there was no room yet */

@@ -1,5 +1,6 @@
-/* Outlets: bodies whose centre is in one, or beyond the domain, are taken out and booked. A domain
- * that the scene does not name is looked at with every row of the series only. */
+/* Outlets: bodies whose centre is in one, or beyond the domain, are taken out and booked, with all
+ * that hangs together with them. A domain that the scene does not name is looked at with every row
+ * of the series only. */
 #include "scene/scene.h"
 #include "world/state/remote.h"
 
@@ -32,9 +33,32 @@ static size_t outlet_at(const scree_scene *scene, const double p[3], double time
   return count;
 }
 
-static void take_out(scree_scene *scene, size_t b, const scree_body *body, size_t index) {
+static void take_body(scree_scene *scene, size_t b, scree_scene_outlet *outlet) {
   double mass = scree_world_body_mass(scene->world, b);
+  scree_body body;
+  scree_world_get_body(scene->world, b, &body);
+  outlet->mass += mass;
+  scene->left_mass += mass;
+  scene->left_energy += energy_of(scene, b, &body);
+  scene->shapes[scene->shape_of.items[b]].left++;
+  scree_world_remove_body(scene->world, b);
+}
+
+/* What the joints between those that go keep, J. */
+static double energy_of_joints(const scree_scene *scene, size_t leader) {
+  const scree_joints *joints = &scene->world->joints;
+  double sum = 0;
+  scree_world_bring(scene->world, SCREE_PART_JOINTS, NULL);
+  for (size_t k = 0; k < joints->all.count; k++)
+    if (scree_world_leader(scene->world, joints->all.items[k].a) == leader)
+      sum += joints->all.items[k].energy;
+  return sum;
+}
+
+/* A body that counts, and those for which it does. */
+static void take_out(scree_scene *scene, size_t b, const scree_body *body, size_t index) {
   scree_scene_outlet *outlet = &scene->outlets[index];
+  size_t end = scree_world_joint_count(scene->world) ? scene->shape_of.count : b + 1;
   scene->stays.items[b].left = scree_world_time(scene->world);
   scene->stays.items[b].outlet = (uint32_t)index;
   if (outlet->left == 0) {
@@ -42,12 +66,11 @@ static void take_out(scree_scene *scene, size_t b, const scree_body *body, size_
     memcpy(outlet->first_place, body->position, sizeof outlet->first_place);
   }
   outlet->left++;
-  outlet->mass += mass;
-  scene->left_mass += mass;
-  scene->left_energy += energy_of(scene, b, body);
   scene->left_count++;
-  scene->shapes[scene->shape_of.items[b]].left++;
-  scree_world_remove_body(scene->world, b);
+  scene->left_energy += energy_of_joints(scene, b);
+  for (size_t k = b; k < end; k++)
+    if (scree_world_leader(scene->world, k) == b && !scree_world_body_removed(scene->world, k))
+      take_body(scene, k, outlet);
 }
 
 void scree_scene_empty(scree_scene *scene) {
@@ -58,6 +81,7 @@ void scree_scene_empty(scree_scene *scene) {
   scree_body body;
   for (size_t b = 0; scree_scene_next_body(scene, &b, &body); b++) {
     size_t outlet = outlet_at(scene, body.position, time);
+    if (!scree_scene_counts(scene, b)) continue;
     if (outlet < rim || (d && !scree_is_in(body.position, d->min, d->max)))
       take_out(scene, b, &body, outlet);
   }
@@ -68,7 +92,7 @@ void scree_scene_take_lost(scree_scene *scene) {
   scree_scene_reach reach = scree_scene_domain(scene);
   scree_body body;
   for (size_t b = 0; scree_scene_next_body(scene, &b, &body); b++) {
-    if (!scree_is_in(body.position, reach.low, reach.high))
+    if (scree_scene_counts(scene, b) && !scree_is_in(body.position, reach.low, reach.high))
       take_out(scene, b, &body, scene->plan.outlets.count);
   }
 }

@@ -422,7 +422,8 @@ static int find_over(const scree_scene *scene) {
 static int find_end(scree_scene *scene) {
   const scree_plan_stop *stop = scene->plan.stop;
   if (scree_world_time(scene->world) < stop->after) return GOES_ON;
-  if (stop->empty && scene->left_count == scene->shape_of.count && scree_scene_is_filled(scene))
+  if (stop->empty && scene->world->bodies.removed_count == scene->shape_of.count &&
+      scree_scene_is_filled(scene))
     return END_EMPTY;
   if (is_over_after_filling(scene)) return END_FILLED;
   return is_still(scene) ? END_STILL : GOES_ON;

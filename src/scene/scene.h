@@ -5,6 +5,7 @@
 #include "scene/file.h"
 #include "scene/fill.h"
 #include "scene/motion.h"
+#include "world/state/joints.h"
 #include "world/state/world.h"
 
 /* One of the shapes. */
@@ -95,7 +96,8 @@ typedef struct scree_scene_sensor {
   size_t geometry; /* that it is of; where it is of none, 0 */
 } scree_scene_sensor;
 
-/* How a body came and went: s, NaN while it is in; UINT32_MAX: from a table, and while it is in. */
+/* How a body came and went: s, NaN while it is in, and of what left with the first of its fragment;
+ * UINT32_MAX: from a table, and while it is in. */
 typedef struct scree_scene_stay {
   double left;
   uint32_t inlet, outlet;
@@ -419,6 +421,11 @@ static inline bool scree_is_in(const double p[3], const double low[3], const dou
   for (int k = 0; k < 3; k++)
     if (!(p[k] >= low[k] && p[k] <= high[k])) return false;
   return true;
+}
+
+/* Whether a body is counted: what hangs together by joints is one, and the first stands for it. */
+static inline bool scree_scene_counts(const scree_scene *scene, size_t body) {
+  return scree_world_leader(scene->world, body) == body;
 }
 
 /* The first body from *index on that is there; false: there is none. */

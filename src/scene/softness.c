@@ -356,7 +356,7 @@ bool scree_scene_doubt_energy(const scree_scene *scene, char *text) {
   scree_scene_get_book(scene, &b);
   if (!(fabs(b.ledger) > told)) return false;
   size_t part = blamed_part(scene, scree_scene_missing_energy(scene));
-  char whose[200] = "; a shorter time step (contact.steps) tells whether contacts have it";
+  char whose[200] = "; a shorter time step (contact.time_step) tells whether contacts have it";
   if (part < scene->plan.geometry.count)
     snprintf(whose, sizeof whose, "; the part '%.60s' has most of it",
              scree_scene_geometry_name(scene, part));

@@ -87,16 +87,16 @@ double scree_scene_missing_energy(const scree_scene *scene) {
 void scree_scene_get_book(const scree_scene *scene, scree_scene_book *book) {
   scree_observation o;
   scree_world_observe(scene->world, &o);
-  scree_scene_book b = {.entered_count = scene->shape_of.count,
-                        .left_count = scene->left_count,
+  scree_scene_book b = {.left_count = scene->left_count,
                         .entered_mass = scene->entered_mass,
                         .left_mass = scene->left_mass,
                         .entered_energy = scene->entered_energy,
                         .left_energy = scene->left_energy};
   for (size_t i = 0; i < scene->plan.inlets.count; i++) b.waiting_count += scene->inlets[i].waiting;
+  for (size_t i = 0; i < scene->named_count; i++) b.entered_count += scene->shapes[i].entered;
   for (size_t i = 0; i < scene->shape_of.count; i++)
     if (!scree_world_body_removed(scene->world, i)) {
-      b.inside_count++;
+      b.inside_count += scree_scene_counts(scene, i);
       b.inside_mass += scree_world_body_mass(scene->world, i);
     }
   double missing = missing_energy(scene, &o);

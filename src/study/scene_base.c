@@ -419,7 +419,7 @@ scree_status scree_study_record_scene(const scree_study *study, const scree_scen
   size_t bodies = scree_scene_pile_name(scene, 0) ? pile.body_count : book.inside_count;
   record->result = (scree_record_result){.pile = pile,
                                          .body_count = bodies,
-                                         .left_count = book.entered_count - bodies,
+                                         .left_count = book.inside_count + book.left_count - bodies,
                                          .coordination = o.coordination,
                                          .kinetic = o.kinetic + o.rotational,
                                          .time = o.time,

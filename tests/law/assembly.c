@@ -149,6 +149,63 @@ static void a_battery_falls_out(void **state) {
   LAW_NEAR("J12", "energy at which a battery falls out, share", sqrt(low * high), 1, 0.1);
 }
 
+/* ---- counted ---- */
+
+static const char falling[] =
+    "time: 2\n"
+    "gravity: [0, 0, 0]\n"
+    "materials: {m: {young: 1e8, density: 1000}}\n"
+    "shapes:\n"
+    "  pair:\n"
+    "    parts:\n"
+    "      low: {box: [0.02, 0.02, 0.02]}\n"
+    "      high: {box: [0.02, 0.02, 0.02], at: [0, 0, 0.02]}\n"
+    "    joints: {tension: 1e4}\n"
+    "inlets: {i: {box: {min: [-0.03, -0.03, 0.1], max: [0.03, 0.03, 0.2]}, shapes: pair, count: 1, "
+    "orientation: fixed, velocity: [0, 0, -1]}}\n"
+    "outlets: {out: {box: {min: [-1, -1, -1], max: [1, 1, -0.1]}}}\n"
+    "stop: {empty: true}\n"
+    "sensors:\n"
+    "  gate: {flow: {through: [0, 0, 0], normal: [0, 0, -1]}}\n"
+    "  all: {region: {box: {min: [-1, -1, -1], max: [1, 1, 1]}}}\n"
+    "  fast: {speed: {}}\n"
+    "  stay: {residence: {}}\n";
+
+/* Parts that hang together count as one, with all their mass; apart each for itself. */
+static void count_falling(bool apart) {
+  const double mass = 2 * 0.02 * 0.02 * 0.02 * 1000, count = apart ? 2 : 1;
+  scree_scene_book b;
+  scree_scene *scene = create(falling);
+  run_until(scene, 1e-6);
+  scree_body body = body_of(scene, 1);
+  body.velocity[2] -= apart ? -0.5 : 0;
+  law_place((scree_world *)(uintptr_t)scree_scene_view(scene), 1, &body);
+  run_until(scene, 0.01);
+  scree_scene_get_book(scene, &b);
+  assert_int_equal(b.entered_count, 1);
+  assert_int_equal(b.inside_count, count);
+  CHECK_NEAR(now_of(scene, "all.count"), count, 0);
+  CHECK_NEAR(now_of(scene, "fast.count"), count, 0);
+  CHECK_NEAR(now_of(scene, "all.mass"), mass, 1e-12);
+  run_to_end(scene);
+  scree_scene_get_book(scene, &b);
+  assert_string_equal(scree_scene_end(scene), "empty");
+  if (!apart) CHECK_NEAR(b.left_energy, b.entered_energy, 1e-9 * b.entered_energy);
+  assert_int_equal(b.inside_count, 0);
+  assert_int_equal(b.left_count, count);
+  CHECK_NEAR(b.left_mass, mass, 1e-12);
+  CHECK_NEAR(now_of(scene, "gate.count"), count, 0);
+  CHECK_NEAR(now_of(scene, "gate.mass"), mass, 1e-12);
+  CHECK_NEAR(now_of(scene, "stay.count"), count, 0);
+  scree_scene_free(scene);
+}
+
+static void what_hangs_together_counts_as_one(void **state) {
+  (void)state;
+  count_falling(false);
+  count_falling(true);
+}
+
 /* ---- a cable ---- */
 
 /* There and back, its halves so near that they lie in each other: each sphere holds the next alone,
@@ -187,6 +244,7 @@ static void a_cable_follows_its_path(void **state) {
   CHECK_NEAR(vec3_distance(first, last), 0.003, 1e-9);
   scree_scene_book b;
   scree_scene_get_book(scene, &b);
+  assert_int_equal(b.inside_count, 1);
   CHECK_NEAR(b.inside_mass / (1000 * pi * 0.002 * 0.002 * length * (steps + 1) / steps), 1, 2e-3);
   scree_observation o;
   scree_world_observe(world, &o);
@@ -377,6 +435,7 @@ int main(void) {
       cmocka_unit_test(faces_are_where_parts_meet),
       cmocka_unit_test(faces_are_apart_where_places_are),
       cmocka_unit_test(a_battery_falls_out),
+      cmocka_unit_test(what_hangs_together_counts_as_one),
       cmocka_unit_test(a_cable_follows_its_path),
       cmocka_unit_test(a_sheet_of_cells_bends),
       cmocka_unit_test(a_device_that_breaks_goes_on_with_the_same_bits),

@@ -1,4 +1,5 @@
-/* Who passes through a plane: bodies whose centre is on the other side than at the last tick. */
+/* Who passes through a plane: bodies whose centre is on the other side than at the last tick;
+ * what hangs together by joints is counted with its first. */
 #include "scene/sensors/sensor.h"
 
 #include "base/alloc.h"
@@ -32,9 +33,10 @@ static void end(scree_scene_sensor *sensor) {
 
 static void count_crossing(const scree_scene *scene, flow *f, size_t body, int way) {
   size_t all = scene->named_count, shape = scree_scene_named(scene, scene->shape_of.items[body]);
-  double mass = way * scree_world_body_mass(scene->world, body);
-  f->count[shape] += way;
-  f->count[all] += way;
+  double mass = way * scree_world_body_mass(scene->world, body),
+         count = scree_scene_counts(scene, body) ? way : 0;
+  f->count[shape] += count;
+  f->count[all] += count;
   f->mass[shape] += mass;
   f->mass[all] += mass;
 }

@@ -101,7 +101,7 @@ static scree_status measure_heap(const scree_scene *scene, const scree_plan_pile
     scree_body body;
     if (!is_of_pile(scene, plan, b, &body)) continue;
     made.solid += scene->shapes[scene->shape_of.items[b]].volume;
-    made.body_count++;
+    made.body_count += scree_scene_counts(scene, b);
     scree_raise_body(scene, b, &body, plan->floor, &field);
   }
   scree_repose_options o = scree_default_repose_options();

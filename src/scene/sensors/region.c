@@ -36,11 +36,12 @@ static scree_status read(const scree_scene *scene, const scree_scene_sensor *sen
     if (!scree_is_in(body.position, box->min, box->max)) continue;
     size_t shape = scene->shape_of.items[b];
     double m = scree_world_body_mass(scene->world, b);
-    count[0]++, mass[0] += m;
-    if (width > 1) count[1 + scree_scene_named(scene, shape)]++;
+    const bool counts = scree_scene_counts(scene, b);
+    count[0] += counts, mass[0] += m;
+    if (width > 1) count[1 + scree_scene_named(scene, shape)] += counts;
     if (width > 1) mass[1 + scree_scene_named(scene, shape)] += m;
     solid += scene->shapes[shape].volume;
-    speed += vec3_norm(vec3_load(body.velocity));
+    if (counts) speed += vec3_norm(vec3_load(body.velocity));
     middle = vec3_mad(middle, vec3_load(body.position), m);
   }
   at += 2 * width;

@@ -18,6 +18,7 @@ static bool next_speed(const scree_scene *scene, const scree_plan_speed *plan, s
                        double *speed) {
   scree_body body;
   for (; scree_scene_next_body(scene, index, &body); ++*index) {
+    if (!scree_scene_counts(scene, *index)) continue;
     if (plan->box && !scree_is_in(body.position, plan->box->min, plan->box->max)) continue;
     *speed = vec3_norm(vec3_load(body.velocity));
     return true;

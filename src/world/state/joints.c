@@ -165,14 +165,18 @@ size_t scree_world_joint_count(const scree_world *world) {
   return world->joints.all.count;
 }
 
-size_t scree_world_fragments(const scree_world *world, size_t *fragments) {
+size_t scree_world_leader(const scree_world *world, size_t body) {
   const scree_joints *joints = &world->joints;
   (void)scree_joints_prepare((scree_world *)(uintptr_t)world, NULL); /* groups follow from it;
       without memory, those of the last step */
+  return body < joints->fragment.count ? joints->fragment.items[body] : body;
+}
+
+size_t scree_world_fragments(const scree_world *world, size_t *fragments) {
   size_t count = 0;
   for (size_t i = 0; i < world->bodies.count; i++) {
-    bool alone = i >= joints->fragment.count || joints->fragment.items[i] == i;
-    fragments[i] = alone ? SIZE_MAX : fragments[joints->fragment.items[i]];
+    size_t leader = scree_world_leader(world, i);
+    fragments[i] = leader == i ? SIZE_MAX : fragments[leader];
     if (world->bodies.removed[i]) fragments[i] = SIZE_MAX;
     /* a root that was removed leaves its fragment to the next */
     else if (fragments[i] == SIZE_MAX)

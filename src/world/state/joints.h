@@ -28,6 +28,9 @@ scree_status scree_world_copy_joint(scree_world *to, const scree_world_joint *jo
 scree_status scree_joints_prepare(scree_world *world, scree_error *error);
 /* After a joint's state changed: finds the fragments of all bodies by the joints that are whole. */
 void scree_joints_regroup(scree_world *world);
+/* The first body of those that it hangs together with: where bodies are counted, it stands for
+ * them. */
+size_t scree_world_leader(const scree_world *world, size_t body);
 /* The longest step that the joints bear, s; INFINITY without any. *body: which asks for it. */
 double scree_joints_time_step(const scree_world *world, size_t *body);
 /* What all hold, and what they have cost, J. */
