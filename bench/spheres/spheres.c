@@ -138,11 +138,13 @@ static int in_box(char **argv, int argc) {
   scree_world *world = make_world();
   add_spheres(world, argv[2], SIZE_MAX);
   add_box(world, strtod(argv[3], NULL));
-  if (argc > 4)
-    printf("%.0f %.2f\n", rate(world, strtoul(argv[4], NULL, 10)),
-           (double)clock() / CLOCKS_PER_SEC);
-  else
-    step(world, REST), print_centres(world);
+  if (argc > 4) {
+    double found = rate(world, strtoul(argv[4], NULL, 10));
+    printf("%.0f %.2f\n", found, (double)clock() / CLOCKS_PER_SEC);
+  } else {
+    step(world, REST);
+    print_centres(world);
+  }
   scree_world_free(world);
   return 0;
 }

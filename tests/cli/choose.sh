@@ -75,7 +75,7 @@ run choose plain.stl --rule robust | lines 2
 box 3 2 1 | sed '2s/6/5/; $d' >open.off
 box 30000 20000 10000 >huge.off
 warned() {
-  "$SCREE" choose "$@" -o warned -f >text 2>&1
+  "$SCREE" choose "$@" -o warned -f 2>&1 | sed "/^scree, after /d" >text
   cp warned/choice.json warnings.json
   python3 - text warned/choice.txt warned/report.html warnings.json <<'PYTHON'
 import html, json, re, sys
