@@ -2,6 +2,7 @@
  * the energy of a hand calculation, and are told where they overlap or nothing holds them; sheets
  * of cells bend as plates do. */
 #include "base/vec.h"
+#include "report/program.h"
 #include "support/alloc_fail.h"
 #include "support/law.h"
 #include "support/scene.h"
@@ -197,6 +198,9 @@ static void count_falling(bool apart) {
   CHECK_NEAR(now_of(scene, "gate.count"), count, 0);
   CHECK_NEAR(now_of(scene, "gate.mass"), mass, 1e-12);
   CHECK_NEAR(now_of(scene, "stay.count"), count, 0);
+  scree_words words;
+  scree_scene_words(scene, NULL, NULL, &words);
+  assert_int_equal(strstr(words.answer, "1 particles came in and came apart, 0 ") != NULL, apart);
   scree_scene_free(scene);
 }
 
