@@ -18,8 +18,6 @@ typedef struct drawing {
   scree_mesh *walls;
   scree_render_item *items;
   size_t item_count;
-  double
-      *values; /* of each body's joints, at each of its surface's vertices; NULL: not asked for */
 } drawing;
 
 static void free_drawing(drawing *s) {
@@ -243,11 +241,15 @@ static scree_status draw(const scree_world *world, const scree_scene *of, bool w
   SCREE_TRY(scree_shapes_draw(&s.shapes, SPHERE_LEVEL, error));
   SCREE_SCRATCH(size_t, fragments, scree_world_body_count(world), error);
   SCREE_SCRATCH(float, loads, scree_world_body_count(world), error);
-  bool joints = scree_world_joint_count(world) > 0;
-  (void)scree_world_fragments(world, fragments);
-  scree_joint_loads(world, loads);
-  if (o.joints) o.value_label = "stress of joints over strength";
-  const coloring by = {o.joints ? loads : NULL, joints ? fragments : NULL, of};
+  coloring by = {.scene = of};
+  if (o.joints) {
+    scree_joint_loads(world, loads);
+    by.loads = loads;
+    o.value_label = "stress of joints over strength";
+  } else if (scree_world_joint_count(world) > 0) {
+    (void)scree_world_fragments(world, fragments);
+    by.fragments = fragments;
+  }
   add_bodies(world, &by, &s);
   const crowd all = find_crowd(world);
   SCREE_TRY(add_walls(world, &o, &all, &s, error));
