@@ -33,9 +33,10 @@ for call in "choose fp-1.stl -u mm --json" "check fp-1.stl -u mm --json" "measur
   cmp native.json package.json.out || fail "npx scree $call: not the program's bytes"
 done
 npx scree choose fp-1.stl -u mm -o result >/dev/null 2>said
-[ ! -s said ] || fail "npx scree choose draws its progress into a file"
 mkdir native
-(cd native && "$program" choose ../fp-1.stl -u mm -q -o result >/dev/null)
+(cd native && "$program" choose ../fp-1.stl -u mm -o result >/dev/null 2>said)
+sed -i '/^scree, after /d' said native/said # progress depends on the machine
+cmp native/said said || fail "npx scree choose says something else beside its answer"
 [ "$(tail -c +85 result/fp-1.stl | cksum)" = "$(tail -c +85 native/result/fp-1.stl | cksum)" ] || fail "npx scree choose -o: another mesh"
 [ -s result/report.html ] || fail "npx scree choose -o: no report"
 

@@ -53,7 +53,7 @@ export class ScansTab {
     const drop = element('label', null, host, { class: 'drop' });
     element('span', 'Drop scans here, or pick them', drop, { class: 'call' });
     element('span', 'STL, PLY, OBJ, OFF, 3MF or glTF, closed or not. They are read, repaired and decimated in this page and never leave your computer.', drop, { class: 'soft before' });
-    this.picker = element('input', null, drop, { type: 'file', id: 'file', multiple: '', accept: '.stl,.ply,.obj,.off,.3mf,.glb,.gltf,model/stl' });
+    this.picker = element('input', null, drop, { type: 'file', 'aria-label': 'Scans', id: 'file', multiple: '', accept: '.stl,.ply,.obj,.off,.3mf,.glb,.gltf,model/stl' });
     this.picker.addEventListener('change', () => {
       this.add([...this.picker.files]);
       this.picker.value = '';
@@ -125,10 +125,9 @@ export class ScansTab {
       this.offerAdvice(scan);
       return;
     }
-    const [first, ...others] = scan.log;
-    scan.told.textContent = ` ${(first ?? '').replace(`${scan.file.name}: `, '')}`;
-    scan.text.textContent = others.join('\n');
-    scan.details.hidden = others.length === 0;
+    scan.told.textContent = ` ${(scan.log[0] ?? '').replace(`${scan.file.name}: `, '')}`;
+    scan.text.textContent = scan.log.join('\n');
+    scan.details.hidden = scan.log.length === 0;
   }
 
   // Where the program names the repair that would help, a button that does it.

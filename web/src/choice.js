@@ -95,7 +95,7 @@ export class ChoiceSection {
     const kept = objects.every((o) => !o.recommended || o.recommended.largest_over_tolerance <= 1.0001), [sentence, ...others] = told.answer;
     this.page = new Skeleton(this.head, {
       title: many ? `${objects.length} scans` : first.name, kind: 'choice of triangles', date: folder.provenance?.started, wide: !many,
-      told: { verdict: byErrors && !kept ? 'not reached' : 'answered', state: byErrors ? (kept ? 'Chosen: all tolerances are kept' : 'Not reached: no level keeps all tolerances') : 'Chosen by the paper\'s criterion', sentence, but: [...others, ...told.warnings].join(' ') },
+      told: { verdict: byErrors && !kept ? 'not reached' : 'answered', state: byErrors ? (kept ? 'Chosen: all tolerances are kept' : 'Not reached: no level keeps all tolerances') : 'Chosen by the paper\'s criterion', sentence, but: [...others, ...told.warnings].map(capital).join(' ') },
     });
     if (many) this.tellObjects();
     else this.tellNumbers(first);
@@ -199,7 +199,8 @@ export class ChoiceSection {
     this.single = element('p', 'The scan has one level only: there is no curve to draw.', this.shown, { hidden: '' });
     this.levelText = element('p', null, this.shown, { class: 'level-text' });
     this.missing = element('p', 'The levels of this object are not in this page, which would grow too large: it shows tables only. `scree report` of this folder alone may hold them.', host, { hidden: '' });
-    this.curves = element('div', null, host, { class: 'grid curves' });
+    this.errors = folded(host, 'Errors of each level');
+    this.curves = element('div', null, this.errors, { class: 'grid curves' });
     this.tables = element('div', null, host);
     const more = element('details', null, host);
     element('summary', 'By which rule', more);
@@ -261,7 +262,7 @@ export class ChoiceSection {
     this.shown.hidden = !levels;
     this.missing.hidden = Boolean(levels);
     this.single.hidden = several;
-    this.along.hidden = this.curves.hidden = !several;
+    this.along.hidden = this.errors.hidden = !several;
     this.tables.replaceChildren();
     if (levels) {
       this.slider.max = levels.trace.length - 1;
@@ -282,9 +283,9 @@ export class ChoiceSection {
   // Curves against triangles on logarithmic axes; a click goes to that level.
   tellAlong(levels, counts, lines, title, yl, chosen, note) {
     const flat = lines.flatMap(({ values }) => values).filter((v) => v > 0), most = Math.max(...flat);
-    const plot = new Plot(this.page.pointer, { r: 104, x: [counts[0], counts.at(-1)], xlog: true, y: [Math.max(Math.min(...flat), 1e-5 * most), most], ylog: true, xl: 'triangles', yl });
+    const plot = new Plot(this.page.pointer, { r: 16 + 7 * Math.max(...lines.map(({ name }) => name.length)), x: [counts[0], counts.at(-1)], xlog: true, y: [Math.max(Math.min(...flat), 1e-5 * most), most], ylog: true, xl: 'triangles', yl });
     plot.vline(chosen, 'c4', '6 5').text(chosen, plot.y[1], 'chosen', 'b t4', 'start', 5, 10);
-    lines.forEach(({ name, values, cls }) => plot.line(counts, values.map((v) => (v > 0 ? Math.max(v, plot.y[0]) : undefined)), cls).end(Math.max(plot.y[0], values.findLast((v) => v > 0) ?? NaN), name.slice(0, 17), `t${cls.charAt(1)}`));
+    lines.forEach(({ name, values, cls }) => plot.line(counts, values.map((v) => (v > 0 ? Math.max(v, plot.y[0]) : undefined)), cls).end(Math.max(plot.y[0], values.findLast((v) => v > 0) ?? NaN), name, `t${cls.charAt(1)}`));
     plot.follow('level', counts, lines, { unit: ' triangles', digits: 3, text: whole, pick: (i) => this.moveTo(this.rowOf(levels, counts[i])) }).put(this.curves, title, note);
   }
 
