@@ -131,6 +131,10 @@ SCREE_API void scree_scene_foretell(const scree_scene *scene, scree_scene_foreca
 enum { SCREE_REMARK = 1000 };
 SCREE_API bool scree_scene_remark(const scree_scene *scene, size_t index, char text[SCREE_REMARK]);
 
+/* Whether its first pile can have no angle, and why; seconds of a processor for one that can have. */
+SCREE_API bool scree_scene_no_angle(const scree_scene *scene, char why[SCREE_REMARK],
+                                    double *seconds);
+
 /* What cannot be read off it, and why, as a sentence: an index of mixing whose cells hold too few
  * bodies. To be called with 0, 1, 2, ... until it is false. */
 SCREE_API bool scree_scene_doubt(const scree_scene *scene, size_t index, char text[SCREE_REMARK]);

@@ -1,10 +1,10 @@
-/* The best settings of a design by expected improvement (Jones, Schonlau and Welch 1998) on
- * Gaussian processes with noise. What is improved upon is the best of the processes' means where
- * there are runs and the limits hold with the confidence asked, not of what single runs gave
- * (Picheny and others 2013 compare; this is their plug-in). Each limit multiplies by the
- * probability that it holds (Gardner and others 2014). Of a batch each is chosen as if those before
- * had answered what was expected of them; every fourth goes where least is known, for a process
- * that takes hollows for noise expects no improvement in them.
+/* The best settings of a design by the knowledge gradient (Frazier, Powell and Dayanik 2009) on
+ * Gaussian processes with noise: each run is made where what is known after it is expected to have
+ * the best mean, at any of several hundred places where the limits hold with the confidence asked.
+ * What single runs gave does not count, and hollows that the processes take for noise are worth a
+ * run. The gain is multiplied by the probability that the limits hold at the place itself (Gardner
+ * and others 2014). Of a batch each is chosen as if those before had answered what was expected of
+ * them.
  *
  * The last runs are made at the best settings so far, then at the best alone: which it is, that
  * the limits hold there, and what it gives are told by runs there. */
@@ -20,7 +20,7 @@
 
 enum { WIDE = 512, CLOSE = 192, CANDIDATES = WIDE + CLOSE, CLOSE_STREAM = 7 << 20 };
 static const double close_steps[] = {0.15, 0.05, 0.015}; /* of the half range */
-enum { BEST = 4, STEPS = sizeof close_steps / sizeof *close_steps, EXPLORE = 4 };
+enum { BEST = 4, STEPS = sizeof close_steps / sizeof *close_steps };
 /* Share of the budget for runs at the best settings, of which there are at least so many; how many
  * tell an interval.
  */
@@ -34,11 +34,45 @@ static double normal_below(double z) {
   return 0.5 * erfc(-z / root2);
 }
 
-/* Expected excess of a normal value over `best`, larger ones better. */
-static double improvement(double mean, double sd, double best) {
-  if (!(sd > 0)) return fmax(mean - best, 0);
-  double z = (mean - best) / sd;
-  return (mean - best) * normal_below(z) + sd * scree_exp(-0.5 * z * z) / root2pi;
+/* A line over a standard normal Z: what the mean at a place will be after a run somewhere. */
+typedef struct line {
+  double at_zero, slope;
+} line;
+
+static int by_slope(const void *a, const void *b) {
+  const line *p = a, *q = b;
+  if (p->slope != q->slope) return p->slope < q->slope ? -1 : 1;
+  return p->at_zero < q->at_zero ? -1 : p->at_zero > q->at_zero;
+}
+
+/* E max (a + b Z) - max a of `count` lines, which are sorted and of which those on the upper
+ * envelope stay (Frazier, Powell and Dayanik 2009, their algorithm 1). */
+static double knowledge_gain(line *lines, size_t count) {
+  double gain = 0;
+  size_t kept = 0;
+  SCREE_ASSERT(count > 0 && count <= CANDIDATES + 1);
+  double from[CANDIDATES + 1]; /* Z from which on a line is the highest */
+  qsort(lines, count, sizeof *lines, by_slope);
+  for (size_t i = 0; i < count; i++) {
+    double z = -INFINITY;
+    while (kept > 0) {
+      const line *top = &lines[kept - 1];
+      if (lines[i].slope > top->slope) {
+        z = (top->at_zero - lines[i].at_zero) / (lines[i].slope - top->slope);
+        if (z > from[kept - 1]) break;
+      }
+      kept--;
+      z = -INFINITY;
+    }
+    from[kept] = z;
+    lines[kept++] = lines[i];
+  }
+  for (size_t i = 1; i < kept; i++) {
+    double z = fabs(from[i]);
+    gain += (lines[i].slope - lines[i - 1].slope) *
+            (scree_exp(-0.5 * z * z) / root2pi - z * normal_below(-z));
+  }
+  return gain;
 }
 
 static const scree_response *response_of(const scree_calibration_model *m, size_t quantity) {
@@ -164,14 +198,26 @@ static scree_status make_field(const scree_calibration *c, const scree_calibrati
   return scree_gp_covariance(gp, f->x, CANDIDATES, f->covariance, error);
 }
 
-/* The candidate of the greatest expected improvement, or where least is known; then what is known
- * after runs there. */
-static size_t take_best(field *f, double best, bool explore, double *gain) {
+/* What a run at a candidate is expected to add to the best mean where the limits hold; without any
+ * such place, to `worst`. */
+static double gain_at(const field *f, size_t i, double confidence, double worst, line *lines) {
+  const double *row = f->covariance + i * CANDIDATES;
+  double sd = sqrt(row[i] + f->noise[i]);
+  size_t count = 0;
+  if (!(row[i] > 0)) return 0;
+  for (size_t j = 0; j < CANDIDATES; j++)
+    if (j == i || f->allowed[j] >= confidence) lines[count++] = (line){f->mean[j], row[j] / sd};
+  if (count == 1) lines[count++] = (line){worst, 0};
+  return f->allowed[i] * knowledge_gain(lines, count);
+}
+
+/* The candidate of the greatest gain; then what is known after runs there. */
+static size_t take_best(field *f, double confidence, double worst, double *gain) {
+  line lines[CANDIDATES + 1];
   size_t chosen = 0;
   *gain = -1;
   for (size_t i = 0; i < CANDIDATES; i++) {
-    double sd = sqrt(fmax(f->covariance[i * CANDIDATES + i], 0));
-    double expected = (explore ? sd : improvement(f->mean[i], sd, best)) * f->allowed[i];
+    double expected = gain_at(f, i, confidence, worst, lines);
     if (expected <= *gain) continue;
     *gain = expected;
     chosen = i;
@@ -233,11 +279,10 @@ scree_status scree_search_next(const scree_calibration *c, const scree_calibrati
     low = fmin(low, f.mean[i]);
     high = fmax(high, f.mean[i]);
   }
-  double best = r.allowed[0] >= c->plan.confidence ? r.value[0] : low;
-  for (size_t i = 0; made < count; i++) {
+  while (made < count) {
     double gain;
-    size_t chosen = take_best(&f, best, i % EXPLORE == EXPLORE - 1, &gain);
-    if (i == 0) first = gain;
+    size_t chosen = take_best(&f, c->plan.confidence, low, &gain);
+    if (made == 0) first = gain;
     pick_place(c, f.x + chosen * d, count, picks, &made);
   }
   if (first > settled_gain * (high - low)) return SCREE_OK;

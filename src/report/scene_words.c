@@ -5,22 +5,8 @@
 #include "report/program.h"
 
 #include <math.h>
-#include <string.h>
 
 static const double half = 1.645; /* of a normal value, 90 % */
-
-/* Why there can be no angle, however it looks: the cylinder was too narrow, the particles too few.
- */
-static bool is_too_small(const scree_scene *scene, char why[SCREE_REMARK]) {
-  static const char mark[] = " for an angle: ";
-  for (size_t i = 0; scree_scene_remark(scene, i, why); i++) {
-    const char *at = strstr(why, mark);
-    if (!at) continue;
-    memmove(why, at + sizeof mark - 1, strlen(at + sizeof mark - 1) + 1);
-    return true;
-  }
-  return false;
-}
 
 static void say_doubts(const scree_scene *scene, scree_words *w) {
   char doubt[SCREE_REMARK];
@@ -44,15 +30,13 @@ static void say_heap(const scree_scene *scene, const scree_pile *pile, scree_wor
   char why[SCREE_REMARK], cost[SCREE_NUMBER_SIZE];
   double low = fmin(r->sector_deg, fmin(r->cone_deg, r->silhouette_deg)),
          high = fmax(r->sector_deg, fmax(r->cone_deg, r->silhouette_deg));
-  if (is_too_small(scene, why)) {
+  double seconds;
+  if (scree_scene_no_angle(scene, why, &seconds)) {
     w->verdict = SCREE_NOT_ENOUGH;
     w->state = "Not enough for an angle";
-    char *cost_at = strstr(why, ", in about "); /* it depends on the machine: `next` has it */
-    if (cost_at) {
-      SCREE_ADD_TEXT(w->next, "so many, about %s of a processor.", cost_at + strlen(", in about "));
-      *cost_at = 0;
-    }
     SCREE_ADD_TEXT(w->answer, "No angle yet: %s.", why);
+    scree_seconds_text(seconds, cost); /* it depends on the machine: not in the answer */
+    SCREE_ADD_TEXT(w->next, "so many, about %s of a processor.", cost);
   } else if (!r->heap) {
     w->verdict = SCREE_NOT_ENOUGH;
     w->state = "No angle";

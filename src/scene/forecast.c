@@ -99,33 +99,46 @@ static double count_for(double radius) {
   return radius * radius * radius / 1.44;
 }
 
-/* A cylinder that is filled and lifted, whose heap is to be measured: narrow ones jam, few
+/* Of a cylinder that is filled and lifted, whose heap is to be measured: narrow ones jam, few
  * particles make no heap. What would do, and what it costs. */
+static bool falls_short(const scree_scene *scene, const scree_scene_inlet *inlet,
+                        char why[SCREE_REMARK], double *seconds) {
+  double size = inlet->layers.size, across = 2 * inlet->layers.radius / size,
+         wide = fmax(across, 10), count = (double)inlet->plan->count,
+         enough = fmax(fewest, ceil(count_for(0.5 * wide_share * wide)));
+  scree_scene_forecast f;
+  if (!inlet->plan->layers || !(across > 0) || !scree_scene_pile_name(scene, 0)) return false;
+  if (across >= narrow && count >= enough) return false;
+  scree_scene_foretell(scene, &f);
+  *seconds = (f.seconds + scree_scene_get_costs(scene).processor_seconds) * fmax(1, enough / count);
+  if (across < narrow)
+    snprintf(why, SCREE_REMARK,
+             "the cylinder is %.3g m wide, %.2g particles; ten are needed, or they may hang and "
+             "its wall shares in the angle: one of %.3g m with %.0f particles would do",
+             across * size, across, 10 * size, fmax(count, enough));
+  else
+    snprintf(why, SCREE_REMARK,
+             "%.0f particles in a cylinder %.3g of them wide make no heap that is wider; %.0f "
+             "would do",
+             count, across, enough);
+  return true;
+}
+
+bool scree_scene_no_angle(const scree_scene *scene, char why[SCREE_REMARK], double *seconds) {
+  for (size_t i = 0; i < scene->plan.inlets.count; i++)
+    if (falls_short(scene, &scene->inlets[i], why, seconds)) return true;
+  return false;
+}
+
 static void remark_cylinders(const scree_scene *scene, remarks *r) {
   for (size_t i = 0; i < scene->plan.inlets.count; i++) {
     const scree_scene_inlet *inlet = &scene->inlets[i];
-    double size = inlet->layers.size, across = 2 * inlet->layers.radius / size,
-           wide = fmax(across, 10), count = (double)inlet->plan->count,
-           enough = fmax(fewest, ceil(count_for(0.5 * wide_share * wide)));
-    char cost[SCREE_NUMBER_SIZE];
-    scree_scene_forecast f;
-    if (!inlet->plan->layers || !(across > 0) || !scree_scene_pile_name(scene, 0)) continue;
-    if ((across >= narrow && count >= enough) || !is_asked(r)) continue;
-    scree_scene_foretell(scene, &f);
-    double seconds = f.seconds + scree_scene_get_costs(scene).processor_seconds;
-    scree_seconds_text(seconds * fmax(1, enough / count), cost);
-    if (across < narrow)
-      snprintf(r->text, SCREE_REMARK,
-               "%s: too narrow for an angle: the cylinder is %.3g m wide, %.2g particles; ten are "
-               "needed, or they may hang and its wall shares in the angle: one of %.3g m with %.0f "
-               "particles would do, in about %s",
-               inlet->plan->place.path, across * size, across, 10 * size, fmax(count, enough),
-               cost);
-    else
-      snprintf(r->text, SCREE_REMARK,
-               "%s: too few for an angle: %.0f particles in a cylinder %.3g of them wide make no "
-               "heap that is wider; %.0f would do, in about %s",
-               inlet->plan->place.path, count, across, enough, cost);
+    char why[SCREE_REMARK], cost[SCREE_NUMBER_SIZE];
+    double seconds;
+    if (!falls_short(scene, inlet, why, &seconds) || !is_asked(r)) continue;
+    scree_seconds_text(seconds, cost);
+    snprintf(r->text, SCREE_REMARK, "%s: too small for an angle: %.700s, in about %s",
+             inlet->plan->place.path, why, cost);
   }
 }
 

@@ -25,7 +25,7 @@ small="-c small.yaml --no-picture -j 1"
 run repose $small bad.csv
 run repose $small --rp 1 sample:box --resolution 0.5mm
 "$SCREE" repose $small box.off pair.csv -o whole --frames 0.1 -v >text 2>told || echo failed
-grep -c "too narrow for an angle" told
+grep -c "too small for an angle" told
 # what is left of motion differs between compilers, and with it whether that is still
 rest() { sed 's/ still.*//; s/ moving.*//'; }
 grep -c "angle of repose\|the phases are over after" text
