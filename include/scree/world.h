@@ -18,6 +18,7 @@ typedef enum scree_law {
   SCREE_LAW_HYSTERETIC, /* Walton and Braun 1986: loading K, unloading K/e2, no dashpot */
   SCREE_LAW_HERTZ, /* Hertz and Mindlin, damped as by Tsuji and others 1992, where a sphere or a
                       clump touches anything; two meshes touch by the linear law */
+  SCREE_LAW_COUNT
 } scree_law;
 
 /* What mu_r b F limits of rolling resistance: the whole couple; or its spring alone, to which a

@@ -158,7 +158,7 @@ static double damping_at(const scree_world *world, const scree_pair *pair,
          share = scree_min(1, 1 / (inverse * scree_reduced_mass(&pair->law))),
          damping = pair->law.damping * sqrt(share);
   damping *= scree_hardened_damping(pair);
-  return pair->law.hertz > 0 ? damping * sqrt(sqrt(pair->overlap)) : damping;
+  return damping * scree_dashpot_grown(&pair->law, pair->overlap);
 }
 
 static double along_motion(const scree_wrench *wrench, vec3 velocity, vec3 spin) {

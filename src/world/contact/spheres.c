@@ -222,8 +222,7 @@ static void apply_law(const scree_world *world, scree_pair *pair, touch *t,
   const double largest = pair->largest, spring = press(world, pair, t, scratch),
                pull = pair->law.pull,
                damping = t->time.damped * scree_hardened_damping(pair) *
-                         (pair->law.hertz > 0 ? pair->law.damping * sqrt(sqrt(pair->overlap))
-                                              : pair->law.damping),
+                         (pair->law.damping * scree_dashpot_grown(&pair->law, pair->overlap)),
                pressing = spring + pull,
                pressed = scree_max(0, pressing - damping * vec3_dot(t->seen, n)),
                dashpot = pressed - pressing, half = 0.5 * world->time_step;

@@ -63,7 +63,7 @@ static scree_status check_options(const scree_world_options *o, scree_error *err
   };
   for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
     SCREE_TRY(check_range(ranges[i].name, ranges[i].value, ranges[i].low, ranges[i].high, error));
-  if (!(o->law <= SCREE_LAW_HERTZ))
+  if (!(o->law < SCREE_LAW_COUNT))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: law number %d is none", (int)o->law);
   if (!(o->rolling <= SCREE_ROLLING_EPSD))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: rolling number %d is none",
