@@ -12,7 +12,7 @@ static const double random_packing = 0.25; /* share of a region's volume that ra
  * still fly cost a fraction of those in contact. */
 static const double body_seconds = 5e-7, mesh_seconds = 1.5e-6, trusted_share = 0.06;
 /* Share of its time that a phase lasts which ends early where all is still. */
-static const double early_share = 0.6;
+static const double early_share = 0.4;
 static const double body_bytes = 104, triangle_bytes = 60; /* of a frame */
 enum { MOST_DIFFERENT = 300 }; /* times as large as all else, or as small: another unit */
 
