@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Heaps by `scree repose` with nothing but a file: bodies of several sizes, what was foretold and what came.
+"""Heaps by `scree repose` with nothing but a file: bodies of several sizes, the time foretold and the time it took.
 
 usage: heaps.py DIR DATA      DATA: a folder with stone_E22.ply and weee_cam1.ply
-A stone, a device and a cube at 1, 6.5, 65 and 400 mm across, one thread each. A line each: time foretold and used, the angle
+A stone, a device and a cube at 1, 6.5, 65 and 400 mm across, one thread each. A line each: time foretold and taken, the angle
 by volume with its error, the angle of the sectors, and how it ended. Heaps that were made are read again."""
 import json
 import os
@@ -62,7 +62,7 @@ def main(folder, data):
                 heap(name, across, data, place)
             told = json.loads((place / "out" / "result.json").read_text())
             made = json.loads((place / "out" / "provenance.json").read_text())
-            print(name, f"{across} mm", f"foretold {seconds((place / 'said.txt').read_text()):.0f} s", f"used {made['processor_s']:.0f} s", told["sentence"], told["state"], sep="; ", flush=True)
+            print(name, f"{across} mm", f"foretold {seconds((place / 'said.txt').read_text()):.0f} s", f"took {made['elapsed_s']:.0f} s, {made['processor_s']:.0f} s of a processor", told["sentence"], told["state"], sep="; ", flush=True)
 
 
 if len(sys.argv) != 3:

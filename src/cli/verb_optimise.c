@@ -10,7 +10,7 @@ const cli_verb cli_verb_optimise = {
         "Runs scenes at settings of any of their fields and looks for those that minimise or "
         "maximise an answer of their sensors, under limits on others: angles, speeds and places of "
         "geometry, or meshes from a list. Answers scatter from seed to seed; the next runs are "
-        "made where the improvement expected of them is greatest. It says which settings are best, "
+        "made where the best is expected to gain most. It says which settings are best, "
         "how sure that is, and which others are near.\n"
         "\n"
         "File, runs and folder are as of scree calibrate; docs/reference/calibrate.md describes "
