@@ -283,7 +283,7 @@ export class ChoiceSection {
   // Curves against triangles on logarithmic axes; a click goes to that level.
   tellAlong(levels, counts, lines, title, yl, chosen, note) {
     const flat = lines.flatMap(({ values }) => values).filter((v) => v > 0), most = Math.max(...flat);
-    const plot = new Plot(this.page.pointer, { r: 16 + 7 * Math.max(...lines.map(({ name }) => name.length)), x: [counts[0], counts.at(-1)], xlog: true, y: [Math.max(Math.min(...flat), 1e-5 * most), most], ylog: true, xl: 'triangles', yl });
+    const plot = new Plot(this.page.pointer, { l: 66, r: 16 + 7 * Math.max(...lines.map(({ name }) => name.length)), x: [counts[0], counts.at(-1)], xlog: true, y: [Math.max(Math.min(...flat), 1e-5 * most), most], ylog: true, xl: 'triangles', yl });
     plot.vline(chosen, 'c4', '6 5').text(chosen, plot.y[1], 'chosen', 'b t4', 'start', 5, 10);
     lines.forEach(({ name, values, cls }) => plot.line(counts, values.map((v) => (v > 0 ? Math.max(v, plot.y[0]) : undefined)), cls).end(Math.max(plot.y[0], values.findLast((v) => v > 0) ?? NaN), name, `t${cls.charAt(1)}`));
     plot.follow('level', counts, lines, { unit: ' triangles', digits: 3, text: whole, pick: (i) => this.moveTo(this.rowOf(levels, counts[i])) }).put(this.curves, title, note);
