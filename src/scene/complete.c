@@ -138,13 +138,15 @@ static void measure_speed(work *w, double now) {
   w->speed_steps = steps;
 }
 
-/* On the clock, by what the steps so far have cost; NAN: these are too few to say. */
+/* On the clock, by what the steps so far have cost; NAN: these are too few to say. What a full
+ * machine makes it wait for in its first seconds says little of the rest. */
 static double seconds_left(const work *w) {
+  const double doubted = 5; /* s */
   scree_scene_costs c = scree_scene_get_costs(w->scene);
   scree_scene_forecast f;
   if (isnan(w->speed) || fmin(c.wall_seconds, c.processor_seconds) < 0.1) return NAN;
   scree_scene_foretell(w->scene, &f);
-  return f.seconds * c.wall_seconds / c.processor_seconds;
+  return f.seconds * (c.wall_seconds + doubted) / (c.processor_seconds + doubted);
 }
 
 static bool watch(work *w, bool always) {
