@@ -3,25 +3,18 @@
 
 usage: heaps.py DIR DATA      DATA: a folder with stone_E22.ply and weee_cam1.ply
 A stone, a device and a cube at 1, 6.5, 65 and 400 mm across, one thread each. A line each: time foretold and taken, the angle
-by volume with its error, the angle of the sectors, and how it ended. Heaps that were made are read again."""
+by volume with its error, and how it ended. Heaps that were made are read again."""
 import json
-import os
 import pathlib
 import re
-import struct
 import subprocess
 import sys
 
-HERE = pathlib.Path(__file__).resolve().parent
-PROGRAM = os.environ.get("SCREE", str(HERE.parent / "build" / "release" / "bin" / "scree"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "evidence"))
+from common import PROGRAM, read_stl, write_stl  # noqa: E402
+
 CORNERS = [tuple((k >> axis & 1) - 0.5 for axis in range(3)) for k in range(8)]
 FACES = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
-
-
-def read_stl(path):
-    data = path.read_bytes()
-    values = [struct.unpack_from("<9f", data, 96 + 50 * i) for i in range(struct.unpack_from("<I", data, 80)[0])]
-    return [[v[3 * k:3 * k + 3] for k in range(3)] for v in values]
 
 
 def triangles(name, data, folder):
@@ -32,21 +25,19 @@ def triangles(name, data, folder):
     return read_stl(folder / "level" / f"{name}.stl")
 
 
-def write_stl(path, faces, across):
+def scaled(faces, across):
     flat = [p for face in faces for p in face]
     size = max(max(p[k] for p in flat) - min(p[k] for p in flat) for k in range(3))
-    body = b"".join(struct.pack("<12fH", 0, 0, 0, *(v * across / size for p in face for v in p), 0) for face in faces)
-    path.write_bytes(b"\0" * 80 + struct.pack("<I", len(faces)) + body)
+    return [[[v * across / size for v in p] for p in face] for face in faces]
 
 
 def heap(name, across, data, folder):
     folder.mkdir(parents=True, exist_ok=True)
     scan = folder / f"{name}.stl"
-    write_stl(scan, triangles(name, data, folder.parent / name), across)
+    write_stl(scan, scaled(triangles(name, data, folder.parent / name), across))
     done = subprocess.run([PROGRAM, "repose", scan, "-u", "mm", "-o", folder / "out", "-f", "-j", "1", "--no-picture"],
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     (folder / "said.txt").write_text(done.stdout)
-    return done.returncode
 
 
 def seconds(text):

@@ -11,6 +11,8 @@ results/layouts.csv.
 import json, math, os, platform, resource, struct, subprocess, sys, tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.join(ROOT, "bench", "evidence"))
+from common import read_stl
 SCREE = sys.argv[1] if len(sys.argv) > 1 else os.path.join(ROOT, "build/release/bin/scree")
 AXIS = (0.7784989, 0.5449492, 0.3113996)  # of slanted things
 ACROSS = (-0.5734623, 0.8192319, 0.0)
@@ -68,12 +70,6 @@ def cones(count):
             p, q = (point(h, 100 * math.cos(w), 100 * math.sin(w)) for w in (a, b))
             facets += [(p, q, point(h + 10, 0, 0)), (q, p, point(h - 10, 0, 0))]
     return facets
-
-
-def read_stl(path):
-    data = open(path, "rb").read()
-    values = struct.iter_unpack("<12fH", data[84:])
-    return [(v[3:6], v[6:9], v[9:12]) for v in values]
 
 
 def scan(folder, count, spiked):

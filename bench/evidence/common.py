@@ -5,6 +5,7 @@ import os
 import pathlib
 import random
 import shutil
+import struct
 import subprocess
 import sys
 import time
@@ -64,6 +65,11 @@ def liggghts(template, folder, words, code="LIGGGHTS"):
     (folder / template.name).write_text(text)
     subprocess.run([needs(code), "-in", template.name, "-log", "none"], cwd=folder, check=True,
                    stdout=subprocess.DEVNULL)
+
+
+def read_stl(path):
+    """Corners of the facets of a binary file."""
+    return [(v[3:6], v[6:9], v[9:12]) for v in struct.iter_unpack("<12fH", pathlib.Path(path).read_bytes()[84:])]
 
 
 def write_stl(path, triangles):

@@ -131,8 +131,7 @@ SCREE_API void scree_scene_foretell(const scree_scene *scene, scree_scene_foreca
 enum { SCREE_REMARK = 1000 };
 SCREE_API bool scree_scene_remark(const scree_scene *scene, size_t index, char text[SCREE_REMARK]);
 
-/* Whether its first pile can have no angle, and why; seconds of a processor for one that can have.
- */
+/* Whether its heap can have no angle, and why; s of a processor that one with an angle costs. */
 SCREE_API bool scree_scene_no_angle(const scree_scene *scene, char why[SCREE_REMARK],
                                     double *seconds);
 

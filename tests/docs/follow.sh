@@ -1,6 +1,6 @@
 #!/bin/sh
-# Follows a page of docs/contributing: its patch goes into a copy of the sources, touches four files and no more (a contact
-# law eight, with the world's own), is documented, and its test passes. Objects of the build stand in for all that the patch does not change.
+# Follows a page of docs/contributing: its patch goes into a copy of the sources, touches four files (a contact law eight,
+# with the world's own), is documented, and its test passes. Objects of the build stand in for what the patch does not change.
 # usage: follow.sh ROOT BUILD COMPILER PROGRAM PATCH LIBRARY...
 set -eu
 root=$1 build=$2 compiler=$3 program=$4 patch=$5
@@ -16,9 +16,9 @@ mkdir -p "$copy/docs/tutorials" && cp "$root/docs/tutorials/own-machine.md" "$co
 cd "$copy"
 patch -s -p1 <"$patch"
 files=$(grep -c '^+++ ' "$patch")
-most=4 folders=src/scene
-if grep -q '^+++ b/src/world' "$patch"; then most=8 folders="src/scene src/world"; fi
-[ "$files" -eq $most ] || { echo "$(basename "$patch") touches $files files"; exit 1; }
+wanted=4 folders=src/scene
+if grep -q '^+++ b/src/world' "$patch"; then wanted=8 folders="src/scene src/world"; fi
+[ "$files" -eq $wanted ] || { echo "$(basename "$patch") touches $files files"; exit 1; }
 python3 "$root/tests/docs/scene_fields.py" "$copy" "$program"
 new=$(sed -n 's/^+++ b\/\(tests\/.*\.c\)$/\1/p' "$patch")
 flags="-std=c17 -D_POSIX_C_SOURCE=200809L -O0 -w -Iinclude -Isrc -Itests -DSCREE_SCAN_DATA=\"\""

@@ -17,12 +17,12 @@ static inline scree_spring_state scree_soft_spring_at(const scree_pair_law *law,
   return (scree_spring_state){force, 0.4 * force * m};
 }
 
-/* C over the law's damping, at an overlap; and its mean over the last share `acts` of a step that
- * reached m, with a touch for the share `way` of it. */
+/* C over the law's damping, at an overlap. */
 static inline double scree_dashpot_grown(const scree_pair_law *law, double m) {
   return law->hertz > 0 ? sqrt(sqrt(m)) : 1;
 }
-static inline double scree_dashpot_mean(const scree_pair_law *law, double acts, double way) {
+/* Its integral over `acts` steps from a touch's begin, over what it is after `way` steps. */
+static inline double scree_dashpot_acts(const scree_pair_law *law, double acts, double way) {
   return law->hertz > 0 ? 0.8 * acts * sqrt(sqrt(acts / way)) : acts;
 }
 
@@ -218,7 +218,7 @@ static inline scree_touch_time scree_touch_time_of(const scree_pair *pair,
   const bool begins = m->first && m->rate_now > 0 && m->rate > 0 && part < 1.01;
   if (!begins && !scree_is_edge_of_touch(pair, m)) return t;
   const double way = scree_min(part, 1), acts = 0.5 + way;
-  t.damped = scree_dashpot_mean(&pair->law, acts, way);
+  t.damped = scree_dashpot_acts(&pair->law, acts, way);
   /* Mindlin's K_t grows with the root of the overlap */
   if (m->first) t.slid = way * m->drift * (pair->law.hertz > 0 ? 2.0 / 3 : 1);
   return t;
