@@ -1,5 +1,5 @@
-/* Many spheres in several blocks: the same bits whatever the threads, after saving and loading, and
- * where forces are gathered as a device does; forces against those of all pairs. */
+/* Many spheres in several blocks: the same bits whatever the threads, after saving and loading, in
+ * lanes, and where forces are gathered as a device does; forces against those of all pairs. */
 #include "world/contact/spheres.h"
 #include "base/alloc.h"
 #include "base/rng.h"
@@ -12,20 +12,16 @@
 enum { SIDE = 21, COUNT = SIDE * SIDE * SIDE };
 static const double radius = 1e-3;
 
-/* Loosely packed, in no order, of two sizes, in motion. */
-static scree_world *make_world(void) {
+/* Loosely packed, in no order, of two radii, as fast as `speed`, m/s. */
+static scree_world *fill_world(const scree_world_options *o, const scree_material *material,
+                               double speed, double second) {
   scree_error error;
   scree_world *world;
-  scree_world_options o = scree_default_world_options();
-  o.gravity[2] = 0;
-  CHECK_OK(scree_world_create(&o, &world, &error), error);
-  scree_material material = scree_default_material();
-  material.young = 1e6;
-  material.rolling_friction = 0.1;
-  CHECK_OK(scree_world_add_material(world, &material, NULL, &error), error);
+  CHECK_OK(scree_world_create(o, &world, &error), error);
+  CHECK_OK(scree_world_add_material(world, material, NULL, &error), error);
   scree_particle *spheres[2];
   for (int k = 0; k < 2; k++)
-    CHECK_OK(scree_particle_sphere(radius * (1 - 0.2 * k), &spheres[k], &error), error);
+    CHECK_OK(scree_particle_sphere(k ? second : radius, &spheres[k], &error), error);
   scree_rng rng = {.seed = 3};
   for (int n = 0; n < COUNT; n++) {
     const int i =
@@ -34,13 +30,27 @@ static scree_world *make_world(void) {
     scree_body body = scree_default_body();
     for (int k = 0; k < 3; k++) {
       body.position[k] = 1.98 * radius * at[k] + 1e-5 * scree_rng_uniform(&rng);
-      body.velocity[k] = 2 * (scree_rng_uniform(&rng) - 0.5);
-      body.angular_velocity[k] = 100 * (scree_rng_uniform(&rng) - 0.5);
+      body.velocity[k] = speed * 2 * (scree_rng_uniform(&rng) - 0.5);
+      body.angular_velocity[k] = speed * 100 * (scree_rng_uniform(&rng) - 0.5);
     }
     CHECK_OK(scree_world_add_body(world, spheres[n % 5 == 0], 0, &body, NULL, &error), error);
   }
   for (int k = 0; k < 2; k++) scree_particle_free(spheres[k]);
   return world;
+}
+
+static scree_material soft(void) {
+  scree_material material = scree_default_material();
+  material.young = 1e6;
+  material.rolling_friction = 0.1;
+  return material;
+}
+
+static scree_world *make_world(void) {
+  scree_world_options o = scree_default_world_options();
+  o.gravity[2] = 0;
+  const scree_material material = soft();
+  return fill_world(&o, &material, 1, 0.8 * radius);
 }
 
 static void step(scree_world *world, size_t count) {
@@ -150,10 +160,88 @@ static void all_listed(void **state) {
   scree_world_free(world);
 }
 
+/* Nearly at rest in a closed box, which presses them together. */
+static scree_world *settled_world(scree_law law, double rolling, double surface_energy) {
+  scree_error error;
+  scree_world_options o = scree_default_world_options();
+  scree_material material = soft();
+  o.law = law;
+  material.friction = 0.1; /* so that some slip */
+  material.rolling_friction = rolling;
+  material.surface_energy = surface_energy;
+  scree_world *world = fill_world(&o, &material, 0.3, 0.975 * radius);
+  for (int side = 0; side < 6; side++) {
+    scree_wall wall = {.kind = SCREE_WALL_PLANE};
+    const double middle = 0.5 * 1.98 * radius * (SIDE - 1), sign = side % 2 ? 1 : -1;
+    wall.axis[side / 2] = -sign;
+    wall.position[side / 2] = middle + sign * (middle + 0.98 * radius);
+    CHECK_OK(scree_world_add_wall(world, &wall, NULL, &error), error);
+  }
+  step(world, 400);
+  CHECK_OK(scree_broad_update(world, &error), error);
+  for (size_t i = 0; i < world->spheres.list.count; i++) scree_spheres_load(world, i);
+  return world;
+}
+
+/* One step of all pairs by fours, and each of the four alone. */
+static void same_in_lanes(scree_world *world, const char *name) {
+  scree_spheres *s = &world->spheres;
+  scree_sphere_lanes four = {.law = {scree_none, scree_none, scree_none, scree_none}};
+  size_t taken = 0, left = 0;
+  for (size_t k = 0; k + 3 < s->list.pairs.count; k += 4) {
+    const uint32_t pairs[] = {(uint32_t)k, (uint32_t)k + 1, (uint32_t)k + 2, (uint32_t)k + 3};
+    scree_sphere_contact before[4], after[4], *at[4];
+    for (int l = 0; l < 4; l++) {
+      const uint32_t contact = s->list.pairs.items[k + (size_t)l].contact;
+      at[l] =
+          contact == scree_none ? NULL : &s->list.contacts.items[contact & ~scree_sphere_touches];
+      if (at[l]) before[l] = *at[l];
+    }
+    const unsigned served = scree_sphere_lanes_step(world, pairs, &four);
+    for (int l = 0; l < 4; l++) {
+      left += !(served >> l & 1) && scree_spheres_touch(&s->list.pairs.items[k + (size_t)l]);
+      if (!(served >> l & 1)) {
+        if (at[l]) assert_memory_equal(at[l], &before[l], sizeof before[l]);
+        continue;
+      }
+      taken++;
+      after[l] = *at[l];
+      *at[l] = before[l];
+      scree_sphere_result alone;
+      assert_true(scree_sphere_pair_step(world, k + (size_t)l, &alone));
+      assert_memory_equal(at[l], &after[l], sizeof after[l]);
+      assert_memory_equal(&alone.on_a, &four.on_a[l], sizeof alone.on_a);
+      assert_memory_equal(&alone.on_b, &four.on_b[l], sizeof alone.on_b);
+      assert_true(alone.pair.overlap == four.overlap[l]);
+      assert_true(!alone.work.too_fast && !alone.work.pressed && alone.work.missing == 0);
+    }
+  }
+  print_message("%s: %zu in lanes, %zu left\n", name, taken, left);
+  assert_true(taken > COUNT && left > 0);
+}
+
+static void in_lanes(void **state) {
+  (void)state;
+  static const struct {
+    const char *name;
+    scree_law law;
+    double rolling, surface_energy;
+  } cases[] = {{"linear", SCREE_LAW_LINEAR, 0.1, 0},
+               {"without rolling", SCREE_LAW_LINEAR, 0, 0},
+               {"cohesive", SCREE_LAW_LINEAR, 0.1, 0.01},
+               {"Hertz", SCREE_LAW_HERTZ, 0.1, 0}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    scree_world *world = settled_world(cases[i].law, cases[i].rolling, cases[i].surface_energy);
+    if (scree_sphere_lanes_serve(world)) same_in_lanes(world, cases[i].name);
+    scree_world_free(world);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(same_bits),
       cmocka_unit_test(gathered),
+      cmocka_unit_test(in_lanes),
       cmocka_unit_test(all_listed),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

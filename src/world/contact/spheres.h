@@ -23,6 +23,24 @@ typedef struct scree_sphere_result {
 } scree_sphere_result;
 /* The step of pair k; false where they are apart, which has no result. */
 bool scree_sphere_pair_step(scree_world *world, size_t k, scree_sphere_result *result);
+
+/* lanes.c: four pairs in hand, which share what is read of their laws with those before. */
+enum { SCREE_SPHERE_LANES = 4 };
+typedef struct scree_sphere_lanes {
+  uint32_t law[SCREE_SPHERE_LANES]; /* whose members follow; scree_none: of no pair yet */
+  double stiffness[SCREE_SPHERE_LANES], damping[SCREE_SPHERE_LANES], slides[SCREE_SPHERE_LANES],
+      slides_damping[SCREE_SPHERE_LANES], friction[SCREE_SPHERE_LANES], limit[SCREE_SPHERE_LANES],
+      thin[SCREE_SPHERE_LANES], contact_time[SCREE_SPHERE_LANES], pull[SCREE_SPHERE_LANES],
+      rolling[SCREE_SPHERE_LANES], rolling_damping[SCREE_SPHERE_LANES];
+  double overlap[SCREE_SPHERE_LANES]; /* m, after the step */
+  scree_sphere_load on_a[SCREE_SPHERE_LANES], on_b[SCREE_SPHERE_LANES];
+} scree_sphere_lanes;
+/* Whether this processor and the world's law have such steps. */
+bool scree_sphere_lanes_serve(const scree_world *world);
+/* The step of the four pairs k, as of each alone; a bit for each for which it was taken. Of the
+ * others, which do not last or lie deep, nothing is changed. */
+unsigned scree_sphere_lanes_step(scree_world *world, const uint32_t k[SCREE_SPHERE_LANES],
+                                 scree_sphere_lanes *four);
 /* For a device: what acts on the sphere at this place, in the order in which step/spheres.c adds
  * it; on both of each pair. */
 void scree_spheres_gather(scree_world *world, size_t place, const scree_sphere_load (*loads)[2]);

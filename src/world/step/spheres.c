@@ -46,27 +46,56 @@ SCREE_PREFETCHES void fetch_ahead(const scree_spheres *s, uint32_t k) {
   scree_prefetch(&s->load[pair->b], sizeof *s->load);
 }
 
+static void add_loads(scree_spheres *s, scree_sphere_block *own, size_t end, uint32_t k,
+                      const scree_sphere_load *on_a, const scree_sphere_load *on_b) {
+  const scree_sphere_pair *pair = &s->list.pairs.items[k];
+  add(&s->load[pair->a], on_a);
+  if (pair->b < end)
+    add(&s->load[pair->b], on_b);
+  else
+    s->shares.items[own->share_begin + own->shares++] = (scree_sphere_share){*on_b, pair->b};
+}
+
+static void step_alone(scree_world *world, scree_block block, uint32_t k) {
+  scree_spheres *s = &world->spheres;
+  scree_sphere_result r;
+  if (!scree_sphere_pair_step(world, k, &r)) return;
+  scree_note_pair(world, &s->blocks.tallies[block.index], &r.pair, &r.work);
+  add_loads(s, &s->blocks.items[block.index], block.end, k, &r.on_a, &r.on_b);
+}
+
+/* Four pairs, in their order. */
+static void step_four(scree_world *world, scree_block block, const uint32_t *k,
+                      scree_sphere_lanes *four) {
+  scree_spheres *s = &world->spheres;
+  const unsigned taken = scree_sphere_lanes_step(world, k, four);
+  for (int l = 0; l < SCREE_SPHERE_LANES; l++) {
+    if (!(taken >> l & 1)) {
+      step_alone(world, block, k[l]);
+      continue;
+    }
+    scree_note_overlap(&s->blocks.tallies[block.index], four->overlap[l]);
+    add_loads(s, &s->blocks.items[block.index], block.end, k[l], &four->on_a[l], &four->on_b[l]);
+  }
+}
+
 static void step_block(void *context, scree_block block) {
   scree_world *world = context;
   scree_spheres *s = &world->spheres;
-  scree_sphere_block *own = &s->blocks.items[block.index];
-  scree_tally *tally = &s->blocks.tallies[block.index];
   const size_t begin = s->list.begin[block.begin];
   uint32_t *found = s->found.items + begin;
   const size_t count = find_due(world, begin, s->list.begin[block.end], found);
-  *tally = (scree_tally){.trouble = scree_no_trouble};
-  own->shares = 0;
-  for (size_t i = 0; i < count; i++) {
-    const scree_sphere_pair *pair = &s->list.pairs.items[found[i]];
-    scree_sphere_result r;
-    if (i + AHEAD < count) fetch_ahead(s, found[i + AHEAD]);
-    if (!scree_sphere_pair_step(world, found[i], &r)) continue;
-    scree_note_pair(world, tally, &r.pair, &r.work);
-    add(&s->load[pair->a], &r.on_a);
-    if (pair->b < block.end)
-      add(&s->load[pair->b], &r.on_b);
+  s->blocks.tallies[block.index] = (scree_tally){.trouble = scree_no_trouble};
+  s->blocks.items[block.index].shares = 0;
+  scree_sphere_lanes four = {.law = {scree_none, scree_none, scree_none, scree_none}};
+  const size_t width = scree_sphere_lanes_serve(world) ? SCREE_SPHERE_LANES : 1;
+  for (size_t i = 0; i < count; i += width) {
+    const size_t ahead = i + AHEAD + width;
+    for (size_t k = i + AHEAD; k < ahead && k < count; k++) fetch_ahead(s, found[k]);
+    if (width > 1 && i + width <= count)
+      step_four(world, block, found + i, &four);
     else
-      s->shares.items[own->share_begin + own->shares++] = (scree_sphere_share){r.on_b, pair->b};
+      for (size_t k = i; k < i + width && k < count; k++) step_alone(world, block, found[k]);
   }
 }
 

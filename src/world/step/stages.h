@@ -20,6 +20,8 @@ void scree_balance_add(scree_balance *balance, const scree_pair_work *work);
  * the start does is left to the caller. */
 void scree_note_pair(scree_world *world, scree_tally *tally, const scree_pair *pair,
                      const scree_pair_work *work);
+/* Of a pair that touches, and of which there is nothing else to note. */
+void scree_note_overlap(scree_tally *tally, double overlap);
 /* spheres.c: all contacts of spheres. */
 void scree_step_spheres(scree_world *world);
 /* 0 where none overlaps. */

@@ -114,6 +114,10 @@ static void note_hardened(scree_world *world, const scree_pair *pair, const scre
   scree_atomic_raise(&h->missing, bits_of(work->missing));
 }
 
+void scree_note_overlap(scree_tally *tally, double overlap) {
+  scree_atomic_raise(&tally->largest_overlap, bits_of(overlap));
+}
+
 void scree_note_pair(scree_world *world, scree_tally *tally, const scree_pair *pair,
                      const scree_pair_work *work) {
   uint32_t k = pair->neighbours;
@@ -126,7 +130,7 @@ void scree_note_pair(scree_world *world, scree_tally *tally, const scree_pair *p
     scree_atomic_add(&tally->hardened, 1);
     note_hardened(world, pair, work);
   }
-  if (pair->touching) scree_atomic_raise(&tally->largest_overlap, bits_of(pair->overlap));
+  if (pair->touching) scree_note_overlap(tally, pair->overlap);
 }
 
 double scree_largest_overlap(const scree_tally *tally) {
