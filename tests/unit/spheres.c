@@ -177,15 +177,17 @@ static scree_world *settled_world(scree_law law, double rolling, double surface_
     wall.position[side / 2] = middle + sign * (middle + 0.98 * radius);
     CHECK_OK(scree_world_add_wall(world, &wall, NULL, &error), error);
   }
-  step(world, 400);
-  CHECK_OK(scree_broad_update(world, &error), error);
-  for (size_t i = 0; i < world->spheres.list.count; i++) scree_spheres_load(world, i);
   return world;
 }
 
-/* One step of all pairs by fours, and each of the four alone. */
-static void same_in_lanes(scree_world *world, const char *name) {
+/* After so many steps, one of all pairs by fours, and of each of the four alone; how many were left
+ * of those that touch. */
+static size_t same_in_lanes(scree_world *world, size_t steps, const char *name) {
+  scree_error error;
   scree_spheres *s = &world->spheres;
+  step(world, steps);
+  CHECK_OK(scree_broad_update(world, &error), error);
+  for (size_t i = 0; i < s->list.count; i++) scree_spheres_load(world, i);
   scree_sphere_lanes four = {.law = {scree_none, scree_none, scree_none, scree_none}};
   size_t taken = 0, left = 0;
   for (size_t k = 0; k + 3 < s->list.pairs.count; k += 4) {
@@ -217,7 +219,8 @@ static void same_in_lanes(scree_world *world, const char *name) {
     }
   }
   print_message("%s: %zu in lanes, %zu left\n", name, taken, left);
-  assert_true(taken > COUNT && left > 0);
+  assert_true(taken > COUNT / 2);
+  return left;
 }
 
 static void in_lanes(void **state) {
@@ -232,9 +235,15 @@ static void in_lanes(void **state) {
                {"Hertz", SCREE_LAW_HERTZ, 0.1, 0}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     scree_world *world = settled_world(cases[i].law, cases[i].rolling, cases[i].surface_energy);
-    if (scree_sphere_lanes_serve(world)) same_in_lanes(world, cases[i].name);
+    if (scree_sphere_lanes_serve(world)) {
+      same_in_lanes(world, 20, cases[i].name);
+      same_in_lanes(world, 400, cases[i].name);
+    }
     scree_world_free(world);
   }
+  scree_world *world = make_world();
+  if (scree_sphere_lanes_serve(world)) assert_true(same_in_lanes(world, 40, "in motion") > 100);
+  scree_world_free(world);
 }
 
 int main(void) {

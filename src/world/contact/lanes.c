@@ -1,5 +1,6 @@
-/* Four contacts of spheres at once, of those that last: what spheres.c does for one, the same
- * operations in the same order, so to the same bits. Whatever is no such contact is left to it.
+/* Four contacts of spheres at once: what spheres.c and law.h do for one, the same operations in the
+ * same order, so to the same bits. Contacts that begin or end within the step, or are hardened, and
+ * some laws are left to them.
  *
  * This file alone is compiled for AVX2; whether the processor has it is asked before it is called.
  * With less than that four at once take longer than four one by one. */
@@ -48,6 +49,10 @@ static inline lanes root(lanes x) {
 }
 static inline lanes either(which where, lanes a, lanes b) {
   return (lanes)(((which)a & where) | ((which)b & ~where));
+}
+static inline lanes absolute(lanes x) {
+  const lanes signs = {-0.0, -0.0, -0.0, -0.0};
+  return (lanes)((which)x & ~(which)signs);
 }
 static inline lanes3 either3(which where, lanes3 a, lanes3 b) {
   return (lanes3){either(where, a.x, b.x), either(where, a.y, b.y), either(where, a.z, b.z)};
@@ -132,8 +137,7 @@ static inline void take_laws(const scree_world *world, const uint32_t of[LANES],
     four->stiffness[l] = hertz ? law->hertz : law->stiffness;
     four->damping[l] = law->damping;
     four->slides[l] = hertz ? law->mindlin : law->stiffness * ratio;
-    four->slides_damping[l] =
-        law->damping * sqrt(hertz ? law->mindlin / (1.5 * law->hertz) : ratio);
+    four->slides_ratio[l] = sqrt(hertz ? law->mindlin / (1.5 * law->hertz) : ratio);
     four->friction[l] = law->friction;
     four->limit[l] = law->limit;
     four->thin[l] = law->thin;
@@ -148,7 +152,7 @@ static inline void take_laws(const scree_world *world, const uint32_t of[LANES],
 typedef struct memory {
   lanes3 slid, normal, rubs, couple, rolled;
   lanes overlap, damps, springs, age, spare;
-  lanes largest, dashpot, tangential, kick;
+  lanes worked, dashpot, tangential, kick;
 } memory;
 
 static inline void recall(scree_sphere_contact *const at[LANES], memory *m) {
@@ -164,7 +168,7 @@ static inline void recall(scree_sphere_contact *const at[LANES], memory *m) {
   turn(slid), turn(books), turn(normal), turn(rubs), turn(couple), turn(rolled);
   *m = (memory){.slid = {slid[0], slid[1], slid[2]},
                 .overlap = slid[3],
-                .largest = books[0],
+                .worked = books[0],
                 .dashpot = books[1],
                 .tangential = books[2],
                 .kick = books[3],
@@ -180,7 +184,7 @@ static inline void recall(scree_sphere_contact *const at[LANES], memory *m) {
 
 static inline void remember(const memory *m, scree_sphere_contact *const at[LANES], which stay) {
   lanes slid[LANES] = {m->slid.x, m->slid.y, m->slid.z, m->overlap},
-        books[LANES] = {m->largest, m->dashpot, m->tangential, m->kick},
+        books[LANES] = {m->worked, m->dashpot, m->tangential, m->kick},
         normal[LANES] = {m->normal.x, m->normal.y, m->normal.z, m->damps},
         rubs[LANES] = {m->rubs.x, m->rubs.y, m->rubs.z, m->springs},
         couple[LANES] = {m->couple.x, m->couple.y, m->couple.z, m->age},
@@ -234,28 +238,35 @@ static inline void put_loads(lanes3 force, lanes3 on_a, lanes3 on_b, scree_spher
 
 /* The second half of the last step's work: begin_work. */
 static inline void add_later_work(const spheres *a, const spheres *b, lanes3 slip, const memory *m,
-                                  lanes *dashpot, lanes *tangential) {
+                                  lanes *dashpot, lanes *tangential, lanes *spring) {
   const lanes half = 0.5 * m->kick, inside = 0.5 * m->overlap;
   const lanes3 twist = cross3(m->normal, m->rubs), damps = scale3(m->normal, m->damps),
                on_a = mad3(m->couple, twist, inside - a->radius),
                on_b = neg3(mad3(m->couple, twist, b->radius - inside));
   *dashpot = half * dot3((lanes3){rounded(damps.x), rounded(damps.y), rounded(damps.z)}, slip);
+  *spring = half * dot3(scale3(m->normal, m->springs), slip);
   *tangential = half * (dot3(m->rubs, slip) + dot3(on_a, a->spin) + dot3(on_b, b->spin));
 }
 
 /* Where they meet, and how they move there: meet, find_motions. */
 typedef struct meeting {
   lanes3 normal, drift, seen, turned;
-  lanes distance, overlap, of_a, of_b, travel;
+  lanes distance, overlap, of_a, of_b, travel, rate, rate_now, lasts, lead;
 } meeting;
 
 static inline lanes3 velocity_of(const meeting *at, lanes3 slip, lanes3 spin_a, lanes3 spin_b) {
   return sub3(slip, cross3(mad3(scale3(spin_a, at->of_a), spin_b, at->of_b), at->normal));
 }
 
-static inline meeting meet(const spheres *a, const spheres *b, lanes3 slip, lanes lead, lanes dt) {
+static inline lanes lasting(lanes age) {
+  const lanes none = age - age, part = (age - 1.5) / 1.5;
+  return either(age < 1.5, none, either(age > 3, none + 1, part));
+}
+
+static inline meeting meet(const spheres *a, const spheres *b, lanes3 slip, lanes age, lanes dt) {
   const lanes3 between = sub3(a->position, b->position);
-  meeting at = {.distance = root(dot3(between, between))};
+  meeting at = {.distance = root(dot3(between, between)), .lasts = lasting(age)};
+  at.lead = scree_dashpot_lead(0) + (scree_dashpot_lead(1) - scree_dashpot_lead(0)) * at.lasts;
   at.overlap = a->radius + b->radius - at.distance;
   at.normal = scale3(between, 1 / at.distance);
   at.of_a = a->radius - 0.5 * at.overlap;
@@ -263,20 +274,57 @@ static inline meeting meet(const spheres *a, const spheres *b, lanes3 slip, lane
   at.drift = velocity_of(&at, slip, a->spin, b->spin);
   const lanes3 now =
       velocity_of(&at, sub3(a->velocity_now, b->velocity_now), a->spin_now, b->spin_now);
-  at.seen = mad3(at.drift, sub3(now, at.drift), lead);
+  at.seen = mad3(at.drift, sub3(now, at.drift), at.lead);
   at.turned = scale3(add3(a->spin, b->spin), 0.5 * dt);
   at.travel = root(dot3(at.drift, at.drift)) * dt;
+  at.rate = -dot3(at.drift, at.normal);
+  at.rate_now = -dot3(now, at.normal);
   return at;
 }
 
+/* scree_soft_spring_at. `deep`: the overlap's root, of Hertz. */
+typedef struct spring {
+  lanes force, energy;
+} spring;
+
+static inline spring spring_at(lanes stiffness, bool hertz, lanes overlap, lanes deep) {
+  const lanes force = hertz ? stiffness * overlap * deep : stiffness * overlap;
+  return (spring){force, hertz ? 0.4 * force * overlap : 0.5 * stiffness * overlap * overlap};
+}
+
+/* scree_repaid. */
+static inline lanes repaid(lanes lasts, lanes balance, lanes kick_work, lanes stored) {
+  const lanes none = {0, 0, 0, 0}, size = absolute(balance) / stored,
+              most = either(size < 1, size, none + 1) * (1 - lasts), share = -balance / kick_work,
+              low = either(-most > share, -most, share), kept = either(share > most, most, low);
+  return either((stored > 0) & (kick_work != 0), kept, none);
+}
+
+/* The force of springs that are not settled, and what they have worked: scree_press_moving. */
+static inline lanes press_moving(const meeting *at, spring is, spring was, lanes before, lanes pull,
+                                 lanes dt, lanes spring_work, lanes *worked) {
+  const lanes half = -0.25 * (dt + dt) * at->rate, force = is.force - pull,
+              between = 0.5 * (is.energy + was.energy) -
+                        0.25 * (is.force - was.force) * (at->overlap - before),
+              stored = between - 0.5 * pull * (at->overlap + before), sum = *worked + spring_work,
+              felt = force * (1 + repaid(at->lasts, stored + sum, 2 * half * force, is.energy));
+  *worked = sum + half * felt;
+  return felt;
+}
+
+/* scree_is_edge_of_touch. */
+static inline which is_edge(const meeting *at, lanes dt) {
+  const lanes way = either(at->rate_now > 0, absolute(at->rate), absolute(at->rate_now)) * dt;
+  return (at->overlap < steep_overlap * at->travel) & (way > at->overlap) & (at->rate != 0);
+}
+
 /* The couple of rolling, and its power: roll. */
-static inline lanes3 roll(const spheres *a, const spheres *b, const meeting *at, lanes lead,
-                          lanes dt, lanes k, const scree_sphere_lanes *four, lanes pressed,
-                          memory *m, lanes *power) {
+static inline lanes3 roll(const spheres *a, const spheres *b, const meeting *at, lanes dt, lanes k,
+                          const scree_sphere_lanes *four, lanes pressed, memory *m, lanes *power) {
   const lanes none = {0, 0, 0, 0}, arm = load(four->rolling);
   const which rolls = arm > 0;
   const lanes3 n = at->normal, spin = sub3(a->spin, b->spin), turning = across(spin, n),
-               now = sub3(a->spin_now, b->spin_now), seen = mad3(spin, sub3(now, spin), lead);
+               now = sub3(a->spin_now, b->spin_now), seen = mad3(spin, sub3(now, spin), at->lead);
   lanes3 rolled = mad3(turned_by(m->rolled, at->turned), turning, dt);
   const lanes3 couple = slide(&rolled, false, none, k * arm * arm, load(four->rolling_damping),
                               arm * pressed, n, across(seen, n));
@@ -285,31 +333,46 @@ static inline lanes3 roll(const spheres *a, const spheres *b, const meeting *at,
   return either3(rolls, couple, (lanes3){none, none, none});
 }
 
-/* The law: evaluate, of contacts that last and are settled. Which of the four are such: of others
- * what is found means nothing. */
+/* The law: evaluate. For which of the four: of others what is found means nothing. */
 static inline which apply_law(double time_step, bool hertz, const spheres *a, const spheres *b,
                               memory *m, scree_sphere_lanes *four) {
-  const lanes none = {0, 0, 0, 0}, dt = none + time_step, lead = none + scree_dashpot_lead(1),
-              stiffness = load(four->stiffness), damping = load(four->damping),
-              pull = load(four->pull), half = 0.5 * dt, before = m->overlap,
-              c_t = load(four->slides_damping);
+  const lanes none = {0, 0, 0, 0}, dt = none + time_step, stiffness = load(four->stiffness),
+              damping = load(four->damping), pull = load(four->pull), half = 0.5 * dt,
+              limit = hard_from * load(four->limit), before = m->overlap;
   const lanes3 slip = sub3(a->velocity, b->velocity);
-  lanes later_dashpot, later_tangential;
-  add_later_work(a, b, slip, m, &later_dashpot, &later_tangential);
-  const meeting at = meet(a, b, slip, lead, dt);
+  lanes later_dashpot, later_tangential, spring_work;
+  add_later_work(a, b, slip, m, &later_dashpot, &later_tangential, &spring_work);
+  m->age += dt;
+  const meeting at = meet(a, b, slip, m->age / load(four->contact_time), dt);
   const lanes3 n = at.normal, v = across(at.drift, n);
-  const lanes deep = hertz ? root(at.overlap) : none + 1,
-              spring = (hertz ? stiffness * at.overlap * deep : stiffness * at.overlap) - pull,
-              pressing = spring + pull,
+  const which settled = (at.lasts == 1) & (at.overlap >= steep_overlap * at.travel),
+              served = (before > 0) & (before <= limit) & (at.overlap > 0) & (at.overlap <= limit) &
+                       (at.distance > 0) & (at.travel <= 2 * load(four->thin)) & ~is_edge(&at, dt);
+  /* along the normal */
+  const lanes deep = hertz ? root(at.overlap) : none + 1, was_deep = hertz ? root(before) : deep;
+  const spring is = spring_at(stiffness, hertz, at.overlap, deep),
+               was = spring_at(stiffness, hertz, before, was_deep);
+  lanes force = is.force - pull;
+  lanes3 moving = {none, none, none};
+  if (any(~settled)) {
+    lanes worked = m->worked;
+    const lanes felt = press_moving(&at, is, was, before, pull, dt, spring_work, &worked);
+    m->worked = either(settled, m->worked, worked);
+    moving = either3(settled, moving, scale3(n, felt));
+    force = either(settled, force, felt);
+  }
+  const lanes pressing = force + pull,
               left = pressing - (hertz ? damping * root(deep) : damping) * dot3(at.seen, n),
               pressed = either(left > 0, left, none), dashpot = pressed - pressing;
+  /* along the surface */
+  const lanes c_t = at.lasts * damping * load(four->slides_ratio);
   lanes3 xi = mad3(turned_by(m->slid, at.turned), v, dt);
-  const lanes3 along = slide(&xi, hertz, root(before) / deep, load(four->slides) * deep,
+  const lanes3 along = slide(&xi, hertz, was_deep / deep, load(four->slides) * deep,
                              (hertz ? c_t / root(deep) : c_t) * deep,
                              load(four->friction) * pressed, n, across(at.seen, n));
   lanes power = none + dot3(along, v);
   const lanes k_r = 2.25 * (hertz ? 1.5 * stiffness * deep : stiffness);
-  const lanes3 couple = roll(a, b, &at, lead, dt, k_r, four, pressed, m, &power),
+  const lanes3 couple = roll(a, b, &at, dt, k_r, four, pressed, m, &power),
                twist = cross3(n, along);
   put_loads(mad3(along, n, pressed - pull), mad3(couple, twist, -at.of_a),
             neg3(mad3(couple, twist, at.of_b)), four);
@@ -322,13 +385,9 @@ static inline which apply_law(double time_step, bool hertz, const spheres *a, co
   m->normal = n;
   m->damps = dashpot;
   m->rubs = along;
-  m->springs = dot3((lanes3){none, none, none}, n);
+  m->springs = dot3(moving, n);
   m->couple = couple;
-  m->age += dt;
-  const lanes late = 3.001 * load(four->contact_time); /* beyond rounding: scree_lasting is 1 */
-  return (m->age > late) & (at.overlap > 0) & (at.distance > 0) &
-         (at.overlap >= steep_overlap * at.travel) & (at.overlap <= hard_from * load(four->limit)) &
-         (at.travel <= 2 * load(four->thin));
+  return served;
 }
 
 bool scree_sphere_lanes_serve(const scree_world *world) {
@@ -344,7 +403,7 @@ unsigned scree_sphere_lanes_step(scree_world *world, const uint32_t k[SCREE_SPHE
   scree_spheres *s = &world->spheres;
   scree_sphere_contact *at[LANES], apart = {.slid = {0, 0, 0}};
   uint32_t of_a[LANES], of_b[LANES], law[LANES];
-  unsigned served = 0, last = 0;
+  unsigned served = 0, count = 0;
   for (int l = 0; l < LANES; l++) {
     const scree_sphere_pair *two = &s->list.pairs.items[k[l]];
     const bool touches = scree_spheres_touch(two);
@@ -352,20 +411,20 @@ unsigned scree_sphere_lanes_step(scree_world *world, const uint32_t k[SCREE_SPHE
     of_b[l] = two->b;
     law[l] = two->law;
     at[l] = touches ? &s->list.contacts.items[two->contact & ~scree_sphere_touches] : &apart;
-    last += at[l]->age > 3 * s->laws.items[law[l]].contact_time;
+    count += touches;
   }
-  if (last < 2) return 0; /* one alone costs less by itself */
+  if (count < 2) return 0; /* one alone costs less by itself */
   take_laws(world, law, four);
   spheres a, b;
   take_spheres(s, of_a, &a);
   take_spheres(s, of_b, &b);
   memory m;
   recall(at, &m);
-  const which settled = world->options.law == SCREE_LAW_HERTZ
-                            ? apply_law(world->time_step, true, &a, &b, &m, four)
-                            : apply_law(world->time_step, false, &a, &b, &m, four);
-  remember(&m, at, settled);
-  for (int l = 0; l < LANES; l++) served |= settled[l] ? 1u << l : 0;
+  const which done = world->options.law == SCREE_LAW_HERTZ
+                         ? apply_law(world->time_step, true, &a, &b, &m, four)
+                         : apply_law(world->time_step, false, &a, &b, &m, four);
+  remember(&m, at, done);
+  for (int l = 0; l < LANES; l++) served |= done[l] ? 1u << l : 0;
   return served;
 }
 

@@ -29,7 +29,7 @@ enum { SCREE_SPHERE_LANES = 4 };
 typedef struct scree_sphere_lanes {
   uint32_t law[SCREE_SPHERE_LANES]; /* whose members follow; scree_none: of no pair yet */
   double stiffness[SCREE_SPHERE_LANES], damping[SCREE_SPHERE_LANES], slides[SCREE_SPHERE_LANES],
-      slides_damping[SCREE_SPHERE_LANES], friction[SCREE_SPHERE_LANES], limit[SCREE_SPHERE_LANES],
+      slides_ratio[SCREE_SPHERE_LANES], friction[SCREE_SPHERE_LANES], limit[SCREE_SPHERE_LANES],
       thin[SCREE_SPHERE_LANES], contact_time[SCREE_SPHERE_LANES], pull[SCREE_SPHERE_LANES],
       rolling[SCREE_SPHERE_LANES], rolling_damping[SCREE_SPHERE_LANES];
   double overlap[SCREE_SPHERE_LANES]; /* m, after the step */
@@ -38,7 +38,7 @@ typedef struct scree_sphere_lanes {
 /* Whether this processor and the world's law have such steps. */
 bool scree_sphere_lanes_serve(const scree_world *world);
 /* The step of the four pairs k, as of each alone; a bit for each for which it was taken. Of the
- * others, which do not last or lie deep, nothing is changed. */
+ * others, which begin, end or are hardened, nothing is changed. */
 unsigned scree_sphere_lanes_step(scree_world *world, const uint32_t k[SCREE_SPHERE_LANES],
                                  scree_sphere_lanes *four);
 /* For a device: what acts on the sphere at this place, in the order in which step/spheres.c adds
