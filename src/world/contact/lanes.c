@@ -259,7 +259,7 @@ static inline lanes3 velocity_of(const meeting *at, lanes3 slip, lanes3 spin_a, 
 }
 
 static inline lanes lasting(lanes age) {
-  const lanes none = age - age, part = (age - 1.5) / 1.5;
+  const lanes none = {0, 0, 0, 0}, part = (age - 1.5) / 1.5;
   return either(age < 1.5, none, either(age > 3, none + 1, part));
 }
 
