@@ -333,51 +333,59 @@ static inline lanes3 roll(const spheres *a, const spheres *b, const meeting *at,
   return either3(rolls, couple, (lanes3){none, none, none});
 }
 
+/* The springs' force along the normal, less the pull: press. Roots of the overlap now and before,
+ * of Hertz. */
+static inline lanes press(const meeting *at, const scree_sphere_lanes *four, bool hertz, lanes deep,
+                          lanes was_deep, lanes dt, lanes spring_work, memory *m) {
+  const lanes none = {0, 0, 0, 0}, stiffness = load(four->stiffness), pull = load(four->pull);
+  const which settled = (at->lasts == 1) & (at->overlap >= steep_overlap * at->travel);
+  const spring is = spring_at(stiffness, hertz, at->overlap, deep),
+               was = spring_at(stiffness, hertz, m->overlap, was_deep);
+  lanes force = is.force - pull;
+  lanes3 kept = {none, none, none};
+  if (any(~settled)) {
+    lanes worked = m->worked;
+    const lanes moving = press_moving(at, is, was, m->overlap, pull, dt, spring_work, &worked);
+    m->worked = either(settled, m->worked, worked);
+    kept = either3(settled, kept, scale3(at->normal, moving));
+    force = either(settled, force, moving);
+  }
+  m->springs = dot3(kept, at->normal);
+  return force;
+}
+
 /* The law: evaluate. For which of the four: of others what is found means nothing. */
 static inline which apply_law(double time_step, bool hertz, const spheres *a, const spheres *b,
                               memory *m, scree_sphere_lanes *four) {
-  const lanes none = {0, 0, 0, 0}, dt = none + time_step, stiffness = load(four->stiffness),
-              damping = load(four->damping), pull = load(four->pull), half = 0.5 * dt,
-              limit = hard_from * load(four->limit), before = m->overlap;
+  const lanes none = {0, 0, 0, 0}, dt = none + time_step, half = 0.5 * dt,
+              damping = load(four->damping), pull = load(four->pull),
+              limit = hard_from * load(four->limit);
   const lanes3 slip = sub3(a->velocity, b->velocity);
   lanes later_dashpot, later_tangential, spring_work;
   add_later_work(a, b, slip, m, &later_dashpot, &later_tangential, &spring_work);
   m->age += dt;
   const meeting at = meet(a, b, slip, m->age / load(four->contact_time), dt);
   const lanes3 n = at.normal, v = across(at.drift, n);
-  const which settled = (at.lasts == 1) & (at.overlap >= steep_overlap * at.travel),
-              served = (before > 0) & (before <= limit) & (at.overlap > 0) & (at.overlap <= limit) &
-                       (at.distance > 0) & (at.travel <= 2 * load(four->thin)) & ~is_edge(&at, dt);
-  /* along the normal */
-  const lanes deep = hertz ? root(at.overlap) : none + 1, was_deep = hertz ? root(before) : deep;
-  const spring is = spring_at(stiffness, hertz, at.overlap, deep),
-               was = spring_at(stiffness, hertz, before, was_deep);
-  lanes force = is.force - pull;
-  lanes3 moving = {none, none, none};
-  if (any(~settled)) {
-    lanes worked = m->worked;
-    const lanes felt = press_moving(&at, is, was, before, pull, dt, spring_work, &worked);
-    m->worked = either(settled, m->worked, worked);
-    moving = either3(settled, moving, scale3(n, felt));
-    force = either(settled, force, felt);
-  }
-  const lanes pressing = force + pull,
+  const which served = (m->overlap > 0) & (m->overlap <= limit) & (at.overlap > 0) &
+                       (at.overlap <= limit) & (at.distance > 0) &
+                       (at.travel <= 2 * load(four->thin)) & ~is_edge(&at, dt);
+  const lanes deep = hertz ? root(at.overlap) : none + 1,
+              was_deep = hertz ? root(m->overlap) : deep,
+              pressing = press(&at, four, hertz, deep, was_deep, dt, spring_work, m) + pull,
               left = pressing - (hertz ? damping * root(deep) : damping) * dot3(at.seen, n),
-              pressed = either(left > 0, left, none), dashpot = pressed - pressing;
-  /* along the surface */
-  const lanes c_t = at.lasts * damping * load(four->slides_ratio);
-  lanes3 xi = mad3(turned_by(m->slid, at.turned), v, dt);
-  const lanes3 along = slide(&xi, hertz, was_deep / deep, load(four->slides) * deep,
+              pressed = either(left > 0, left, none), dashpot = pressed - pressing,
+              c_t = at.lasts * damping * load(four->slides_ratio),
+              k_r = 2.25 * (hertz ? 1.5 * load(four->stiffness) * deep : load(four->stiffness));
+  m->slid = mad3(turned_by(m->slid, at.turned), v, dt);
+  const lanes3 along = slide(&m->slid, hertz, was_deep / deep, load(four->slides) * deep,
                              (hertz ? c_t / root(deep) : c_t) * deep,
                              load(four->friction) * pressed, n, across(at.seen, n));
   lanes power = none + dot3(along, v);
-  const lanes k_r = 2.25 * (hertz ? 1.5 * stiffness * deep : stiffness);
   const lanes3 couple = roll(a, b, &at, dt, k_r, four, pressed, m, &power),
                twist = cross3(n, along);
   put_loads(mad3(along, n, pressed - pull), mad3(couple, twist, -at.of_a),
             neg3(mad3(couple, twist, at.of_b)), four);
   memcpy(four->overlap, &at.overlap, sizeof four->overlap);
-  m->slid = xi;
   m->overlap = at.overlap;
   m->dashpot += later_dashpot + half * dashpot * dot3(at.drift, n);
   m->tangential += later_tangential + half * power;
@@ -385,7 +393,6 @@ static inline which apply_law(double time_step, bool hertz, const spheres *a, co
   m->normal = n;
   m->damps = dashpot;
   m->rubs = along;
-  m->springs = dot3(moving, n);
   m->couple = couple;
   return served;
 }
