@@ -410,13 +410,6 @@ void scree_spheres_load(scree_world *world, size_t place) {
   s->load[place] = (scree_sphere_load){{0, 0, 0}, {0, 0, 0}};
 }
 
-bool scree_sphere_pair_is_due(const scree_world *world, const scree_sphere_pair *two) {
-  if (scree_spheres_touch(two)) return true;
-  const scree_sphere_place *a = &world->spheres.place[two->a], *b = &world->spheres.place[two->b];
-  const double reach = a->radius + b->radius;
-  return vec3_norm2(scree_nearest_image(world, vec3_sub(a->position, b->position))) < reach * reach;
-}
-
 /* For its first contact. */
 static scree_sphere_contact *contact_of(scree_spheres *s, scree_sphere_pair *two) {
   if (two->contact == scree_none) {

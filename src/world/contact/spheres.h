@@ -15,7 +15,13 @@ void scree_spheres_evaluate(const scree_world *world, scree_pair *pair, scree_sc
 /* Copies of the state of the sphere at this place. */
 void scree_spheres_load(scree_world *world, size_t place);
 /* Whether a pair touches, or did. */
-bool scree_sphere_pair_is_due(const scree_world *world, const scree_sphere_pair *two);
+static inline bool scree_sphere_pair_is_due(const scree_world *world,
+                                            const scree_sphere_pair *two) {
+  if (scree_spheres_touch(two)) return true;
+  const scree_sphere_place *a = &world->spheres.place[two->a], *b = &world->spheres.place[two->b];
+  const double reach = a->radius + b->radius;
+  return vec3_norm2(scree_nearest_image(world, vec3_sub(a->position, b->position))) < reach * reach;
+}
 typedef struct scree_sphere_result {
   scree_sphere_load on_a, on_b;
   scree_pair pair; /* as after the step */
