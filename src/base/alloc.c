@@ -88,7 +88,7 @@ void *scree_alloc(size_t count, size_t size) {
     return NULL;
   }
   /* a large block begins on a huge page; what that leaves before it is never touched */
-  size_t alignment = counted >= 2 * (size_t)HUGE_PAGE ? HUGE_PAGE : ALIGNMENT;
+  size_t alignment = counted >= HUGE_PAGE ? HUGE_PAGE : ALIGNMENT;
   void *raw = hook(hook_context, NULL, counted - ALIGNMENT + alignment);
   if (!raw) {
     atomic_fetch_sub(&used_bytes, counted);
