@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Boulders' scans beside Rockable's sphero-polyhedra: the same triangles, places, stiffness, damping and friction.
 
-  rockable.py run TABLE.csv CASE:SEEDS,... CODE...    CASE: drop (12 stones, each alone on a floor), heap (100 from a lifted box), drum (100);
+  rockable.py run TABLE.csv CASE:SEEDS,... CODE...    CASE: drop (12 stones, each alone on a floor), heap (100 from a lifted box), drum (100), both at a quarter of the recommended level;
                                                       CODE: scree, rockable, or rockable-shared, where a pair's contacts share one
                                                       spring (its NumberWeight); adds to the table what it lacks
   rockable.py slope TABLE.csv EVERY CODE...           all boulders, places and every EVERYth orientation on profile 1 of the quarry
@@ -51,9 +51,9 @@ def turn(rng):
 class Stone:
     """A level of a scan, scaled to a size: file for scree, sphero-polyhedron for Rockable."""
 
-    def __init__(self, quarry, name, folder, size=None):
+    def __init__(self, quarry, name, folder, size=None, level="recommended"):
         self.name, self.path = name, folder / f"{name}.stl"
-        mesh = quarry.scree.load(quarry.shape("recommended", name)[0]["file"], "m")
+        mesh = quarry.scree.load(quarry.shape(level, name)[0]["file"], "m")
         scale = size / quarry.scree.Particle(mesh).measure().size if size else 1
         self.corners, self.triangles = [[scale * x for x in v] for v in mesh.vertices.tolist()], mesh.triangles.tolist()
         write_stl(self.path, [[self.corners[k] for k in t] for t in self.triangles])
@@ -151,8 +151,8 @@ def energy(row, stones):
 
 def settings(size, density, stiffness, wall, step, friction, en2, shared, far=1):
     """`far`: how far the neighbours that it remembers reach."""
-    words = {"dt": step, "interVerlet": 0.1, "interConf": 1, "DVerlet": 0.24 * far * size, "dVerlet": 0.12 * far * size, "dynamicUpdateNL": 1,
-             "dispUpdateNL": 0.03 * far * size, "angleUpdateNL": 2 * far, "density 0": density, "density 1": density, "forceLaw": "Default",
+    words = {"dt": step, "interVerlet": 0.002 * far, "interConf": 1, "DVerlet": 0.12 * far * size, "dVerlet": 0.06 * far * size, "dynamicUpdateNL": 1,
+             "dispUpdateNL": 0.018 * far * size, "angleUpdateNL": 1e9, "density 0": density, "density 1": density, "forceLaw": "Default",
              "AddOrRemoveInteractions": "OBBtree", "Integrator": "velocityVerlet", "ContactPartnership": "NumberWeight" if shared else "None"}
     for pair, k in (("0 1", wall), ("1 1", stiffness)):
         words.update({f"knContact {pair}": k, f"en2Contact {pair}": en2, f"ktContact {pair}": k, f"muContact {pair}": friction,
@@ -248,7 +248,7 @@ def one(case, seed, code):
     folder = WORK / "rockable" / f"{case}-{seed}-{code}"
     folder.mkdir(parents=True, exist_ok=True)
     quarry, rows = Quarry(1, []), first(case, seed)
-    stones = {name: Stone(quarry, name, folder, L) for name in STONES}
+    stones = {name: Stone(quarry, name, folder, L, "recommended" if case == "drop" else "0.25x") for name in STONES}
     turned, energies, spent, step = (with_scree if code == "scree" else with_rockable)(case, seed, code, folder, stones)
     last, same, apart, radius, height, angle = turned[-1], "", "", "", "", ""
     (folder / "last.json").write_text(json.dumps(last))
@@ -302,7 +302,7 @@ def trajectory(quarry, stone, place, orientation, code):
     folder.mkdir(parents=True, exist_ok=True)
     m, terrain, q = stone.measures, quarry.terrain, times(quarry.orientations[orientation], stone.measures.orientation)
     stiffness = 1e8 * m.size
-    words = settings(m.size, 3500, stiffness, stiffness, 0.05 * math.pi / 2 * math.sqrt(3500 * m.volume / stiffness), 1, 0, code.endswith("shared"), 3)
+    words = settings(m.size, 3500, stiffness, stiffness, 0.05 * math.pi / 2 * math.sqrt(3500 * m.volume / stiffness), 1, 0, code.endswith("shared"), 6)
     code = Rockable(folder, [ground(quarry), stone.sphero()], ["ground"], [[stone.name, *terrain.places[place], *q]], words | {"gravity": "0 -9.81 0"})
     here, time, deep = terrain.places[place], 0, 0.0
     while time < 60:
