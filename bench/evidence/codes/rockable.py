@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Boulders' scans beside Rockable's sphero-polyhedra: the same triangles, places, stiffness, damping and friction.
 
-  rockable.py run TABLE.csv CASE:SEEDS,... CODE...    CASE: drop (12 stones, each alone on a floor), heap (100 from a lifted box), drum (100), both at a quarter of the recommended level;
+  rockable.py run TABLE.csv CASE:SEEDS,... CODE...    CASE: drop (12 stones, each alone on a floor), heap (100 from a lifted box), drum (60), both at a quarter of the recommended level;
                                                       CODE: scree, rockable, or rockable-shared, where a pair's contacts share one
                                                       spring (its NumberWeight); adds to the table what it lacks
   rockable.py slope TABLE.csv EVERY CODE...           all boulders, places and every EVERYth orientation on profile 1 of the quarry
@@ -31,7 +31,8 @@ L, DENSITY, YOUNG, FRICTION, STEP = 0.025, 2500, 4e6, 0.5, 3.4e-5
 ROUND, PLATE = 0.03, 0.002             # radius of stones over their size; of walls, m
 ETA = 0.49724                          # of restitution 0.3 where the force is cut off at zero, as scree has it
 BOX, PITCH, LIFT, TIME = 0.168, 0.042, 0.5, {"drop": 3.0, "heap": 1.3}
-RADIUS, DEPTH, FILL, TURN, QUARTER = 0.12, 0.1, 0.4, 2.0, 50
+STONES_IN_DRUM = 60
+RADIUS, DEPTH, FILL, TURN, QUARTER = 0.09, 0.09, 0.1, 1.6, 25   # the drum rests, turns by half a turn, and is looked at for one
 COLUMNS = ["case", "seed", "code", "radius_mm", "height_mm", "slope_deg", "energy_uJ", "same_percent", "same_apart_mm", "body_steps", "cpu_s"]
 
 
@@ -170,11 +171,9 @@ def first(case, seed):
     rng, rows = random.Random(seed), []
     if case == "drop":
         return [[STONES[k % 3], 0.2 * (k % 4), 0.2 * (k // 4), 0.06, *turn(rng)] for k in range(12)]
-    if case == "heap":
-        grid = [((i - 1.5) * PITCH, (j - 1.5) * PITCH, (k + 0.52) * PITCH) for k in range(7) for i in range(4) for j in range(4)]
-    else:
-        grid = [(i * PITCH, j * 0.98 * PITCH, k * PITCH) for k in range(-2, 3) for i in range(-2, 3) for j in (-0.6, 0.6)]
-        grid += [(i * PITCH + PITCH / 2, j * 0.98 * PITCH, k * PITCH + PITCH / 2) for k in range(-2, 2) for i in range(-2, 2) for j in (-0.6, 0.6)]
+    if case == "drum":
+        return json.loads((WORK / "rockable" / f"drum-{seed}" / "first.json").read_text())
+    grid = [((i - 1.5) * PITCH, (j - 1.5) * PITCH, (k + 0.52) * PITCH) for k in range(7) for i in range(4) for j in range(4)]
     for k, place in enumerate(grid[:100]):
         rows.append([STONES[k % 3], *(v + rng.uniform(-2e-4, 2e-4) for v in place), *turn(rng)])
     return rows
@@ -185,6 +184,23 @@ def drum(sides=60):
     ring = [(RADIUS * math.cos(2 * math.pi * k / sides), RADIUS * math.sin(2 * math.pi * k / sides)) for k in range(sides)]
     corners = [(x, y, z) for y in (-DEPTH / 2, DEPTH / 2) for x, z in ring]
     return corners, [(k, (k + 1) % sides, (k + 1) % sides + sides, k + sides) for k in range(sides)], (range(sides), range(2 * sides - 1, sides - 1, -1))
+
+
+def fill(seed, folder, stones):
+    """Where scree's stones lie that were let into the drum."""
+    path = folder.with_name(f"drum-{seed}") / "first.json"
+    if path.exists():
+        return
+    path.parent.mkdir(exist_ok=True)
+    feed = f"inlets: {{feed: {{cylinder: {{at: [0, {-0.45 * DEPTH}, 0], axis: [0, 1, 0], radius: {0.9 * RADIUS}, length: {0.9 * DEPTH}}}, " \
+           f"shapes: {{{', '.join(f'{name}: 1' for name in STONES)}}}, count: {STONES_IN_DRUM}}}}}"
+    scene = scree_scene(path.parent, stones, "drum", feed, {"seed": seed, "geometry.drum.motion.0.rotate.speed": 0})
+    scene.run(1.5)
+    b = scene.bodies()
+    rows = [[STONES[int(k)], *p, *q] for k, p, q in zip(b.shape, b.position.tolist(), b.orientation.tolist())]
+    if len(rows) != STONES_IN_DRUM:
+        sys.exit(f"{len(rows)} stones are in the drum: see {path.parent}")
+    path.write_text(json.dumps(rows))
 
 
 def slope(rows):
@@ -201,8 +217,9 @@ def with_rockable(case, seed, code, folder, stones):
         shapes.append(shape("drum", corners, [*shell, *ends], PLATE, more="isSurface"))
         code = Rockable(folder, shapes, ["drum"], rows, stones_settings(code))
         code.run(FILL, FILL)
-        turned = code.run(FILL + TURN, TURN, [f"Control _yrot_Vel_ 0 {2 * math.pi / TURN!r}"])
-        turned = code.run(FILL + 2 * TURN, TURN / (4 * QUARTER), [f"Control _yrot_Vel_ 0 {2 * math.pi / TURN!r}"])[-4 * QUARTER:]
+        driving = [f"Control _yrot_Vel_ 0 {2 * math.pi / TURN!r}"]
+        code.run(FILL + TURN / 2, TURN / 2, driving)
+        turned = code.run(FILL + 1.5 * TURN, TURN / (4 * QUARTER), driving)[-4 * QUARTER:]
     else:
         half, high = BOX / 2 + PLATE, 0.35
         shapes += [plate("floor", (-1, -1, -PLATE), (1, -1, -PLATE), (1, 1, -PLATE), (-1, 1, -PLATE))]
@@ -218,19 +235,26 @@ def with_rockable(case, seed, code, folder, stones):
     return turned, [mean([energy(r, stones) for r in rows]) for rows in turned], processor_time() - begun, STEP
 
 
-def with_scree(case, seed, _code, folder, stones):
-    rows = first(case, seed)
-    (folder / "bodies.csv").write_text("\n".join(["shape,x,y,z,qw,qx,qy,qz", *(",".join([r[0], *map(repr, r[1:])]) for r in rows)]) + "\n")
+def scree_scene(folder, stones, case, bodies, fields):
+    for stone in stones.values():
+        (folder / stone.path.name).write_bytes(stone.path.read_bytes())
     corners, shell, ends = drum()
     triangles = [t for f in shell for t in ((f[0], f[1], f[2]), (f[0], f[2], f[3]))] + [(e[0], e[k + 1], e[k]) for e in ends for k in range(1, len(e) - 1)]
     write_stl(folder / "drum.stl", [[corners[k] for k in t] for t in triangles])
-    text = (HERE / "rockable.yaml").read_text()
+    text = (HERE / "rockable.yaml").read_text().replace("bodies: {file: bodies.csv}", bodies)
     walls = {"drop": ("floor",), "heap": ("floor", "east", "west", "north", "south"), "drum": ("drum",)}[case]
     text = "\n".join(line for line in text.splitlines() if not (m := re.match(r"  (\w+): \{(plane|box|file: drum)", line)) or m[1] in walls)
     (folder / "rockable.yaml").write_text(text + "\n")
-    scene = library().Scene(str(folder / "rockable.yaml"))
+    return library().Scene(str(folder / "rockable.yaml"), fields)
+
+
+def with_scree(case, seed, _code, folder, stones):
+    rows = first(case, seed)
+    (folder / "bodies.csv").write_text("\n".join(["shape,x,y,z,qw,qx,qy,qz", *(",".join([r[0], *map(repr, r[1:])]) for r in rows)]) + "\n")
+    fields = {"geometry.drum.motion.0.rotate.speed": 2 * math.pi / TURN, "geometry.drum.motion.0.from": FILL} if case == "drum" else {}
+    scene = scree_scene(folder, stones, case, "bodies: {file: bodies.csv}", fields)
     begun, turned, energies = processor_time(), [], []
-    moments = [FILL + TURN * (1 + (k + 1) / (4 * QUARTER)) for k in range(4 * QUARTER)] if case == "drum" else [TIME[case]]
+    moments = [FILL + TURN * (0.5 + (k + 1) / (4 * QUARTER)) for k in range(4 * QUARTER)] if case == "drum" else [TIME[case]]
     for moment in moments:
         scene.run(until=moment)
         b = scene.bodies()
@@ -247,13 +271,16 @@ def one(case, seed, code):
     """The columns behind the key."""
     folder = WORK / "rockable" / f"{case}-{seed}-{code}"
     folder.mkdir(parents=True, exist_ok=True)
-    quarry, rows = Quarry(1, []), first(case, seed)
+    quarry = Quarry(1, [])
     stones = {name: Stone(quarry, name, folder, L, "recommended" if case == "drop" else "0.25x") for name in STONES}
+    if case == "drum":
+        fill(seed, folder, stones)
+    rows = first(case, seed)
     turned, energies, spent, step = (with_scree if code == "scree" else with_rockable)(case, seed, code, folder, stones)
     last, same, apart, radius, height, angle = turned[-1], "", "", "", "", ""
     (folder / "last.json").write_text(json.dumps(last))
     if case == "drum":
-        angle, kinetic, time = mean([slope(rows) for rows in turned]), mean(energies), FILL + 2 * TURN
+        angle, kinetic, time = mean([slope(rows) for rows in turned]), mean(energies), FILL + 1.5 * TURN
     else:
         x, y = (mean([r[k] for r in last]) for k in (1, 2))
         away = [(r[1] - s[1], r[2] - s[2]) for r, s in zip(last, rows)] if case == "drop" else [(r[1] - x, r[2] - y) for r in last]
