@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
 """Boulders' scans beside Rockable's sphero-polyhedra: the same triangles, places, stiffness, damping and friction.
 
-  rockable.py run TABLE.csv CASE:SEEDS,... CODE...    CASE: drop (12 stones, each alone on a floor), heap (100 from a lifted box), drum (60), both at a quarter of the recommended level;
-                                                      CODE: scree, rockable, or rockable-shared, where a pair's contacts share one
-                                                      spring (its NumberWeight); adds to the table what it lacks
+  rockable.py run TABLE.csv CASE:SEEDS,... CODE...    CASE: drop (12 stones, each alone on a floor), heap (100 from a lifted box), drum
+                                                      (60), heap and drum at a quarter of the recommended level; CODE: scree,
+                                                      rockable, or rockable-shared, where a pair's contacts share one spring
+                                                      (its NumberWeight); adds to the table what it lacks
   rockable.py slope TABLE.csv EVERY CODE...           all boulders, places and every EVERYth orientation on profile 1 of the quarry
-  rockable.py compare TABLE.csv                       as CSV: means, standard errors, differences to scree
+  rockable.py compare TABLE.csv                       as CSV: means, standard errors, differences to scree; of less than four
+                                                      runs the scatter is taken as scree's
   rockable.py places TABLE.csv                        likewise of the slope
 
-Rows: of a drop and a heap root mean square distance from the common axis (of a drop from where it began) and mean height; of a drum the direction of
-the common centre from the axis, mean over a turn; the mean kinetic energy of a stone (at the end; in the drum over the turn), steps
-of a body in a second of a core, and of a drop the share of stones that lie on the same side as scree's, and how much higher those lie. Environment: ROCKABLE (the
-program), SCREE_EVIDENCE_DIR."""
+Rows: of a drop and a heap root mean square distance from the common axis (of a drop from where it began) and mean height; of a drum the
+direction of the common centre from the axis, mean over a turn; the mean kinetic energy of a stone (at the end; in the drum over the
+turn); of a drop the share of stones that lie on the same side as scree's, and how much higher those lie; steps of all bodies.
+Environment: ROCKABLE (the program), SCREE_EVIDENCE_DIR."""
 import json
 import math
 import pathlib
@@ -23,7 +25,8 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent), str(HERE.parent / "boulders")]
-from common import WORK, Table, bootstrap, deviation, kolmogorov, kolmogorov_p, library, mean, needs, processor_time, read, show, write_stl  # noqa: E402
+from common import (WORK, Table, bootstrap, deviation, kolmogorov, kolmogorov_p, library, mean, needs, processor_time, read,  # noqa: E402
+                    show, write_stl)
 from boulders import SHAPES, ZONES, Quarry, times  # noqa: E402
 
 STONES = "SP1A", "SP2A", "SP3A"
@@ -121,8 +124,9 @@ class Rockable:
         text = last.read_text()
         head, _, rest = text.partition("\nParticles ")
         head = re.sub(r"\n(tmax|interConf) .*", "", head)
-        last.write_text(f"{head}\ntmax {until!r}\ninterConf {every!r}\nParticles {rest}")
-        told = subprocess.run([needs("ROCKABLE"), "-j", "1", "-v", "2", last.name], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        last.write_text(f"{head}\ntmax {until + 0.02 * every!r}\ninterConf {every!r}\nParticles {rest}")
+        told = subprocess.run([needs("ROCKABLE"), "-j", "1", "-v", "2", last.name], cwd=self.folder, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True)
         found = []
         while (path := self.folder / f"conf{self.number + 1}").exists():
             self.number += 1
@@ -183,7 +187,8 @@ def drum(sides=60):
     """Corners and faces of a shell with its two ends, seen from inside."""
     ring = [(RADIUS * math.cos(2 * math.pi * k / sides), RADIUS * math.sin(2 * math.pi * k / sides)) for k in range(sides)]
     corners = [(x, y, z) for y in (-DEPTH / 2, DEPTH / 2) for x, z in ring]
-    return corners, [(k, (k + 1) % sides, (k + 1) % sides + sides, k + sides) for k in range(sides)], (range(sides), range(2 * sides - 1, sides - 1, -1))
+    shell = [(k, (k + 1) % sides, (k + 1) % sides + sides, k + sides) for k in range(sides)]
+    return corners, shell, (range(sides), range(2 * sides - 1, sides - 1, -1))
 
 
 def fill(seed, folder, stones):
@@ -239,7 +244,8 @@ def scree_scene(folder, stones, case, bodies, fields):
     for stone in stones.values():
         (folder / stone.path.name).write_bytes(stone.path.read_bytes())
     corners, shell, ends = drum()
-    triangles = [t for f in shell for t in ((f[0], f[1], f[2]), (f[0], f[2], f[3]))] + [(e[0], e[k + 1], e[k]) for e in ends for k in range(1, len(e) - 1)]
+    triangles = [t for f in shell for t in ((f[0], f[1], f[2]), (f[0], f[2], f[3]))]
+    triangles += [(e[0], e[k + 1], e[k]) for e in ends for k in range(1, len(e) - 1)]
     write_stl(folder / "drum.stl", [[corners[k] for k in t] for t in triangles])
     text = (HERE / "rockable.yaml").read_text().replace("bodies: {file: bodies.csv}", bodies)
     walls = {"drop": ("floor",), "heap": ("floor", "east", "west", "north", "south"), "drum": ("drum",)}[case]
@@ -260,8 +266,8 @@ def with_scree(case, seed, _code, folder, stones):
         b = scene.bodies()
         if len(b.position.tolist()) != len(rows):
             sys.exit(f"scree lost a stone: see {folder}")
-        turned.append([[r[0], *p, *v, 0, 0, 0, *q, *w] for r, p, v, q, w in zip(rows, b.position.tolist(), b.velocity.tolist(), b.orientation.tolist(),
-                                                                               b.angular_velocity.tolist())])
+        states = (a.tolist() for a in (b.position, b.velocity, b.orientation, b.angular_velocity))
+        turned.append([[r[0], *p, *v, 0, 0, 0, *q, *w] for r, p, v, q, w in zip(rows, *states)])
         energies.append(mean([energy(r, stones) for r in turned[-1]]))
     print(f"scree: ledger {scene.sensors['ledger']:.1e}", file=sys.stderr)
     return turned, energies, processor_time() - begun, STEP
@@ -317,10 +323,12 @@ def compare(path):
             if not rows[0][what]:
                 continue
             own, ours = ([float(r[what]) for r in group] for group in (rows, groups[case, "scree"]))
-            (m, error), (m0, error0) = ((mean(v), deviation(v) / math.sqrt(len(v)) if len(v) > 1 else math.nan) for v in (own, ours))
+            scatter = [deviation(v if len(v) > 3 or len(ours) < 2 else ours) if len(max(v, ours, key=len)) > 1 else math.nan for v in (own, ours)]
+            (m, error), (m0, error0) = ((mean(v), s / math.sqrt(len(v))) for v, s in zip((own, ours), scatter))
+            line = f"{case},{code},{len(own)},{what},{m:.4g},{error:.2g}"
             apart = math.hypot(error, error0)
-            print(f"{case},{code},{len(own)},{what},{m:.3g},{error:.2g}"
-                  + (",,,," if code == "scree" or not apart else f",{m - m0:.2g},{apart:.2g},{(m - m0) / apart:.1f},{100 * (m - m0) / m0:.1f}"))
+            print(line if code == "scree" or not apart else f"{line},{m - m0:.3g},{apart:.2g},{(m - m0) / apart:.1f},{100 * (m - m0) / m0:.1f}")
+
 
 
 def trajectory(quarry, stone, place, orientation, code):
@@ -329,7 +337,8 @@ def trajectory(quarry, stone, place, orientation, code):
     folder.mkdir(parents=True, exist_ok=True)
     m, terrain, q = stone.measures, quarry.terrain, times(quarry.orientations[orientation], stone.measures.orientation)
     stiffness = 1e8 * m.size
-    words = settings(m.size, 3500, stiffness, stiffness, 0.05 * math.pi / 2 * math.sqrt(3500 * m.volume / stiffness), 1, 0, code.endswith("shared"), 6)
+    step = 0.05 * math.pi / 2 * math.sqrt(3500 * m.volume / stiffness)
+    words = settings(m.size, 3500, stiffness, stiffness, step, 1, 0, code.endswith("shared"), 6)
     code = Rockable(folder, [ground(quarry), stone.sphero()], ["ground"], [[stone.name, *terrain.places[place], *q]], words | {"gravity": "0 -9.81 0"})
     here, time, deep = terrain.places[place], 0, 0.0
     while time < 60:
@@ -344,7 +353,7 @@ def trajectory(quarry, stone, place, orientation, code):
 
 def ground(quarry, r=0.1):
     """The three sheets as one, sunk by what rounds it."""
-    triangles = [[corners for corners in three] for three in sorted({tuple(t[1:]) for cell in quarry.terrain.cells.values() for t in cell})]
+    triangles = [list(three) for three in sorted({tuple(t[1:]) for cell in quarry.terrain.cells.values() for t in cell})]
     corners = sorted({c for t in triangles for c in t})
     number = {c: k for k, c in enumerate(corners)}
     faces = [[number[c] for c in t] for t in triangles]
@@ -370,7 +379,8 @@ def slopes(path, every, codes):
                     if table.key((code, name, place, orientation)) in table.done:
                         continue
                     begun = processor_time()
-                    row = quarry.fall("recommended", name, place, orientation) if code == "scree" else trajectory(quarry, stones[name], place, orientation, code)
+                    row = (quarry.fall("recommended", name, place, orientation) if code == "scree" else
+                           trajectory(quarry, stones[name], place, orientation, code))
                     table.add(code, name, place, orientation, *row, round(processor_time() - begun, 1))
 
 
@@ -387,7 +397,8 @@ def places(path):
         apart = [float(rows[key]["along"]) - float(groups["scree"][key]["along"]) for key in both]
         d = kolmogorov([float(rows[key]["along"]) for key in both], [float(groups["scree"][key]["along"]) for key in both])
         beside = [mean(apart), *bootstrap(mean, apart), d, kolmogorov_p(d, len(both), len(both))] if code != "scree" else [""] * 5
-        show(code, len(rows), mean(along), deviation(along), mean(sideways), deviation(sideways), *shares, *beside, mean([float(r["cpu_s"]) for r in rows.values()]))
+        show(code, len(rows), mean(along), deviation(along), mean(sideways), deviation(sideways), *shares, *beside,
+             mean([float(r["cpu_s"]) for r in rows.values()]))
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import WORK, Table, data, library, mean, read, show, write_stl  # noqa: E402
+from common import WORK, Table, data, deviation, library, mean, read, show, write_stl  # noqa: E402
 
 PARTS = {"fitted": "extended", "kept back": "heldout"}
 DENSITY, COUNT = 2670, 64
@@ -53,13 +53,15 @@ def impacts():
         for row in read(folder / f"observed_contact_events_{name}.csv"):
             n = normal(points, float(row["x_m"]), float(row["y_m"]))
             vectors = [[float(row[f"{when}_v{k}_mps"]) for k in "xyz"] for when in ("incoming", "outgoing")]
-            vectors += [[float(flights[row[f"{which}_segment_id"]][at][f"omega_{k}_radps"]) for k in "xyz"] for which, at in (("source", -1), ("next", 0))]
+            flown = [flights[row[f"{which}_segment_id"]][at] for which, at in (("source", -1), ("next", 0))]
+            vectors += [[float(moment[f"omega_{k}_radps"]) for k in "xyz"] for moment in flown]
             if not n or any(math.isnan(x) for v in vectors for x in v):
                 continue
             e = [n[2], 0, -n[0]]
             e = [x / math.hypot(*e) for x in e]
             f = [n[1] * e[2] - n[2] * e[1], n[2] * e[0] - n[0] * e[2], n[0] * e[1] - n[1] * e[0]]
-            found.append([part, row["event_id"], float(row["mass_kg"]), *([sum(p * q for p, q in zip(axis, v)) for axis in (e, f, n)] for v in vectors)])
+            vectors = [[sum(p * q for p, q in zip(axis, v)) for axis in (e, f, n)] for v in vectors]
+            found.append([part, row["event_id"], float(row["mass_kg"]), *vectors])
     return found
 
 
@@ -71,7 +73,8 @@ def told(v, w):
 def block(path, mass):
     """Corners at a half and two quarters of the sides; its 26 faces."""
     size = (mass / DENSITY) ** (1 / 3)
-    places = sorted({p for s in itertools.product((-1, 1), repeat=3) for p in itertools.permutations((0.5, 0.25, 0.25)) for p in [tuple(a * b for a, b in zip(p, s))]})
+    places = sorted({tuple(a * b for a, b in zip(p, signs)) for signs in itertools.product((-1, 1), repeat=3)
+                     for p in itertools.permutations((0.5, 0.25, 0.25))})
     planes = [d for d in itertools.product((-1, 0, 1), repeat=3) if any(d)]
     triangles = []
     for d in planes:
@@ -80,7 +83,9 @@ def block(path, mass):
         middle = [mean([c[k] for c in face]) for k in range(3)]
         u = [a - b for a, b in zip(face[0], middle)]
         v = [d[1] * u[2] - d[2] * u[1], d[2] * u[0] - d[0] * u[2], d[0] * u[1] - d[1] * u[0]]
-        face.sort(key=lambda c: math.atan2(sum((a - b) * q for a, b, q in zip(c, middle, v)) / math.hypot(*v), sum((a - b) * q for a, b, q in zip(c, middle, u)) / math.hypot(*u)))
+        u, v = ([x / math.hypot(*w) for x in w] for w in (u, v))
+        angles = {c: math.atan2(*(sum((a - b) * q for a, b, q in zip(c, middle, axis)) for axis in (v, u))) for c in face}
+        face.sort(key=angles.get)
         triangles += [[[size * s * x for s, x in zip(SIDES, c)] for c in (face[0], face[k], face[k + 1])] for k in range(1, len(face) - 1)]
     write_stl(path, triangles)
 
@@ -116,7 +121,8 @@ def grid(path):
             for friction in FRICTION:
                 if table.key((event[1], restitution, friction)) not in table.done:
                     columns = list(zip(*hits(event, restitution, friction)))
-                    table.add(event[1], restitution, friction, *(x for c in columns for x in (mean(c), math.sqrt(mean([v * v for v in c]) - mean(c) ** 2), quantile(c, 0.05), quantile(c, 0.95))))
+                    numbers = ((mean(c), deviation(c), quantile(c, 0.05), quantile(c, 0.95)) for c in columns)
+                    table.add(event[1], restitution, friction, *(x for four in numbers for x in four))
 
 
 def measured():
