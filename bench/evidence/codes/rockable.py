@@ -327,7 +327,9 @@ def compare(path):
             (m, error), (m0, error0) = ((mean(v), s / math.sqrt(len(v))) for v, s in zip((own, ours), scatter))
             line = f"{case},{code},{len(own)},{what},{m:.4g},{error:.2g}"
             apart = math.hypot(error, error0)
-            print(line if code == "scree" or not apart else f"{line},{m - m0:.3g},{apart:.2g},{(m - m0) / apart:.1f},{100 * (m - m0) / m0:.1f}")
+            if code != "scree" and apart and m0:
+                line += f",{m - m0:.3g},{apart:.2g},{(m - m0) / apart:.1f},{100 * (m - m0) / m0:.1f}"
+            print(line)
 
 
 
