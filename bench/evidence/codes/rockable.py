@@ -117,13 +117,16 @@ class Rockable:
         lines += ["shapeFile shapes.shp", "precision 13", f"Particles {len(rows)}", *rows]
         (folder / "conf0").write_text("\n".join(lines) + "\n")
 
-    def run(self, until, every, driving=()):
-        """Goes on from its last file; rows of the bodies in each of the new ones."""
+    def run(self, until, every, driving=(), spin=None):
+        """Goes on from its last file; rows of the bodies in each of the new ones. A wall that is driven to turn has no surface speed
+        unless its spin about y stands in the file."""
         (self.folder / "drivingSystem.txt").write_text("\n".join(driving) + "\n")
         last = self.folder / f"conf{self.number}"
         text = last.read_text()
         head, _, rest = text.partition("\nParticles ")
         head = re.sub(r"\n(tmax|interConf) .*", "", head)
+        if spin:
+            rest = re.sub(r"\n(\w+ 0 0(?: \S+){14}) \S+ \S+ \S+", rf"\n\1 0 {spin!r} 0", rest, count=1)
         last.write_text(f"{head}\ntmax {until + 0.02 * every!r}\ninterConf {every!r}\nParticles {rest}")
         told = subprocess.run([needs("ROCKABLE"), "-j", "1", "-v", "2", last.name], cwd=self.folder, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True)
@@ -222,9 +225,9 @@ def with_rockable(case, seed, code, folder, stones):
         shapes.append(shape("drum", corners, [*shell, *ends], PLATE, more="isSurface"))
         code = Rockable(folder, shapes, ["drum"], rows, stones_settings(code))
         code.run(FILL, FILL)
-        driving = [f"Control _yrot_Vel_ 0 {2 * math.pi / TURN!r}"]
-        code.run(FILL + TURN / 2, TURN / 2, driving)
-        turned = code.run(FILL + 1.5 * TURN, TURN / (4 * QUARTER), driving)[-4 * QUARTER:]
+        turning = [f"Control _yrot_Vel_ 0 {2 * math.pi / TURN!r}"], 2 * math.pi / TURN
+        code.run(FILL + TURN / 2, TURN / 2, *turning)
+        turned = code.run(FILL + 1.5 * TURN, TURN / (4 * QUARTER), *turning)[-4 * QUARTER:]
     else:
         half, high = BOX / 2 + PLATE, 0.35
         shapes += [plate("floor", (-1, -1, -PLATE), (1, -1, -PLATE), (1, 1, -PLATE), (-1, 1, -PLATE))]
