@@ -130,7 +130,7 @@ turning() {
 
 rockable() {
   local script=$here/codes/rockable.py
-  piece "$script" run "$results/rockable.csv" drop:2 scree rockable rockable-shared
+  piece "$script" run "$results/rockable.csv" drop:4 scree rockable rockable-shared scree-0.2
   piece "$script" run "$results/rockable.csv" drum:1,heap:2 scree rockable
   piece "$script" run "$results/rockable.csv" heap:10 scree
   piece "$script" slope "$results/rockable-slope.csv" 32 scree rockable

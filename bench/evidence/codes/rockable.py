@@ -3,8 +3,8 @@
 
   rockable.py run TABLE.csv CASE:SEEDS,... CODE...    CASE: drop (12 stones, each alone on a floor), heap (100 from a lifted box), drum
                                                       (60), heap and drum at a quarter of the recommended level; CODE: scree,
-                                                      rockable, or rockable-shared, where a pair's contacts share one spring
-                                                      (its NumberWeight); adds to the table what it lacks
+                                                      scree-RESTITUTION, rockable, or rockable-shared, where a pair's
+                                                      contacts share one spring (its NumberWeight); adds what is not there
   rockable.py slope TABLE.csv EVERY CODE...           all boulders, places and every EVERYth orientation on profile 1 of the quarry
   rockable.py compare TABLE.csv                       as CSV: means, standard errors, differences to scree; of less than four
                                                       runs the scatter is taken as scree's
@@ -257,10 +257,11 @@ def scree_scene(folder, stones, case, bodies, fields):
     return library().Scene(str(folder / "rockable.yaml"), fields)
 
 
-def with_scree(case, seed, _code, folder, stones):
-    rows = first(case, seed)
+def with_scree(case, seed, code, folder, stones):
+    rows, restitution = first(case, seed), float(code.partition("-")[2] or 0.3)
     (folder / "bodies.csv").write_text("\n".join(["shape,x,y,z,qw,qx,qy,qz", *(",".join([r[0], *map(repr, r[1:])]) for r in rows)]) + "\n")
     fields = {"geometry.drum.motion.0.rotate.speed": 2 * math.pi / TURN, "geometry.drum.motion.0.from": FILL} if case == "drum" else {}
+    fields.update({f"materials.{name}.restitution": restitution for name in ("grain", "wall")})
     scene = scree_scene(folder, stones, case, "bodies: {file: bodies.csv}", fields)
     begun, turned, energies = processor_time(), [], []
     moments = [FILL + TURN * (0.5 + (k + 1) / (4 * QUARTER)) for k in range(4 * QUARTER)] if case == "drum" else [TIME[case]]
@@ -285,7 +286,7 @@ def one(case, seed, code):
     if case == "drum":
         fill(seed, folder, stones)
     rows = first(case, seed)
-    turned, energies, spent, step = (with_scree if code == "scree" else with_rockable)(case, seed, code, folder, stones)
+    turned, energies, spent, step = (with_scree if code.startswith("scree") else with_rockable)(case, seed, code, folder, stones)
     last, same, apart, radius, height, angle = turned[-1], "", "", "", "", ""
     (folder / "last.json").write_text(json.dumps(last))
     if case == "drum":
