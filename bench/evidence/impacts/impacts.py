@@ -7,7 +7,9 @@ velocities and spins before and after, beside blocks of the same shape that hit 
   impacts.py compare TABLE.csv      the best settings on the first part, and what they tell of the part kept back
 
 The slope is the plane of least squares through the ground within 0.4 m. How a block stood when it hit is not told. Only impacts of
-the wheel-shaped block with both spins count. Environment: SCREE_EVIDENCE_DIR with a folder chantsura."""
+the wheel-shaped block with both spins count. Environment: SCREE_EVIDENCE_DIR with a folder chantsura: observed_contact_events_,
+observed_trajectories_contact_ and terrain_rf16_contact_ of extended and heldout, as the repository ofuhrer/rust_rockfall
+(MIT) has them from doi 10.16904/envidat.174 (WSL Data Policy)."""
 import itertools
 import math
 import pathlib
