@@ -132,7 +132,7 @@ rockable() {
   local script=$here/codes/rockable.py
   piece "$script" run "$results/rockable.csv" drop:4 scree rockable rockable-shared scree-0.2
   piece "$script" run "$results/rockable.csv" drum:1,heap:2 scree rockable
-  piece "$script" run "$results/rockable.csv" heap:10 scree
+  piece "$script" run "$results/rockable.csv" heap:4 scree
   piece "$script" slope "$results/rockable-slope.csv" 32 scree rockable
   compared "$results/rockable.csv" "$results/rockable-compared.csv" "$script" compare
   compared "$results/rockable-slope.csv" "$results/rockable-slope-compared.csv" "$script" places
