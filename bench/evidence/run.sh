@@ -1,6 +1,6 @@
 #!/bin/bash
 # Evidence: cases beside measurements and other codes, docs/background/evidence.md.
-#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration, orifice, bulk, polyhedra, clumps, turning, hits, paper, estimator; all without a name
+#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration, orifice, bulk, polyhedra, clumps, turning, rockable, hits, impacts, paper, estimator; all without a name
 # Each piece goes on where it was broken off; what is done is not done again (delete its table in results/ to repeat it).
 # SCREE_EVIDENCE_SECONDS stops each piece after so long, at a row of its table; the same call goes on with the next. A row that takes
 # longer never ends: some take minutes.
@@ -15,7 +15,7 @@ work=${SCREE_EVIDENCE_WORK:-$root/build/evidence}
 results=$here/results
 shapes=recommended,4x,0.25x,0.0625x,sphere,clump5,clump20,clump50
 mkdir -p "$work" "$results"
-cases=(boulders drum penetration orifice bulk polyhedra clumps turning hits paper estimator)
+cases=(boulders drum penetration orifice bulk polyhedra clumps turning rockable hits impacts paper estimator)
 [ $# -gt 0 ] || set -- "${cases[@]}"
 
 # piece COMMAND...: within the limit; stopped says that one of the case's ended there.
@@ -128,7 +128,23 @@ turning() {
   compared "$results/turning-bare.csv" "$results/turning-bare-compared.csv" "$here/codes/turning.py" compare
 }
 
+rockable() {
+  local script=$here/codes/rockable.py
+  piece "$script" run "$results/rockable.csv" drop:4 scree rockable rockable-shared scree-0.2
+  piece "$script" run "$results/rockable.csv" drum:1,heap:2 scree rockable
+  piece "$script" run "$results/rockable.csv" heap:4 scree
+  piece "$script" slope "$results/rockable-slope.csv" 32 scree rockable
+  compared "$results/rockable.csv" "$results/rockable-compared.csv" "$script" compare
+  compared "$results/rockable-slope.csv" "$results/rockable-slope-compared.csv" "$script" places
+}
+
 hits() { [ -s "$results/hits.csv" ] || table "$results/hits.csv" "$here/hits/hits.py"; }
+
+impacts() {
+  [ -s "$results/impacts-measured.csv" ] || table "$results/impacts-measured.csv" "$here/impacts/impacts.py" measured
+  piece "$here/impacts/impacts.py" grid "$results/impacts.csv"
+  compared "$results/impacts.csv" "$results/impacts-compared.csv" "$here/impacts/impacts.py" compare
+}
 
 paper() {
   local runs=$results/paper-runs.csv
@@ -152,6 +168,8 @@ for case in "$@"; do
   penetration | bulk) folder=bulk needs=LIGGGHTS ;;
   orifice | clumps | turning) needs=LIGGGHTS ;;
   polyhedra) needs=YADE ;;
+  rockable) folder=authume needs=ROCKABLE ;;
+  impacts) folder=chantsura ;;
   hits | paper | estimator) ;;
   *) echo "run.sh: no case '$case'; there are ${cases[*]}" >&2 && exit 2 ;;
   esac

@@ -16,7 +16,7 @@ from types import SimpleNamespace
 ROOT, SCRATCH = pathlib.Path(sys.argv[1]), tempfile.TemporaryDirectory()
 HOME = pathlib.Path(SCRATCH.name)
 os.environ["SCREE_EVIDENCE_DIR"], os.environ["SCREE_EVIDENCE_WORK"] = str(HOME), str(HOME / "work")
-for folder in ("", "boulders", "bulk", "codes", "drum", "hits", "orifice", "paper"):
+for folder in ("", "boulders", "bulk", "codes", "drum", "hits", "impacts", "orifice", "paper"):
     sys.path.insert(0, str(ROOT / "bench" / "evidence" / folder))
 import boulders  # noqa: E402
 import bulk  # noqa: E402
@@ -26,8 +26,10 @@ import common  # noqa: E402
 import drum  # noqa: E402
 import heaps  # noqa: E402
 import hits  # noqa: E402
+import impacts  # noqa: E402
 import orifice  # noqa: E402
 import polyhedra  # noqa: E402
+import rockable  # noqa: E402
 import turning  # noqa: E402
 
 wrong = []
@@ -250,7 +252,25 @@ def intervals():
     check(335 < held < 385, f"{held} of 400 intervals of 90 % hold the difference")
 
 
-for part in (statistics, table, profiles, turns, quarry, speed, holes, processes, bodies, slopes, equations, intervals):
+def stones():
+    corners = [[float(c) for c in f"{k:03b}"] for k in range(8)]
+    triangles = [f for a, b, c, d in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)) for f in ((a, b, c), (a, c, d))]
+    moved = rockable.inset(corners, triangles, 0.1)
+    check(all(0.05 < abs(p - q) < 0.2 and abs(p - 0.5) < 0.5 for a, b in zip(moved, corners) for p, q in zip(a, b)), f"a cube's corners inwards: {moved}")
+    lines = rockable.shape("cube", corners, triangles, 0.1).splitlines()
+    check({"nv 8", "ne 18", "nf 12", "obb.extent 0.6 0.6 0.6"} <= set(lines), "a cube as Rockable's shape")
+    one = SimpleNamespace(measures=SimpleNamespace(volume=2.0, inertia=[1.0, 2.0, 3.0]))
+    told = rockable.energy(["s", 0, 0, 0, 3, 0, 0, 0, 0, 0, math.sqrt(0.5), 0, 0, math.sqrt(0.5), 1, 0, 0], {"s": one})
+    check(abs(told / (0.5e6 * rockable.DENSITY * (18 + 2)) - 1) < 1e-12, f"a stone that was turned has {told} uJ")
+    path, mass = HOME / "block.stl", 210.0
+    impacts.block(path, mass)
+    found = impacts.library().Particle(impacts.library().load(str(path), "m")).measure().volume * impacts.DENSITY
+    check(abs(found / mass - 1) < 1e-3, f"the block of {mass} kg has {found}")
+    n = impacts.normal([(x / 20, y / 20, 0.5 * x / 20) for x in range(-9, 10) for y in range(-9, 10)], 0.0, 0.0)
+    check(abs(n[0] / n[2] + 0.5) < 1e-9 and abs(n[1]) < 1e-9, f"the normal of a slope: {n}")
+
+
+for part in (statistics, table, profiles, turns, quarry, speed, holes, processes, bodies, slopes, equations, intervals, stones):
     part()
 print("\n".join(wrong) or "the scripts of bench/evidence give what is known")
 sys.exit(bool(wrong))
