@@ -10,6 +10,7 @@
 #include "mesh/index/winding.h"
 #include "mesh/repair/arrange.h"
 #include "mesh/repair/repair.h"
+#include "mesh/repair/rim.h"
 
 #include <string.h>
 
@@ -40,17 +41,9 @@ static void free_merger(merger *m) {
 typedef struct tangle {
   bool closed;        /* every edge is used equally often both ways */
   bool any, between;  /* facets meet; those of different shells do */
-  bool crowded;       /* some edge has more than two facets: shells that share edges count as one */
+  size_t crowded;     /* edges with more than two facets: shells that share edges count as one */
   size_t shell_count; /* that meet another or themselves */
 } tangle;
-
-static bool is_crowded(const scree_adjacency *adjacency) {
-  for (size_t e = 0; e < adjacency->edge_count; e++) {
-    uint32_t h = adjacency->edges[e];
-    if (adjacency->ring[adjacency->ring[h]] != h) return true;
-  }
-  return false;
-}
 
 static scree_status count_tangled(const scree_shells *shells, const scree_meetings *found,
                                   tangle *t, scree_error *error) {
@@ -69,11 +62,12 @@ static scree_status find_tangle(scree_repair *r, tangle *t, scree_error *error) 
   SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
   SCREE_CLEANUP(scree_shells_free) scree_shells shells = {0};
   SCREE_CLEANUP(scree_free_at) scree_meetings found = {0};
+  size_t open;
   *t = (tangle){.closed = false};
   SCREE_TRY(scree_adjacency_build(&r->mesh, &adjacency, error));
   SCREE_TRY(scree_shells_find(&r->mesh, &adjacency, &shells, error));
   t->closed = scree_shells_closed(&shells);
-  t->crowded = is_crowded(&adjacency);
+  scree_rim_count(&adjacency, &open, &t->crowded);
   if (!t->closed) return SCREE_OK;
   SCREE_TRY(scree_searched_meetings(&r->searched, &r->mesh, NULL, scree_arrange_limit(&r->mesh),
                                     r->progress, &found, error));
