@@ -433,10 +433,7 @@ static scree_status judge_smooth(hole_work *w, scree_error *error) {
 
 static void free_work(hole_work *w) {
   for (size_t i = 0; i < w->smooth.count; i++) scree_free(w->smooth.items[i].plain);
-  scree_free(w->smooth.items);
-  scree_free(w->seen);
-  scree_free(w->place);
-  scree_free(w->chain.items);
+  SCREE_FREE_ALL(w->smooth.items, w->seen, w->place, w->chain.items);
   scree_adjacency_free(&w->adjacency);
 }
 
