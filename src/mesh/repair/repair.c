@@ -451,7 +451,7 @@ static scree_status measure_way(const scree_mesh *from, double area, const scree
   SCREE_TRY(scree_surface_create(&rest, &part, error));
   SCREE_TRY(scree_surface_create(to, &whole, error));
   double share = part->area / area;
-  scree_deviation_rule rule = {.sample_count = (size_t)(MOVE_POINTS * share), .slope = 1};
+  scree_deviation_rule rule = {.sample_count = 1 + (size_t)(MOVE_POINTS * share), .slope = 1};
   SCREE_TRY(scree_surface_deviation(part, whole, &rule, progress, far, error));
   far->mean *= share;
   return SCREE_OK;
