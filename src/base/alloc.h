@@ -14,6 +14,12 @@ void *scree_alloc_zero(size_t count, size_t size) __attribute__((malloc, alloc_s
 /* A block of scree_alloc, or NULL, resized keeping its content; the old block stays on failure. */
 void *scree_resize(void *block, size_t count, size_t size);
 void scree_free(void *block);
+/* Several at once. */
+#define SCREE_FREE_ALL(...)                                                                        \
+  do {                                                                                             \
+    void *const blocks_[] = {__VA_ARGS__};                                                         \
+    for (size_t i_ = 0; i_ < sizeof blocks_ / sizeof *blocks_; i_++) scree_free(blocks_[i_]);      \
+  } while (0)
 /* All threads together make the pages of a new block the program's own, as the system does where a
  * page is first written to: a loop on one thread that fills the block would wait for each, and the
  * others idle. For blocks that will be filled to their end; scree_alloc_zero does it. It changes no

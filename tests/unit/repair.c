@@ -507,6 +507,29 @@ static void parts_that_meet_are_one(void **state) {
   scree_mesh_free(&stud);
 }
 
+/* How far the surface is told to have moved is what the whole of both says. */
+static void expect_move(const scree_mesh *given, const outcome *o) {
+  const scree_distance_options how = {.sample_count = 20000};
+  scree_distance d;
+  scree_error error;
+  CHECK_OK(scree_mesh_distance(given, &o->mesh, &how, NULL, &d, &error), error);
+  double mean = fmax(d.forward.mean, d.backward.mean);
+  CHECK_NEAR(o->report.moved_most, d.hausdorff, 0.01 * d.hausdorff);
+  CHECK_NEAR(o->report.moved_mean, mean, 0.01 * mean);
+}
+
+/* Where noise has folded the surface everywhere, no way of mending is left. */
+static void noise(void **state) {
+  (void)state;
+  scree_mesh mesh = shape_icosphere(1, 4), none;
+  scree_rng rng = {.seed = 52};
+  scree_error error;
+  shape_shake(&mesh, 0.04, &rng);
+  assert_int_equal(scree_mesh_repair(&mesh, NULL, NULL, &none, NULL, &error), SCREE_BAD_MESH);
+  assert_non_null(strstr(error.message, "where they cross, one is wound inward"));
+  scree_mesh_free(&mesh);
+}
+
 /* A vertex pulled through the other side of its own surface. */
 static void spike(void **state) {
   (void)state;
@@ -519,6 +542,7 @@ static void spike(void **state) {
   assert_true(o.report.done[SCREE_REPAIR_MERGE_SHELL] ||
               o.report.done[SCREE_REPAIR_CUT_INTERSECTION]);
   expect_same(&o, &clean, 0.01);
+  expect_move(&mesh, &o);
   double volume = o.measures.volume;
   free_outcome(&o);
   /* the same wound inward is the same body, whether folds are cut or merged */
@@ -852,6 +876,7 @@ int main(void) {
                                      cmocka_unit_test(coordinates_that_are_no_numbers),
                                      cmocka_unit_test(nested_is_swallowed),
                                      cmocka_unit_test(parts_that_meet_are_one),
+                                     cmocka_unit_test(noise),
                                      cmocka_unit_test(spike),
                                      cmocka_unit_test(sharp_edges),
                                      cmocka_unit_test(sharp_rims),

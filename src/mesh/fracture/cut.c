@@ -36,11 +36,7 @@ void scree_cut_cell_free(scree_cut_cell *cell) {
 }
 
 void scree_cutter_free(scree_cutter *c) {
-  scree_free(c->normals);
-  scree_free(c->neighbours);
-  scree_free(c->vertices.items);
-  scree_free(c->table);
-  scree_free(c->crossings.items);
+  SCREE_FREE_ALL(c->normals, c->neighbours, c->vertices.items, c->table, c->crossings.items);
   *c = (scree_cutter){.mesh = NULL};
 }
 

@@ -288,9 +288,6 @@ scree_status scree_parts_face(const scree_facing_part *parts, size_t count, doub
     scree_bvh_free(&sides[i].bvh);
     scree_adjacency_free(&sides[i].adjacency);
   }
-  scree_free(f.patches.items);
-  scree_free(f.corners.items);
-  scree_free(f.triangles.items);
-  scree_free(f.stack.items);
+  SCREE_FREE_ALL(f.patches.items, f.corners.items, f.triangles.items, f.stack.items);
   return status;
 }

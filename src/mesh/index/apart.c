@@ -306,11 +306,7 @@ static void cell_block(void *context, scree_block block) {
 }
 
 static void free_prover(prover *p) {
-  scree_free(p->cells);
-  scree_free(p->items);
-  scree_free(p->begins);
-  scree_free(p->fans);
-  scree_free(p->start);
+  SCREE_FREE_ALL(p->cells, p->items, p->begins, p->fans, p->start);
 }
 
 scree_status scree_facets_apart(const scree_mesh *mesh, const scree_adjacency *adjacency,

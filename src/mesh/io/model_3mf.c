@@ -367,12 +367,7 @@ scree_status scree_3mf_read_part(scree_reading *r, scree_3mf *m, size_t index) {
 }
 
 void scree_3mf_free(scree_3mf *m) {
-  scree_free(m->parts.items);
-  scree_free(m->objects.items);
-  scree_free(m->components.items);
-  scree_free(m->items.items);
-  scree_free(m->vertices.items);
-  scree_free(m->triangles.items);
-  scree_free(m->volumes.items);
+  SCREE_FREE_ALL(m->parts.items, m->objects.items, m->components.items, m->items.items,
+                 m->vertices.items, m->triangles.items, m->volumes.items);
   *m = (scree_3mf){0};
 }

@@ -50,10 +50,7 @@ typedef struct ring {
 } ring;
 
 static void ring_free(ring *r) {
-  scree_free(r->points);
-  scree_free(r->next);
-  scree_free(r->previous);
-  scree_free(r->convex);
+  SCREE_FREE_ALL(r->points, r->next, r->previous, r->convex);
 }
 
 static bool ring_reserve(ring *r, size_t count) {

@@ -544,11 +544,7 @@ static scree_deviation conclude(const tally *vertices, const tally *facets, cons
 }
 
 static void free_sweep(sweep *s) {
-  scree_free(s->vertex_distance);
-  scree_free(s->vertex_near);
-  scree_free(s->tallies);
-  scree_free(s->facet_bound);
-  scree_free(s->heaps);
+  SCREE_FREE_ALL(s->vertex_distance, s->vertex_near, s->tallies, s->facet_bound, s->heaps);
 }
 
 static scree_status deviate(const scree_surface *from, const scree_surface *to,

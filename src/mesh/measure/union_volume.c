@@ -354,11 +354,7 @@ static scree_status list_asked(work *w, const scree_adjacency *adjacency, scree_
 }
 
 static void free_work(work *w) {
-  scree_free(w->first);
-  scree_free(w->partners);
-  scree_free(w->asked);
-  scree_free(w->pieces);
-  scree_free(w->sums);
+  SCREE_FREE_ALL(w->first, w->partners, w->asked, w->pieces, w->sums);
 }
 
 scree_status scree_union_volume(const scree_facet_tree *tree, const scree_adjacency *adjacency,

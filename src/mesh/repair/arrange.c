@@ -642,21 +642,10 @@ scree_status scree_arrange(const scree_mesh *mesh, const scree_progress *progres
   }
   if (status == SCREE_OK && !a.reason) status = finish(&a, arrangement, error);
   *reason = a.reason;
-  scree_free(a.positions.items);
-  scree_free(a.facets.items);
-  scree_free(a.edge_points.items);
-  scree_free(a.facet_points.items);
-  scree_free(a.segments.items);
-  scree_free(a.joins.items);
-  scree_free(a.near.items);
-  scree_free(a.triangles.items);
-  scree_free(a.rim.items);
-  scree_free(a.pieces.items);
-  scree_free(a.active.items);
-  scree_free(a.candidates.items);
-  scree_free(a.pairs.items);
-  scree_free(a.merged);
-  scree_free(a.touched);
+  SCREE_FREE_ALL(a.positions.items, a.facets.items, a.edge_points.items, a.facet_points.items,
+                 a.segments.items, a.joins.items, a.near.items, a.triangles.items, a.rim.items,
+                 a.pieces.items, a.active.items, a.candidates.items, a.pairs.items, a.merged,
+                 a.touched);
   return status;
 }
 

@@ -27,8 +27,7 @@ typedef struct blunting {
 
 static void free_blunting(blunting *b) {
   scree_adjacency_free(&b->adjacency);
-  void *const blocks[] = {b->sharp, b->sector, b->vertex, b->way, b->sectors, b->normal, b->next};
-  for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) scree_free(blocks[i]);
+  SCREE_FREE_ALL(b->sharp, b->sector, b->vertex, b->way, b->sectors, b->normal, b->next);
 }
 
 static vec3 corner_at(const blunting *b, uint32_t h) {

@@ -64,7 +64,7 @@ static scree_status drop_shells(scree_repair *r, const nest *n, scree_error *err
   }
   for (size_t t = 0; t < r->mesh.triangle_count; t++)
     marked[t] = n->shells.label[t] != SCREE_NO_SHELL && n->drop[n->shells.label[t]];
-  scree_repair_remove(r, marked);
+  scree_facets_drop(&r->mesh, marked);
   return SCREE_OK;
 }
 
@@ -303,20 +303,22 @@ static double marked_share(const scree_mesh *mesh, const bool *marked) {
   return (double)count / (double)mesh->triangle_count;
 }
 
-scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, scree_error *error) {
+scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, bool *clear,
+                              scree_error *error) {
   SCREE_CLEANUP(free_nest) nest n = {0};
   SCREE_CLEANUP(scree_free_at) scree_meetings found = {0};
   *cut_count = 0;
-  SCREE_TRY(find_nest(r, &n, error));
   SCREE_TRY(scree_searched_meetings(&r->searched, &r->mesh, NULL, MEETING_LIMIT, r->progress,
                                     &found, error));
-  if (found.truncated) return SCREE_OK;
+  *clear = found.count + r->report.after.defects[SCREE_DEFECT_SHARP_EDGE] == 0;
+  if (found.truncated || *clear) return SCREE_OK;
+  SCREE_TRY(find_nest(r, &n, error));
   SCREE_SCRATCH_ZERO(bool, marked, r->mesh.triangle_count, error);
   SCREE_SCRATCH(bool, vertex, r->mesh.vertex_count, error);
   mark_meetings(&found, &n.shells, marked);
-  if (found.count + scree_sharp_edges(&r->mesh, &n.adjacency, marked) == 0) return SCREE_OK;
+  scree_sharp_edges(&r->mesh, &n.adjacency, marked);
   for (int i = 0; i < rings; i++) grow_marks(&r->mesh, marked, vertex);
-  if (marked_share(&r->mesh, marked) <= CUT_SHARE) *cut_count = scree_repair_remove(r, marked);
+  if (marked_share(&r->mesh, marked) <= CUT_SHARE) *cut_count = scree_facets_drop(&r->mesh, marked);
   r->report.done[SCREE_REPAIR_CUT_INTERSECTION] += *cut_count;
   return SCREE_OK;
 }

@@ -42,10 +42,6 @@ bool scree_repair_add_facet(scree_repair *r, uint32_t a, uint32_t b, uint32_t c)
   return true;
 }
 
-size_t scree_repair_remove(scree_repair *r, const bool *marked) {
-  return scree_facets_drop(&r->mesh, marked);
-}
-
 size_t scree_facets_drop(scree_mesh *m, const bool *marked) {
   size_t kept = 0, before = m->triangle_count;
   for (size_t t = 0; t < before; t++) {

@@ -89,13 +89,8 @@ scree_facet_cutter *scree_facet_cutter_create(void) {
 
 void scree_facet_cutter_free(scree_facet_cutter *c) {
   if (!c) return;
-  scree_free(c->corners.items);
-  scree_free(c->triangles.items);
-  scree_free(c->stack.items);
-  scree_free(c->crossed.items);
-  scree_free(c->names.items);
-  scree_free(c->stops.items);
-  scree_free(c);
+  SCREE_FREE_ALL(c->corners.items, c->triangles.items, c->stack.items, c->crossed.items,
+                 c->names.items, c->stops.items, c);
 }
 
 static int next_of(int k) {

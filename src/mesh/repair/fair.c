@@ -63,10 +63,7 @@ typedef struct patch {
 } patch;
 
 static void free_patch(patch *p) {
-  scree_free(p->at.items);
-  scree_free(p->size.items);
-  scree_free(p->facets.items);
-  scree_free(p->outer);
+  SCREE_FREE_ALL(p->at.items, p->size.items, p->facets.items, p->outer);
 }
 
 static vec3 outer_position(const patch *p, uint32_t vertex) {
@@ -317,11 +314,7 @@ typedef struct laplacian {
 } laplacian;
 
 static void free_laplacian(laplacian *l) {
-  scree_free(l->begin);
-  scree_free(l->column);
-  scree_free(l->entry);
-  scree_free(l->area);
-  scree_free(l->constant);
+  SCREE_FREE_ALL(l->begin, l->column, l->entry, l->area, l->constant);
 }
 
 /* Edges of the filling, each once: those at the rim, and of the others the facet of lower number's.

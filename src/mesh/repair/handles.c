@@ -53,11 +53,7 @@ typedef struct search {
 
 static void search_free(search *s) {
   scree_adjacency_free(&s->adjacency);
-  scree_free(s->number);
-  scree_free(s->outgoing);
-  scree_free(s->slot);
-  scree_free(s->ball);
-  scree_free(s->loops.items);
+  SCREE_FREE_ALL(s->number, s->outgoing, s->slot, s->ball, s->loops.items);
 }
 
 /* The next edge from the same vertex. */

@@ -394,9 +394,8 @@ static bool meets(const smooth_filling *s, const scree_meetings *found) {
 
 static scree_status take_back(hole_work *w, const scree_meetings *found, scree_error *error) {
   scree_repair *r = w->r;
-  size_t before = r->mesh.triangle_count, *done = r->report.done;
-  bool *marked = NULL;
-  SCREE_TRY_ALLOC_ZERO(marked, before, error);
+  size_t *done = r->report.done;
+  SCREE_SCRATCH_ZERO(bool, marked, r->mesh.triangle_count, error);
   for (size_t i = 0; i < w->smooth.count; i++) {
     smooth_filling *s = &w->smooth.items[i];
     if (!meets(s, found)) {
@@ -409,8 +408,7 @@ static scree_status take_back(hole_work *w, const scree_meetings *found, scree_e
     done[SCREE_REPAIR_FILL_FACET] -= s->end - s->begin;
     done[SCREE_REPAIR_FILL_FACET] += s->plain_count;
   }
-  scree_repair_remove(r, marked);
-  scree_free(marked);
+  scree_facets_drop(&r->mesh, marked);
   for (size_t i = 0; i < w->smooth.count; i++)
     for (const uint32_t *v = w->smooth.items[i].plain,
                         *end = v + 3 * w->smooth.items[i].plain_count;
@@ -435,10 +433,7 @@ static scree_status judge_smooth(hole_work *w, scree_error *error) {
 
 static void free_work(hole_work *w) {
   for (size_t i = 0; i < w->smooth.count; i++) scree_free(w->smooth.items[i].plain);
-  scree_free(w->smooth.items);
-  scree_free(w->seen);
-  scree_free(w->place);
-  scree_free(w->chain.items);
+  SCREE_FREE_ALL(w->smooth.items, w->seen, w->place, w->chain.items);
   scree_adjacency_free(&w->adjacency);
 }
 

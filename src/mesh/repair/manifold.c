@@ -81,7 +81,7 @@ scree_status scree_repair_fins(scree_repair *r, scree_error *error) {
     traits[largest] = 0;
     for (size_t t = 0; t < r->mesh.triangle_count; t++)
       marked[t] = traits[scree_find_root(patch, (uint32_t)t)] == 3;
-    removed = scree_repair_remove(r, marked);
+    removed = scree_facets_drop(&r->mesh, marked);
     r->report.done[SCREE_REPAIR_DROP_FIN] += removed;
   }
   return SCREE_OK;

@@ -136,6 +136,6 @@ scree_status scree_repair_membranes(scree_repair *r, scree_error *error) {
   find_pieces(&w);
   walk_outside(&w, largest);
   mark_membranes(&w, marked);
-  r->report.done[SCREE_REPAIR_DROP_MEMBRANE] += scree_repair_remove(r, marked);
+  r->report.done[SCREE_REPAIR_DROP_MEMBRANE] += scree_facets_drop(&r->mesh, marked);
   return SCREE_OK;
 }

@@ -10,14 +10,22 @@
 #include "mesh/index/winding.h"
 #include "mesh/repair/arrange.h"
 #include "mesh/repair/repair.h"
+#include "mesh/repair/rim.h"
 
 #include <string.h>
 
 enum {
   ATTEMPTS = 32, /* sample points of a patch; one in general position is all but sure */
+  LOOKS = 256,   /* beside facets that meet */
 };
 
+/* So far from a facet, as a share of its size, a point lies beside it whatever rounding does. */
+#define BESIDE 1e-3
+
+static const char inward[] = "where they cross, one is wound inward";
+
 typedef struct merger {
+  scree_meetings found;
   scree_arrangement parts;
   scree_adjacency adjacency;
   scree_facet_tree tree;
@@ -27,12 +35,11 @@ typedef struct merger {
 } merger;
 
 static void free_merger(merger *m) {
+  scree_free(m->found.items);
   scree_arrangement_free(&m->parts);
   scree_adjacency_free(&m->adjacency);
   scree_facet_tree_free(&m->tree);
-  scree_free(m->patch);
-  scree_free(m->speaker);
-  scree_free(m->keep);
+  SCREE_FREE_ALL(m->patch, m->speaker, m->keep);
 }
 
 /* ---- What is merged ---- */
@@ -40,17 +47,9 @@ static void free_merger(merger *m) {
 typedef struct tangle {
   bool closed;        /* every edge is used equally often both ways */
   bool any, between;  /* facets meet; those of different shells do */
-  bool crowded;       /* some edge has more than two facets: shells that share edges count as one */
+  size_t crowded;     /* edges with more than two facets: shells that share edges count as one */
   size_t shell_count; /* that meet another or themselves */
 } tangle;
-
-static bool is_crowded(const scree_adjacency *adjacency) {
-  for (size_t e = 0; e < adjacency->edge_count; e++) {
-    uint32_t h = adjacency->edges[e];
-    if (adjacency->ring[adjacency->ring[h]] != h) return true;
-  }
-  return false;
-}
 
 static scree_status count_tangled(const scree_shells *shells, const scree_meetings *found,
                                   tangle *t, scree_error *error) {
@@ -65,20 +64,21 @@ static scree_status count_tangled(const scree_shells *shells, const scree_meetin
   return SCREE_OK;
 }
 
-static scree_status find_tangle(scree_repair *r, tangle *t, scree_error *error) {
+static scree_status find_tangle(scree_repair *r, tangle *t, scree_meetings *found,
+                                scree_error *error) {
   SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
   SCREE_CLEANUP(scree_shells_free) scree_shells shells = {0};
-  SCREE_CLEANUP(scree_free_at) scree_meetings found = {0};
+  size_t open;
   *t = (tangle){.closed = false};
   SCREE_TRY(scree_adjacency_build(&r->mesh, &adjacency, error));
   SCREE_TRY(scree_shells_find(&r->mesh, &adjacency, &shells, error));
   t->closed = scree_shells_closed(&shells);
-  t->crowded = is_crowded(&adjacency);
+  scree_rim_count(&adjacency, &open, &t->crowded);
   if (!t->closed) return SCREE_OK;
   SCREE_TRY(scree_searched_meetings(&r->searched, &r->mesh, NULL, scree_arrange_limit(&r->mesh),
-                                    r->progress, &found, error));
-  if (found.truncated) r->unmerged = scree_arrange_too_many;
-  return found.truncated ? SCREE_OK : count_tangled(&shells, &found, t, error);
+                                    r->progress, found, error));
+  if (found->truncated) r->unmerged = scree_arrange_too_many;
+  return found->truncated ? SCREE_OK : count_tangled(&shells, found, t, error);
 }
 
 /* ---- Which side is which ---- */
@@ -116,11 +116,34 @@ static const char *ask(const scree_winding *w, uint32_t facet, bool folds, bool 
     scree_sides found;
     if (!scree_winding_look(w, facet, &f, draw(&f, &rng), &found)) continue;
     *keep = (found.above > 0) != (found.below > 0);
-    if (!folds && (found.above < 0 || found.below < 0))
-      return "where they cross, one is wound inward";
+    if (!folds && (found.above < 0 || found.below < 0)) return inward;
     return NULL;
   }
   return "what is inside and what outside cannot be told";
+}
+
+/* Looks on both sides of the first facets that meet for space that is wound inward, which no
+ * cutting does away with: folds in the noise of a scan show it at once, and there are thousands to
+ * cut. */
+static scree_status look_beside(const scree_mesh *mesh, const scree_meetings *found,
+                                const char **reason, scree_error *error) {
+  SCREE_CLEANUP(scree_facet_tree_free) scree_facet_tree tree = {0};
+  scree_rng rng = {.seed = LOOKS};
+  SCREE_TRY(scree_facet_tree_build(mesh, &tree, error));
+  scree_winding w = {.tree = &tree, .rounding = scree_winding_rounding(&tree)};
+  for (size_t i = 0; i < LOOKS && i / 4 < found->count && !*reason; i++) {
+    uint32_t t = i % 2 ? found->items[i / 4].first : found->items[i / 4].second;
+    vec3 normal = scree_facet_normal(mesh, t);
+    double corner[3][3], way = (i & 2 ? BESIDE : -BESIDE) / sqrt(vec3_norm(normal));
+    for (int k = 0; k < 3; k++)
+      vec3_store(corner[k], vec3_mad(scree_mesh_corner(mesh, t, k), normal, way));
+    scree_view f = scree_view_of_corners(corner[0], corner[1], corner[2]);
+    scree_sides sides;
+    if (isfinite(way) && f.side && scree_winding_look(&w, UINT32_MAX, &f, draw(&f, &rng), &sides) &&
+        sides.above < 0)
+      *reason = inward;
+  }
+  return SCREE_OK;
 }
 
 static scree_status judge_patches(merger *m, bool folds, const char **reason, scree_error *error) {
@@ -171,9 +194,11 @@ scree_status scree_repair_merge(scree_repair *r, bool early, bool *merged, scree
   SCREE_CLEANUP(free_merger) merger m = {.patch = NULL};
   *merged = false;
   r->unmerged = NULL;
-  SCREE_TRY(find_tangle(r, &t, error));
+  SCREE_TRY(find_tangle(r, &t, &m.found, error));
   if (r->unmerged || !t.closed || !t.any) return SCREE_OK;
   if (early && !folds && !t.between && !t.crowded) return SCREE_OK;
+  if (!folds) SCREE_TRY(look_beside(&r->mesh, &m.found, &r->unmerged, error));
+  if (r->unmerged) return SCREE_OK;
   SCREE_TRY(scree_arrange(&r->mesh, r->progress, &m.parts, &r->unmerged, error));
   if (!r->unmerged) SCREE_TRY(judge_patches(&m, folds, &r->unmerged, error));
   if (r->unmerged) return SCREE_OK;

@@ -17,6 +17,8 @@
  * passed. */
 #include "mesh/repair/repair.h"
 #include "base/alloc.h"
+#include "base/owned.h"
+#include "mesh/measure/surface.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -94,20 +96,17 @@ void scree_repair_take(scree_repair *r, scree_mesh *mesh) {
  * bad coordinates are left out. mesh may be r->mesh. */
 static scree_status weld(scree_repair *r, const scree_mesh *mesh, size_t *bad, size_t *collapsed,
                          scree_error *error) {
-  scree_mesh welded;
-  size_t count = 0;
-  SCREE_SCRATCH(double, corners, 9 * mesh->triangle_count, error);
-  for (size_t t = 0; t < mesh->triangle_count; t++) {
-    bool good = true;
-    for (size_t k = 0; k < 3; k++) {
-      const double *p = mesh->positions + 3 * (size_t)mesh->triangles[3 * t + k];
-      good = good && !scree_vertex_is_bad(p);
-      memcpy(corners + 9 * count + 3 * k, p, 3 * sizeof *p);
-    }
-    count += good;
-  }
-  *bad = mesh->triangle_count - count;
-  SCREE_TRY(scree_mesh_weld(corners, count, 0, &welded, collapsed, error));
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh welded = {0};
+  SCREE_SCRATCH_ZERO(bool, marked, mesh->triangle_count, error);
+  for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
+    marked[c / 3] |= scree_vertex_is_bad(mesh->positions + 3 * (size_t)mesh->triangles[c]);
+  SCREE_TRY(scree_mesh_copy(mesh, &welded, error));
+  *bad = scree_facets_drop(&welded, marked);
+  for (double *p = welded.positions; p < welded.positions + 3 * welded.vertex_count; p += 3)
+    if (scree_vertex_is_bad(p)) memset(p, 0, 3 * sizeof *p); /* no facet names it any more */
+  *collapsed = welded.triangle_count;
+  SCREE_TRY(scree_mesh_canonicalize(&welded, error));
+  *collapsed -= welded.triangle_count;
   scree_repair_take(r, &welded);
   return SCREE_OK;
 }
@@ -172,12 +171,13 @@ static size_t actions_done(const scree_repair *r) {
  * closed surface, else the integral of the winding number, which counts twice where shells overlap
  * and is of no use there. */
 static scree_status take_volume(scree_repair *r, scree_error *error) {
-  scree_check check;
+  scree_check check = r->report.before;
   bool as_given = actions_done(r) == r->report.done[SCREE_REPAIR_WELD];
   if (isnan(r->volume) && as_given && r->report.before.volume_known)
     r->volume = r->report.before.volume;
   if (!isnan(r->volume)) return SCREE_OK;
-  SCREE_TRY(check_now(r, r->options->intersections && !r->untangled, &check, error));
+  if (actions_done(r) > 0)
+    SCREE_TRY(check_now(r, r->options->intersections && !r->untangled, &check, error));
   if (check.volume_known)
     r->volume = check.volume;
   else if (!check.defects[SCREE_DEFECT_OVERLAPPING_SHELLS] &&
@@ -243,8 +243,10 @@ static scree_status untangle(scree_repair *r, tries *n, bool *settled, scree_err
   const scree_repair_options *o = r->options;
   size_t cut_count = 0;
   bool merged = false;
+  *settled = false;
   if (o->cut_intersections && !o->merge_folds && n->cuts < CUT_ROUNDS)
-    SCREE_TRY(scree_repair_cut(r, ++n->cuts, &cut_count, error));
+    SCREE_TRY(scree_repair_cut(r, ++n->cuts, &cut_count, settled, error));
+  if (*settled) return SCREE_OK;
   if (cut_count == 0 && o->merge_shells && n->merges < MERGE_ROUNDS) {
     n->merges++;
     SCREE_TRY(try_merge(r, n, false, &merged, error));
@@ -262,6 +264,12 @@ static scree_status untangle(scree_repair *r, tries *n, bool *settled, scree_err
   return SCREE_OK;
 }
 
+/* Neither turned nor dropped. */
+static bool is_alone(const scree_check *check) {
+  return check->shell_count == 1 && !check->too_many_pairs &&
+         !check->defects[SCREE_DEFECT_INSIDE_OUT_SHELL];
+}
+
 /* One step on a mesh with the given cheap check; *settled where there is nothing left to do. */
 static scree_status step(scree_repair *r, const scree_check *check, tries *n, bool *settled,
                          scree_error *error) {
@@ -272,7 +280,7 @@ static scree_status step(scree_repair *r, const scree_check *check, tries *n, bo
     *settled = actions_done(r) == before;
     return SCREE_OK;
   }
-  SCREE_TRY(scree_repair_shells(r, error));
+  if (!is_alone(check)) SCREE_TRY(scree_repair_shells(r, error));
   if (actions_done(r) != before) return SCREE_OK;
   SCREE_TRY(take_volume(r, error));
   *settled = true;
@@ -286,13 +294,14 @@ static scree_status merge_early(scree_repair *r, tries *n, scree_error *error) {
   const size_t *defect = r->report.before.defects;
   bool met = defect[SCREE_DEFECT_CROSSING_PAIR] || defect[SCREE_DEFECT_TOUCHING_PAIR] ||
              defect[SCREE_DEFECT_OVERLAPPING_PAIR] || r->report.before.too_many_pairs;
-  bool merged;
+  bool merged, alone = actions_done(r) == 0 && is_alone(&r->report.before);
   size_t bad, collapsed;
   if (!r->options->merge_shells || !met) return SCREE_OK;
   if (!defect[SCREE_DEFECT_BOUNDARY_EDGE] && !defect[SCREE_DEFECT_INCONSISTENT_EDGE]) {
-    SCREE_TRY(scree_repair_outward(r, error));
+    if (!alone) SCREE_TRY(scree_repair_outward(r, error));
     SCREE_TRY(take_volume(r, error));
   }
+  if (alone && !defect[SCREE_DEFECT_NON_MANIFOLD_EDGE] && !r->options->merge_folds) return SCREE_OK;
   SCREE_TRY(try_merge(r, n, true, &merged, error));
   return merged ? weld(r, &r->mesh, &bad, &collapsed, error) : SCREE_OK;
 }
@@ -304,7 +313,8 @@ static scree_status run_rounds(scree_repair *r, scree_error *error) {
   SCREE_TRY(merge_early(r, &n, error));
   for (int round = 0; round < ROUNDS; round++) {
     bool settled;
-    SCREE_TRY(check_now(r, false, &r->report.after, error));
+    r->report.after = r->report.before;
+    if (actions_done(r) > 0) SCREE_TRY(check_now(r, false, &r->report.after, error));
     if (r->mesh.triangle_count == 0) break;
     SCREE_TRY(step(r, &r->report.after, &n, &settled, error));
     if (settled) break;
@@ -403,8 +413,8 @@ static scree_status cut_handles(scree_repair *r, scree_error *error) {
     SCREE_TRY(scree_handles_cut(from, r->options->handle_edges, &next, &told, error));
     scree_mesh_free(&cut);
     cut = next;
-    SCREE_TRY(scree_mesh_canonicalize(&cut, error));
     if (told.count == before) break;
+    SCREE_TRY(scree_mesh_canonicalize(&cut, error));
   }
   if (told.count == 0) return SCREE_OK;
   scree_check_options how = {.intersections = r->options->intersections};
@@ -421,21 +431,43 @@ static scree_status cut_handles(scree_repair *r, scree_error *error) {
 
 /* ---- What became of it ---- */
 
+/* How far one surface lies off another: facets that both have are at no distance. */
+static scree_status measure_way(const scree_mesh *from, double area, const scree_mesh *to,
+                                const scree_progress *progress, scree_deviation *far,
+                                scree_error *error) {
+  enum { MOVE_POINTS = 20000 };
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh rest = {0};
+  SCREE_OWNED(scree_surface, part);
+  SCREE_OWNED(scree_surface, whole);
+  SCREE_SCRATCH_ZERO(bool, met, to->triangle_count, error);
+  SCREE_SCRATCH_ZERO(bool, same, from->triangle_count, error);
+  bool known;
+  *far = (scree_deviation){.mean = 0};
+  SCREE_TRY(scree_searched_settled(&(scree_searched){*to, met}, from, same, &known, error));
+  SCREE_TRY(scree_mesh_copy(from, &rest, error));
+  scree_facets_drop(&rest, same);
+  SCREE_TRY(scree_mesh_canonicalize(&rest, error));
+  if (rest.triangle_count == 0) return SCREE_OK;
+  SCREE_TRY(scree_surface_create(&rest, &part, error));
+  SCREE_TRY(scree_surface_create(to, &whole, error));
+  double share = part->area / area;
+  scree_deviation_rule rule = {.sample_count = 1 + (size_t)(MOVE_POINTS * share), .slope = 1};
+  SCREE_TRY(scree_surface_deviation(part, whole, &rule, progress, far, error));
+  far->mean *= share;
+  return SCREE_OK;
+}
+
 /* Where the area tells that something is missing, or new: how far off that is. */
 static scree_status measure_move(const scree_mesh *mesh, const scree_repair *r,
                                  scree_repair_report *report, scree_error *error) {
   static const double NOTABLE_AREA = 1e-3;
-  enum { MOVE_POINTS = 20000 };
-  scree_distance_options how = scree_default_distance_options();
-  scree_distance found;
-  double change = report->area_after / report->area_before - 1;
-  if (!(fabs(change) > NOTABLE_AREA)) return SCREE_OK; /* NaN: it has bad coordinates */
-  how.sample_count = MOVE_POINTS;
-  how.hausdorff_gap = 0; /* the largest found, not what none exceeds */
-  SCREE_TRY(scree_mesh_distance(mesh, &r->mesh, &how, r->progress, &found, error));
-  const scree_deviation *far =
-      found.forward.maximum > found.backward.maximum ? &found.forward : &found.backward;
-  report->moved_mean = fmax(found.forward.mean, found.backward.mean);
+  scree_deviation gone, new;
+  double before = report->area_before, after = report->area_after;
+  if (!(fabs(after / before - 1) > NOTABLE_AREA)) return SCREE_OK; /* NaN: bad coordinates */
+  SCREE_TRY(measure_way(mesh, before, &r->mesh, r->progress, &gone, error));
+  SCREE_TRY(measure_way(&r->mesh, after, mesh, r->progress, &new, error));
+  const scree_deviation *far = gone.maximum > new.maximum ? &gone : &new;
+  report->moved_mean = fmax(gone.mean, new.mean);
   report->moved_most = far->maximum;
   memcpy(report->moved_place, far->at, sizeof far->at);
   return SCREE_OK;

@@ -36,7 +36,6 @@ bool scree_repair_add_vertex(scree_repair *r, const double *position, uint32_t *
 bool scree_repair_add_facet(scree_repair *r, uint32_t a, uint32_t b, uint32_t c);
 bool scree_repair_reserve(scree_repair *r, size_t more_facets);
 /* Removes the facets marked; returns how many. */
-size_t scree_repair_remove(scree_repair *r, const bool *marked);
 size_t scree_facets_drop(scree_mesh *mesh, const bool *marked);
 /* Those on the same three vertices as one before them. */
 scree_status scree_facets_drop_doubles(scree_mesh *mesh, size_t *dropped, scree_error *error);
@@ -109,8 +108,9 @@ scree_status scree_repair_shells(scree_repair *r, scree_error *error);
 /* The part of it that turns closed shells outside out. */
 scree_status scree_repair_outward(scree_repair *r, scree_error *error);
 /* Cuts out facets that meet others of their shell or have a sharp edge, with `rings` rings of
- * neighbours; *cut_count 0 where nothing could be cut. */
-scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, scree_error *error);
+ * neighbours; *cut_count 0 where nothing could be cut, *clear where there are none of any shell. */
+scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, bool *clear,
+                              scree_error *error);
 /* blunt.c: parts the sides of sharp edges, where these form rims; *blunted: how many. */
 scree_status scree_repair_blunt(scree_repair *r, size_t *blunted, scree_error *error);
 /* repair_merge.c: shells that meet become one surface, where every edge is used equally often both

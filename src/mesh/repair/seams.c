@@ -28,11 +28,9 @@ enum {
 #define ON_EDGE_LENGTH   1e-3
 
 scree_status scree_repair_flat(scree_repair *r, scree_error *error) {
-  bool *marked = scree_alloc(r->mesh.triangle_count, sizeof *marked);
-  if (!marked) return scree_repair_no_memory(error);
+  SCREE_SCRATCH(bool, marked, r->mesh.triangle_count, error);
   for (size_t t = 0; t < r->mesh.triangle_count; t++) marked[t] = scree_facet_is_flat(&r->mesh, t);
-  r->report.done[SCREE_REPAIR_DROP_DEGENERATE] += scree_repair_remove(r, marked);
-  scree_free(marked);
+  r->report.done[SCREE_REPAIR_DROP_DEGENERATE] += scree_facets_drop(&r->mesh, marked);
   return SCREE_OK;
 }
 
@@ -42,19 +40,22 @@ static vec3 place(const scree_repair *r, uint32_t v) {
 
 /* ---- Seams ---- */
 
-/* Joins boundary vertices within the distance; false where the sweep is too long. */
+/* Joins boundary vertices within the distance; false where none are, or the sweep is too long. */
 static bool join_near(const scree_repair *r, const scree_rim *b, double distance,
                       uint32_t *parent) {
   size_t work = 0;
+  bool any = false;
   for (size_t i = 0; i < b->vertex_count; i++)
     for (size_t j = i + 1; j < b->vertex_count; j++) {
       if (b->vertices[j].at - b->vertices[i].at > distance) break;
       if (++work > NEAR_LIMIT) return false;
       uint32_t v = b->vertices[i].vertex, w = b->vertices[j].vertex;
       double most = fmin(distance, 0.25 * fmin(b->reach[v], b->reach[w]));
-      if (vec3_distance(place(r, v), place(r, w)) <= most) scree_join(parent, v, w);
+      if (vec3_distance(place(r, v), place(r, w)) > most) continue;
+      scree_join(parent, v, w);
+      any = true;
     }
-  return true;
+  return any;
 }
 
 /* The corners as they would be; false where a facet would collapse. */
@@ -66,8 +67,9 @@ static bool remap(const scree_repair *r, uint32_t *parent, uint32_t *corners) {
   return true;
 }
 
-static scree_status try_distance(scree_repair *r, const scree_rim *b, double distance,
-                                 uint32_t *corners, scree_error *error) {
+/* Looks for the rim anew where the distance is taken. */
+static scree_status try_distance(scree_repair *r, scree_rim *b, double distance, uint32_t *corners,
+                                 scree_error *error) {
   scree_mesh *m = &r->mesh;
   SCREE_CLEANUP(scree_adjacency_free) scree_adjacency adjacency = {0};
   SCREE_SCRATCH(uint32_t, parent, m->vertex_count, error);
@@ -81,17 +83,17 @@ static scree_status try_distance(scree_repair *r, const scree_rim *b, double dis
   memcpy(m->triangles, corners, 3 * m->triangle_count * sizeof *corners);
   r->report.done[SCREE_REPAIR_CLOSE_SEAM] += b->edge_count - open;
   r->report.seam_distance = distance;
-  return SCREE_OK;
+  scree_rim_free(b);
+  return scree_rim_find(m, b, error);
 }
 
 scree_status scree_repair_seams(scree_repair *r, scree_error *error) {
   double tolerance = r->options->seam_tolerance;
   if (tolerance <= 0) return SCREE_OK;
+  SCREE_CLEANUP(scree_rim_free) scree_rim b = {0};
   SCREE_SCRATCH(uint32_t, corners, 3 * r->mesh.triangle_count, error);
-  for (int step = 0; step < SEAM_STEPS; step++) {
-    SCREE_CLEANUP(scree_rim_free) scree_rim b = {0};
-    SCREE_TRY(scree_rim_find(&r->mesh, &b, error));
-    if (b.edge_count == 0) break;
+  SCREE_TRY(scree_rim_find(&r->mesh, &b, error));
+  for (int step = 0; step < SEAM_STEPS && b.edge_count; step++) {
     double distance = tolerance * r->diagonal * pow(10, step + 1 - SEAM_STEPS);
     SCREE_TRY(try_distance(r, &b, distance, corners, error));
   }

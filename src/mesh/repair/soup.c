@@ -147,10 +147,7 @@ typedef struct sheets {
 
 static void free_sheets(sheets *s) {
   scree_adjacency_free(&s->adjacency);
-  scree_free(s->partner);
-  scree_free(s->turned);
-  scree_free(s->piece);
-  scree_free(s->queue);
+  SCREE_FREE_ALL(s->partner, s->turned, s->piece, s->queue);
 }
 
 static scree_status begin_sheets(sheets *s, const scree_mesh *mesh, scree_error *error) {

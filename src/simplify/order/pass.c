@@ -51,10 +51,8 @@ typedef struct pass {
 } pass;
 
 static void pass_free(pass *p) {
-  void *const blocks[] = {p->apex,  p->leader,     p->chosen, p->marks,
-                          p->taken, p->sorted,     p->target, p->sorted_target,
-                          p->order, p->candidates, p->swap};
-  for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) scree_free(blocks[i]);
+  SCREE_FREE_ALL(p->apex, p->leader, p->chosen, p->marks, p->taken, p->sorted, p->target,
+                 p->sorted_target, p->order, p->candidates, p->swap);
 }
 
 static scree_status pass_allocate(pass *p, scree_decimator *d) {
