@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The figures of docs/background/evidence.md, from the tables in results/ that are there."""
+"""The figures of docs/background/evidence.md and shape-and-calibration.md, from the tables in results/ that are there."""
 import pathlib
 import sys
 
@@ -71,6 +71,17 @@ def bulk():
         write(FIGURES / "evidence-bulk.svg", series, "time, s", "spheres in a quarter")
 
 
+def shape():
+    table = RESULTS / "shape-compared.csv"
+    if table.exists():
+        rows = [r for r in read(table) if r["quantity"] == "all"]
+        series = [(name, [(float(r["us"]), float(r["error"]), r["description"]) for r in rows if r["way"] == way], "points")
+                  for way, name in (("as true", "friction as true"), ("friction", "friction fitted"), ("rolling", "friction 0.25, rolling fitted"),
+                                    ("both", "friction 0.5, rolling fitted"))]
+        write(FIGURES / "shape-and-calibration.svg", series, "processor time of a body and step, us", "error of what was not fitted, margins",
+              (0, 1.15 * max(float(r["us"]) for r in rows), 0, 1.05 * max(float(r["error"]) for r in rows)))
+
+
 if __name__ == "__main__":
     if len(sys.argv) > 1:
         sys.exit(__doc__)
@@ -79,3 +90,4 @@ if __name__ == "__main__":
     penetration()
     orifice()
     bulk()
+    shape()

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Evidence: cases beside measurements and other codes, docs/background/evidence.md.
-#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration, orifice, bulk, polyhedra, clumps, turning, hits, paper, estimator; all without a name
+#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration, orifice, bulk, polyhedra, clumps, turning, hits, paper, estimator, shape; all without a name
 # Each piece goes on where it was broken off; what is done is not done again (delete its table in results/ to repeat it).
 # SCREE_EVIDENCE_SECONDS stops each piece after so long, at a row of its table; the same call goes on with the next. A row that takes
 # longer never ends: some take minutes.
@@ -15,7 +15,7 @@ work=${SCREE_EVIDENCE_WORK:-$root/build/evidence}
 results=$here/results
 shapes=recommended,4x,0.25x,0.0625x,sphere,clump5,clump20,clump50
 mkdir -p "$work" "$results"
-cases=(boulders drum penetration orifice bulk polyhedra clumps turning hits paper estimator)
+cases=(boulders drum penetration orifice bulk polyhedra clumps turning hits paper estimator shape)
 [ $# -gt 0 ] || set -- "${cases[@]}"
 
 # piece COMMAND...: within the limit; stopped says that one of the case's ended there.
@@ -144,6 +144,17 @@ estimator() {
   compared "$results/estimator.csv" "$results/estimator-compared.csv" "$here/estimator/estimator.py" compare
 }
 
+shape() {
+  local tower=$results/shape-tower.csv slope=$results/shape-slope.csv drum=$results/shape-drum.csv
+  local descriptions=(4x recommended clump1 clump5 0.0625x clump20 0.25x clump50)
+  [ -d "${SCREE_DATA_DIR:-$root/../shared/data}" ] || { echo "shape: skipped, there is no folder of scans (SCREE_DATA_DIR)" >&2 && return; }
+  piece "$here/shape/shape.py" tower "$tower" 2-4 "${descriptions[@]}"
+  [ "$stopped" ] && return
+  piece "$here/shape/shape.py" slope "$slope" 2-4 "$tower" "${descriptions[@]}"
+  piece "$here/shape/shape.py" drum "$drum" 2-4 "$tower" "${descriptions[@]}"
+  table "$results/shape-compared.csv" "$here/shape/shape.py" compare "$tower" "$slope" "$drum"
+}
+
 for case in "$@"; do
   folder='' needs='' stopped=''
   case $case in
@@ -152,7 +163,7 @@ for case in "$@"; do
   penetration | bulk) folder=bulk needs=LIGGGHTS ;;
   orifice | clumps | turning) needs=LIGGGHTS ;;
   polyhedra) needs=YADE ;;
-  hits | paper | estimator) ;;
+  hits | paper | estimator | shape) ;;
   *) echo "run.sh: no case '$case'; there are ${cases[*]}" >&2 && exit 2 ;;
   esac
   program=${needs:+${!needs:-${needs,,}}}
