@@ -194,12 +194,13 @@ def compare(runs, *others):
             first, draws = errors(description, way, False), [errors(description, way, True) for _ in range(1000)]
             for name in [*first, "all", "less recommended"]:
                 if name in first:
-                    value, many = first[name], [d[name] for d in draws]
+                    value, many = first[name], [d[name] for d in draws if name in d]
                 else:
                     value, many = score(first), [score(d) for d in draws]
                     if name != "all":
                         value, many = value - score(errors("recommended", "as true", False)), [a - b for a, b in zip(many, base)]
-                low, high = sorted(many)[50], sorted(many)[949]
+                many.sort()
+                low, high = many[len(many) // 20], many[len(many) * 19 // 20]
                 margin = MARGINS.get(name, 0)
                 verdict = "right" if -margin < low and high < margin else "wrong" if high < -margin or low > margin else "open"
                 show(description, way, *setting, cost, name, value, low, high, "" if name == "all" else verdict)
