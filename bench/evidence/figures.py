@@ -74,12 +74,15 @@ def bulk():
 def shape():
     table = RESULTS / "shape-compared.csv"
     if table.exists():
-        rows = [r for r in read(table) if r["quantity"] == "all"]
-        series = [(name, [(float(r["us"]), float(r["error"]), r["description"]) for r in rows if r["way"] == way], "points")
-                  for way, name in (("as true", "friction as true"), ("friction", "friction fitted"), ("rolling", "friction 0.25, rolling fitted"),
-                                    ("both", "friction 0.5, rolling fitted"))]
-        write(FIGURES / "shape-and-calibration.svg", series, "processor time of a body and step, us", "error of what was not fitted, margins",
-              (0, 1.15 * max(float(r["us"]) for r in rows), 0, 1.05 * max(float(r["error"]) for r in rows)))
+        most, series = 8.0, {name: [] for name in ("friction as true", "friction fitted", "rolling fitted at 0.25", "rolling fitted at 0.5")}
+        for r in read(table):
+            if r["quantity"] == "all":
+                way = list(series)[("as true", "friction", "rolling", "both").index(r["way"])]
+                error, label = float(r["error"]), r["description"]
+                series[way].append((float(r["us"]), min(error, most), f"{label}: {error:.0f}" if error > most else label,
+                                    *(min(float(r[end]), most) for end in ("low", "high"))))
+        write(FIGURES / "shape-and-calibration.svg", [(name, points, "points") for name, points in series.items() if points],
+              "processor time of a body and step, us", "error of what was not fitted, margins", (0, 2.5, 0, 1.05 * most))
 
 
 if __name__ == "__main__":

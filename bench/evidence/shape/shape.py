@@ -165,7 +165,8 @@ def compare(runs, *others):
     """Errors, description less truth, drawn a thousand times."""
     rng, tables = random.Random(1), [grouped(path, "way") for path in others]
     scatter = {name: pooled(runs, name) for name in ("angle", "packing", "discharge", "stays")}
-    names = [(table, name, pooled(table, name)) for table, columns in zip(tables, (["run_out"], ["slope", "segregation"])) for name in columns if table]
+    names = [(table, name, pooled(table, name)) for table, columns in zip(tables, (["run_out"], ["slope", "segregation"])) for name in columns
+             if any(len(rows) > 1 for rows in table.values())]  # one run of each tells no scatter
 
     def drawn(rows, name, sd, draw):
         return mean([r[name] for r in rows]) + (rng.gauss(0, sd / math.sqrt(len(rows))) if draw else 0)
@@ -201,9 +202,11 @@ def compare(runs, *others):
                         value, many = value - score(errors("recommended", "as true", False)), [a - b for a, b in zip(many, base)]
                 many.sort()
                 low, high = many[len(many) // 20], many[len(many) * 19 // 20]
-                margin = MARGINS.get(name, 0)
+                margin = MARGINS.get(name, 0.0)
                 verdict = "right" if -margin < low and high < margin else "wrong" if high < -margin or low > margin else "open"
-                show(description, way, *setting, cost, name, value, low, high, "" if name == "all" else verdict)
+                if name not in first:
+                    verdict = "" if name == "all" or low <= 0 <= high else "larger" if low > 0 else "smaller"
+                show(description, way, *setting, cost, name, value, low, high, verdict)
 
 
 def span(word):
