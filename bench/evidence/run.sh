@@ -4,8 +4,8 @@
 # Each piece goes on where it was broken off; what is done is not done again (delete its table in results/ to repeat it).
 # SCREE_EVIDENCE_SECONDS stops each piece after so long, at a row of its table; the same call goes on with the next. A row that takes
 # longer never ends: some take minutes.
-# SCREE_EVIDENCE_DIR names the folder of measurements (default ../shared/evidence); a case without its folder, or the program that it is
-# compared with, is skipped. One process at a time: nice -n 15 bench/evidence/run.sh runs beside other work. Some hours of one core in all.
+# SCREE_EVIDENCE_DIR names the folder of measurements (default ../shared/evidence), SCREE_DATA_DIR that of scans (../shared/data); a
+# case without its folder, or the program that it is compared with, is skipped. One process at a time: nice -n 15 bench/evidence/run.sh runs beside other work. Some hours of one core in all.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
