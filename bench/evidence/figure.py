@@ -20,7 +20,7 @@ def distribution(values):
 
 
 def write(path, series, x_name, y_name, box=None):
-    """series: name, points, and whether they are "line" or "points"; box: x and y from, to."""
+    """series: name, points, which may have a label and an interval of y, and whether they are "line" or "points"; box: x and y from, to."""
     width, height, left, bottom, top, right = 820, 400, 60, 50, 15, 195
     every = [p for _, points, _ in series for p in points]
     if not every:
@@ -47,7 +47,9 @@ def write(path, series, x_name, y_name, box=None):
             way = "L".join("{:.1f} {:.1f}".format(*at(*p)) for p in points)
             out.append(f'<path d="M{way}" fill="none" stroke="{colour}" stroke-width="1.6" clip-path="url(#in)"/>')
         else:
-            out += ['<circle cx="{:.1f}" cy="{:.1f}" r="3" fill="{}"/>'.format(*at(*p), colour) for p in points]
+            out += ['<circle cx="{:.1f}" cy="{:.1f}" r="3" fill="{}"/>'.format(*at(*p[:2]), colour) for p in points]
+            out += ['<text x="{:.1f}" y="{:.1f}" font-size="10">{}</text>'.format(at(*p[:2])[0] + 5, at(*p[:2])[1] + 3, p[2]) for p in points if len(p) > 2]
+            out += ['<path d="M{:.1f} {:.1f}V{:.1f}" stroke="{}"/>'.format(*at(p[0], p[3]), at(p[0], p[4])[1], colour) for p in points if len(p) > 4]
         y = top + 16 + 17 * k
         out.append(f'<path d="M{width - right + 10} {y - 4}h18" stroke="{colour}" stroke-width="3"/><text x="{width - right + 34}" y="{y}">{name}</text>')
     with open(path, "w") as file:

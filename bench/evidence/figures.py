@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The figures of docs/background/evidence.md, from the tables in results/ that are there."""
+"""The figures of docs/background/evidence.md and shape-and-calibration.md, from the tables in results/ that are there."""
 import pathlib
 import sys
 
@@ -71,6 +71,20 @@ def bulk():
         write(FIGURES / "evidence-bulk.svg", series, "time, s", "spheres in a quarter")
 
 
+def shape():
+    table = RESULTS / "shape-compared.csv"
+    if table.exists():
+        most, series = 8.0, {name: [] for name in ("friction as true", "friction fitted", "rolling fitted at 0.25", "rolling fitted at 0.5")}
+        for r in read(table):
+            if r["quantity"] == "all":
+                way = list(series)[("as true", "friction", "rolling", "both").index(r["way"])]
+                error, label = float(r["error"]), r["description"]
+                series[way].append((float(r["us"]), min(error, most), f"{label}: {error:.0f}" if error > most else label,
+                                    *(min(float(r[end]), most) for end in ("low", "high"))))
+        write(FIGURES / "shape-and-calibration.svg", [(name, points, "points") for name, points in series.items() if points],
+              "processor time of a body and step, us", "error of what was not fitted, margins", (0, 2.5, 0, 1.05 * most))
+
+
 if __name__ == "__main__":
     if len(sys.argv) > 1:
         sys.exit(__doc__)
@@ -79,3 +93,4 @@ if __name__ == "__main__":
     penetration()
     orifice()
     bulk()
+    shape()

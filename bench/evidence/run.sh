@@ -1,11 +1,11 @@
 #!/bin/bash
 # Evidence: cases beside measurements and other codes, docs/background/evidence.md.
-#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration, orifice, bulk, polyhedra, clumps, turning, rockable, hits, impacts, paper, estimator; all without a name
+#   bench/evidence/run.sh [CASE...]     boulders, drum, penetration, orifice, bulk, polyhedra, clumps, turning, rockable, hits, impacts, paper, estimator, shape; all without a name
 # Each piece goes on where it was broken off; what is done is not done again (delete its table in results/ to repeat it).
 # SCREE_EVIDENCE_SECONDS stops each piece after so long, at a row of its table; the same call goes on with the next. A row that takes
 # longer never ends: some take minutes.
-# SCREE_EVIDENCE_DIR names the folder of measurements (default ../shared/evidence); a case without its folder, or the program that it is
-# compared with, is skipped. One process at a time: nice -n 15 bench/evidence/run.sh runs beside other work. Some hours of one core in all.
+# SCREE_EVIDENCE_DIR names the folder of measurements (default ../shared/evidence), SCREE_DATA_DIR that of scans (../shared/data); a
+# case without its folder, or the program that it is compared with, is skipped. One process at a time: nice -n 15 bench/evidence/run.sh runs beside other work. Some hours of one core in all.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -15,7 +15,7 @@ work=${SCREE_EVIDENCE_WORK:-$root/build/evidence}
 results=$here/results
 shapes=recommended,4x,0.25x,0.0625x,sphere,clump5,clump20,clump50
 mkdir -p "$work" "$results"
-cases=(boulders drum penetration orifice bulk polyhedra clumps turning rockable hits impacts paper estimator)
+cases=(boulders drum penetration orifice bulk polyhedra clumps turning rockable hits impacts paper estimator shape)
 [ $# -gt 0 ] || set -- "${cases[@]}"
 
 # piece COMMAND...: within the limit; stopped says that one of the case's ended there.
@@ -160,6 +160,17 @@ estimator() {
   compared "$results/estimator.csv" "$results/estimator-compared.csv" "$here/estimator/estimator.py" compare
 }
 
+shape() {
+  local tower=$results/shape-tower.csv slope=$results/shape-slope.csv drum=$results/shape-drum.csv
+  local descriptions=(4x recommended clump1 clump5 0.0625x clump20 0.25x clump50)
+  [ -d "${SCREE_DATA_DIR:-$root/../shared/data}" ] || { echo "shape: skipped, there is no folder of scans (SCREE_DATA_DIR)" >&2 && return; }
+  piece "$here/shape/shape.py" tower "$tower" 2-4 "${descriptions[@]}"
+  [ "$stopped" ] && return
+  piece "$here/shape/shape.py" slope "$slope" 2-4 "$tower" "${descriptions[@]}"
+  piece "$here/shape/shape.py" drum "$drum" 2-4 "$tower" "${descriptions[@]}"
+  table "$results/shape-compared.csv" "$here/shape/shape.py" compare "$tower" "$slope" "$drum"
+}
+
 for case in "$@"; do
   folder='' needs='' stopped=''
   case $case in
@@ -170,7 +181,7 @@ for case in "$@"; do
   polyhedra) needs=YADE ;;
   rockable) folder=authume needs=ROCKABLE ;;
   impacts) folder=chantsura ;;
-  hits | paper | estimator) ;;
+  hits | paper | estimator | shape) ;;
   *) echo "run.sh: no case '$case'; there are ${cases[*]}" >&2 && exit 2 ;;
   esac
   program=${needs:+${!needs:-${needs,,}}}

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The scripts of bench/evidence on inputs whose answers are known: statistics against counting and random samples, a table
-that was broken off, a drawn picture, a camera over one sphere, hits, a cube dropped on a slope of three sheets, and rates by Beverloo's law.
+that was broken off, a drawn picture, a camera over one sphere, hits, a cube dropped on a slope of three sheets, fits on
+straight lines, and rates by Beverloo's law.
 usage: check.py ROOT, with SCREE_LIBRARY and PYTHONPATH"""
 import contextlib
 import io
@@ -16,7 +17,7 @@ from types import SimpleNamespace
 ROOT, SCRATCH = pathlib.Path(sys.argv[1]), tempfile.TemporaryDirectory()
 HOME = pathlib.Path(SCRATCH.name)
 os.environ["SCREE_EVIDENCE_DIR"], os.environ["SCREE_EVIDENCE_WORK"] = str(HOME), str(HOME / "work")
-for folder in ("", "boulders", "bulk", "codes", "drum", "hits", "impacts", "orifice", "paper"):
+for folder in ("", "boulders", "bulk", "codes", "drum", "hits", "impacts", "orifice", "paper", "shape"):
     sys.path.insert(0, str(ROOT / "bench" / "evidence" / folder))
 import boulders  # noqa: E402
 import bulk  # noqa: E402
@@ -30,6 +31,7 @@ import impacts  # noqa: E402
 import orifice  # noqa: E402
 import polyhedra  # noqa: E402
 import rockable  # noqa: E402
+import shape  # noqa: E402
 import turning  # noqa: E402
 
 wrong = []
@@ -270,7 +272,16 @@ def stones():
     check(abs(n[0] / n[2] + 0.5) < 1e-9 and abs(n[1]) < 1e-9, f"the normal of a slope: {n}")
 
 
-for part in (statistics, table, profiles, turns, quarry, speed, holes, processes, bodies, slopes, equations, intervals, stones):
+def crossings():
+    check(shape.place([10, 20, 18], 19) == (0, 0.9) and shape.place([10, 20, 18], 25) is None and shape.place([10, 20, 18], 25, True) == (0, 1),
+          "where a way reaches an angle")
+    rows = [{"angle": float(a)} for a in (10, 12)]
+    runs = {("4x", 0.5, 0.0): rows, ("a", 0.25, 0.0): [{"angle": 9.0}], ("a", 0.5, 0.0): [{"angle": 13.0}], ("a", 0.9, 0.0): [{"angle": 14.0}]}
+    check(shape.fitted(runs, "a") == {"as true": (0.5, 0.0), "friction": (0.375, 0.0)}, f"a friction fitted: {shape.fitted(runs, 'a')}")
+    check(abs(shape.pooled(runs, "angle") - math.sqrt(2)) < 1e-12, "a pooled scatter")
+
+
+for part in (statistics, table, profiles, turns, quarry, speed, holes, processes, bodies, slopes, equations, intervals, stones, crossings):
     part()
 print("\n".join(wrong) or "the scripts of bench/evidence give what is known")
 sys.exit(bool(wrong))

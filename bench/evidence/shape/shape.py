@@ -1,0 +1,227 @@
+#!/usr/bin/env python3
+"""Does shape beat calibration? Cheaper descriptions of a stone, whose friction or rolling friction is fitted to the truth's heap, tell
+what was not fitted.
+
+  shape.py tower TABLE.csv SEEDS DESCRIPTION...   heap, packing, discharge and what stays, by friction and rolling friction
+  shape.py slope|drum TABLE.csv SEEDS TOWER.csv DESCRIPTION...   run-out; slope and segregation: as the truth is and as fitted
+  shape.py compare TOWER.csv SLOPE.csv DRUM.csv   what is fitted and the errors of what is not, as CSV
+
+SEEDS is a range as 2-4; tables get the rows that they lack. Descriptions: 4x (the truth), recommended, 0.25x, 0.0625x, clump1 to
+clump50. Margins: ../margins.md. Environment: SCREE_DATA_DIR (the stone's folder, default ../shared/data)."""
+import math
+import os
+import pathlib
+import random
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from common import ROOT, WORK, Table, deviation, library, mean, processor_time, read, run, show  # noqa: E402
+
+SCAN = pathlib.Path(os.environ.get("SCREE_DATA_DIR", ROOT.parent / "shared" / "data")) / "stone_073ac.ply"
+TRUTH, FRICTION, D = "4x", 0.5, 0.02
+# Ways to fit: rows of friction and rolling friction, along which one of them grows.
+WAYS = {"friction": [(0.25, 0.0), (0.5, 0.0), (0.9, 0.0)], "rolling": [(0.25, 0.0), (0.25, 0.15), (0.25, 0.4)],
+        "both": [(0.5, 0.0), (0.5, 0.15), (0.5, 0.4)]}
+KEY = ["description", "friction", "rolling", "seed"]
+AS_TRUE = (FRICTION, 0.0)
+MARGINS = {"packing": 0.015, "discharge": 0.02, "stays": 4, "run_out": 0.05, "slope": 2, "segregation": 0.1}
+
+
+def grain(description):
+    """The file of a description, made once."""
+    path = WORK / "shape" / description / (SCAN.stem + (".csv" if description.startswith("clump") else ".stl"))
+    if not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if description.startswith("clump"):
+            run("clump", SCAN, "-n", description[5:], "-o", path.parent, "-q", "-f", "--threads", 1)
+        else:
+            mesh = library().load(str(SCAN)).repair()
+            curve = (mesh[0] if isinstance(mesh, tuple) else mesh).curve()
+            count = curve.choose().recommended.triangle_count * (1.0 if description == "recommended" else float(description[:-1]))
+            curve.mesh(curve.find(max(4, round(count)))).write(str(path))
+    return path
+
+
+def scene(name, description, friction, rolling, seed=1):
+    path = grain(description)
+    file = path.with_name(f"{name}.yaml")
+    file.write_text((HERE / file.name).read_text().replace("file: grain.stl", f"{'clump' if path.suffix == '.csv' else 'file'}: {path.name}"))
+    return library().Scene(str(file), {"materials.grain.friction": friction, "materials.grain.rolling_friction": rolling, "seed": seed})
+
+
+def tower(description, friction, rolling, seed):
+    """Angle of the wedge below, packing, time until 40 are out, how many stay, processor time of a body and step."""
+    begun = processor_time()
+    box = scene("tower", description, friction, rolling, seed)
+    box.run(until=0.7)
+    heights = [p[2] for p in box.bodies().position.tolist()]
+    packing = len(heights) * math.pi / 6 * D ** 3 / (0.16 * 0.1 * 2 * mean(heights))
+    below, moment = 0, math.nan
+    while box.time < 1.8 - 1e-9:
+        box.run(until=box.time + 0.01)
+        at = box.bodies().position.tolist()
+        now = sum(p[2] < 0 for p in at)
+        if below < 40 <= now:
+            moment = box.time - 0.7 - 0.01 * (now - 40) / (now - below)
+        below = now
+    heap = [(p[0], p[2] + 0.07) for p in at if p[2] < 0]
+    middle = mean([x for x, _ in heap])
+    wide = math.sqrt(mean([(x - middle) ** 2 for x, _ in heap]))
+    angle = math.degrees(math.atan(3 * mean([z for _, z in heap]) / (math.sqrt(6) * wide)))
+    return angle, packing, moment, len(at) - below, 1e6 * (processor_time() - begun) / (90 * box.world.step_count)
+
+
+def slope(description, friction, rolling, seed):
+    """How far 30 bodies, far from each other, run out from the foot: the mean and its standard error."""
+    rng, rows = random.Random(seed), ["shape,size,x,y,z,qw,qx,qy,qz"]
+    for k in range(30):
+        turn = [rng.gauss(0, 1) for _ in range(4)]
+        rows.append(f"grain,{D},-0.52,{0.2 * k},0.35," + ",".join(repr(q / math.hypot(*turn)) for q in turn))
+    (grain(description).parent / "bodies.csv").write_text("\n".join(rows) + "\n")
+    fall = scene("slope", description, friction, rolling)
+    fall.run()
+    ways = [p[0] for p in fall.bodies().position.tolist()]
+    return mean(ways), deviation(ways) / math.sqrt(len(ways))
+
+
+def drum(description, friction, rolling, seed):
+    """Over three quarters of a turn, after a half: slope of the common centre; how much farther the large ones are from the axis."""
+    shell, slopes, apart = scene("drum", description, friction, rolling, seed), [], []
+    for k in range(31):
+        shell.run(until=1.3 + 0.05 * k)
+        bodies = shell.bodies()
+        at, heavy = bodies.position.tolist(), max(bodies.mass)
+        slopes.append(abs(math.degrees(math.atan2(mean([p[0] for p in at]), -mean([p[2] for p in at])))))
+        far = [[math.hypot(p[0], p[2]) for p, m in zip(at, bodies.mass) if (m > 0.7 * heavy) == large] for large in (False, True)]
+        apart.append((mean(far[1]) - mean(far[0])) / 0.019)
+    return mean(slopes), mean(apart)
+
+
+def settings(description):
+    return [AS_TRUE] if description == TRUTH else sorted({row for rows in WAYS.values() for row in rows})
+
+
+def towers(path, seeds, descriptions):
+    table = Table(path, [*KEY, "angle", "packing", "discharge", "stays", "us"], 4)
+    for seed in seeds:
+        for description in descriptions:
+            for setting in settings(description):
+                if table.key((description, *setting, seed)) not in table.done:
+                    table.add(description, *setting, seed, *tower(description, *setting, seed))
+
+
+def grouped(path, *names):
+    """Rows by description and way, or by description and setting."""
+    groups = {}
+    for row in read(path) if pathlib.Path(path).exists() else []:
+        key = (row["description"], *(row[n] if n == "way" else float(row[n]) for n in names))
+        groups.setdefault(key, []).append({k: float(v) for k, v in row.items() if k not in ("description", "way")})
+    return groups
+
+
+def pooled(groups, name):
+    """The scatter of one run, over all settings."""
+    told = [[r[name] for r in rows] for rows in groups.values()]
+    sums = [(sum((v - mean(values)) ** 2 for v in values), len(values) - 1) for values in told if not math.isnan(sum(values))]
+    return math.sqrt(sum(s for s, _ in sums) / max(1, sum(n for _, n in sums)))
+
+
+def place(angles, wanted, beyond=False):
+    """Between which rows of a way, and how far, straight lines reach the angle wanted; beyond: else the nearer end."""
+    for k, (a, b) in enumerate(zip(angles, angles[1:])):
+        if (a - wanted) * (b - wanted) <= 0 and a != b:
+            return k, (a - wanted) / (a - b)
+    return (min(((k, t) for k in range(len(angles) - 1) for t in (0, 1)), key=lambda p: abs(angles[p[0] + p[1]] - wanted)) if beyond else None)
+
+
+def along(values, at):
+    k, t = at
+    return values[k] + t * (values[k + 1] - values[k])
+
+
+def fitted(runs, description):
+    """By way: friction and rolling friction; without those ways that do not reach the truth's angle."""
+    found, angle = {"as true": AS_TRUE}, lambda key: mean([r["angle"] for r in runs[key]])
+    for way, rows in WAYS.items():
+        if description != TRUTH and all((description, *row) in runs for row in rows):
+            at = place([angle((description, *row)) for row in rows], angle((TRUTH, *AS_TRUE)))
+            if at:
+                found[way] = tuple(along([row[i] for row in rows], at) for i in (0, 1))
+    return found
+
+
+def predictions(what, path, seeds, runs, descriptions):
+    name, names = {"slope": (slope, ["run_out", "error"]), "drum": (drum, ["slope", "segregation"])}[what]
+    table = Table(path, ["description", "way", "seed", "friction", "rolling", *names], 3)
+    for seed in seeds:
+        for description in descriptions:
+            for way, setting in fitted(runs, description).items():
+                if table.key((description, way, seed)) not in table.done:
+                    table.add(description, way, seed, *setting, *name(description, *setting, seed))
+
+
+def compare(runs, *others):
+    """Errors, description less truth, drawn 4,000 times."""
+    rng, tables = random.Random(1), [grouped(path, "way") for path in others]
+    scatter = {name: pooled(runs, name) for name in ("angle", "packing", "discharge", "stays")}
+    names = [(table, name, pooled(table, name)) for table, columns in zip(tables, (["run_out"], ["slope", "segregation"])) for name in columns
+             if any(len(rows) > 1 for rows in table.values())]  # one run of each tells no scatter
+
+    def drawn(rows, name, sd, draw):
+        return mean([r[name] for r in rows]) + (rng.gauss(0, sd / math.sqrt(len(rows))) if draw else 0)
+
+    def errors(description, way, draw):
+        rows, found = WAYS.get(way, [AS_TRUE]), {}
+        angles = [drawn(runs[key], "angle", scatter["angle"], draw) for key in [(TRUTH, *AS_TRUE), *((description, *row) for row in rows)]]
+        at = place(angles[1:], angles[0], True) if way in WAYS else None
+        for name in ("packing", "discharge", "stays"):
+            values = [drawn(runs[description, *row], name, scatter[name], draw) for row in rows]
+            found[name] = (along(values, at) if way in WAYS else values[0]) - drawn(runs[TRUTH, *AS_TRUE], name, scatter[name], draw)
+        for table, name, sd in names:
+            if (description, way) in table and (TRUTH, "as true") in table:
+                found[name] = drawn(table[description, way], name, sd, draw) - drawn(table[TRUTH, "as true"], name, sd, draw)
+        return {name: e for name, e in found.items() if not math.isnan(e)}
+
+    def score(found):
+        return math.sqrt(mean([(e / MARGINS[name]) ** 2 for name, e in found.items()]))
+
+    show("description", "way", "friction", "rolling", "us", "quantity", "error", "low", "high", "verdict")
+    base = [score(errors("recommended", "as true", True)) for _ in range(4000)]
+    for description in dict.fromkeys(key[0] for key in runs if key[0] != TRUTH):
+        cost = mean([r["us"] for key, rows in runs.items() if key[0] == description for r in rows])
+        for way, setting in fitted(runs, description).items():
+            first, draws = errors(description, way, False), [errors(description, way, True) for _ in range(4000)]
+            for name in [*first, "all", "less recommended"]:
+                if name in first:
+                    value, many = first[name], [d[name] for d in draws if name in d]
+                else:
+                    value, many = score(first), [score(d) for d in draws]
+                    if name != "all":
+                        value, many = value - score(errors("recommended", "as true", False)), [a - b for a, b in zip(many, base)]
+                many.sort()
+                low, high = many[len(many) // 20], many[len(many) * 19 // 20]
+                margin = MARGINS.get(name, 0.0)
+                verdict = "right" if -margin < low and high < margin else "wrong" if high < -margin or low > margin else "open"
+                if name not in first:
+                    verdict = "" if name == "all" or low <= 0 <= high else "larger" if low > 0 else "smaller"
+                show(description, way, *setting, cost, name, value, low, high, verdict)
+
+
+def span(word):
+    first, _, last = word.partition("-")
+    return range(int(first), int(last or first) + 1)
+
+
+def main(verb, path, *words):
+    if verb == "tower":
+        return towers(path, span(words[0]), words[1:])
+    if verb == "compare":
+        return compare(grouped(path, "friction", "rolling"), *words)
+    return predictions(verb, path, span(words[0]), grouped(words[1], "friction", "rolling"), words[2:])
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 4 or sys.argv[1] not in ("tower", "slope", "drum", "compare"):
+        sys.exit(__doc__)
+    main(*sys.argv[1:])
