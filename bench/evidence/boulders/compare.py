@@ -23,6 +23,8 @@ def rockable():
     terrain, rows = Terrain(data("authume"), 1), []
     with open(data("authume") / "rockable_endpoints.csv") as file:
         for row in csv.DictReader(file):
+            if row["profile"] != "P1":
+                continue
             x, z = float(row["x_end_m"]), float(row["z_end_m"])
             rows.append((*terrain.seen(x, z), terrain.zone(x, z)))
     return rows
