@@ -78,7 +78,7 @@ def shape():
         for r in read(table):
             if r["quantity"] == "all":
                 way = list(series)[("as true", "friction", "rolling", "both").index(r["way"])]
-                error, label = float(r["error"]), r["description"]
+                error, label = float(r["error"]), {"clump1": "sphere", "0.0625x": "a sixteenth"}.get(r["description"], r["description"])
                 series[way].append((float(r["us"]), min(error, most), f"{label}: {error:.0f}" if error > most else label,
                                     *(min(float(r[end]), most) for end in ("low", "high"))))
         write(FIGURES / "shape-and-calibration.svg", [(name, points, "points") for name, points in series.items() if points],
