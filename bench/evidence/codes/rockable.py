@@ -336,7 +336,6 @@ def compare(path):
             print(line)
 
 
-
 def trajectory(quarry, stone, place, orientation, code):
     """Rockable's: a row of boulders.py, and how far the deepest contact went."""
     folder = WORK / "rockable" / "slope"

@@ -4,7 +4,6 @@
  *
  * This file alone is compiled for AVX2; whether the processor has it is asked before it is called.
  * With less than that four at once take longer than four one by one. */
-#include "base/atomic.h"
 #include "world/contact/law.h"
 #include "world/contact/spheres.h"
 

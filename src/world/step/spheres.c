@@ -88,14 +88,14 @@ static void step_block(void *context, scree_block block) {
   s->blocks.tallies[block.index] = (scree_tally){.trouble = scree_no_trouble};
   s->blocks.items[block.index].shares = 0;
   scree_sphere_lanes four = {.law = {scree_none, scree_none, scree_none, scree_none}};
-  const size_t width = scree_sphere_lanes_serve(world) ? SCREE_SPHERE_LANES : 1;
-  for (size_t i = 0; i < count; i += width) {
-    const size_t ahead = i + AHEAD + width;
-    for (size_t k = i + AHEAD; k < ahead && k < count; k++) fetch_ahead(s, found[k]);
-    if (width > 1 && i + width <= count)
-      step_four(world, block, found + i, &four);
+  const bool by_fours = scree_sphere_lanes_serve(world);
+  for (size_t i = 0, width; i < count; i += width) {
+    width = by_fours && i + SCREE_SPHERE_LANES <= count ? SCREE_SPHERE_LANES : 1;
+    for (size_t k = i + AHEAD; k < i + AHEAD + width && k < count; k++) fetch_ahead(s, found[k]);
+    if (width == 1)
+      step_alone(world, block, found[i]);
     else
-      for (size_t k = i; k < i + width && k < count; k++) step_alone(world, block, found[k]);
+      step_four(world, block, found + i, &four);
   }
 }
 
