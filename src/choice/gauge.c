@@ -7,6 +7,7 @@
 
 #include "base/alloc.h"
 #include "base/math.h"
+#include "base/owned.h"
 #include "base/parallel.h"
 #include "base/radix.h"
 #include "base/sum.h"
@@ -341,6 +342,17 @@ static scree_status search_facets(forward *f, const scree_surface *from, const s
   return SCREE_OK;
 }
 
+/* Of the scan's facets few may be farther off than what was found. */
+static scree_status search_scan(forward *f, double gap, scree_error *error) {
+  SCREE_CLEANUP(scree_mesh_free) scree_mesh part = {0};
+  SCREE_OWNED(scree_surface, surface);
+  SCREE_TRY(scree_surface_farther_part(f->gauge->surface, f->level, (1 + gap) * f->maximum, &part,
+                                       error));
+  if (part.triangle_count == 0) return SCREE_OK;
+  SCREE_TRY(scree_surface_create(&part, &surface, error));
+  return search_facets(f, surface, f->level, gap, error);
+}
+
 static scree_status read_means(forward *f, double gap, scree_gauge_reading *r, scree_error *error) {
   double back;
   go_forward(f, gap);
@@ -354,7 +366,7 @@ static scree_status read_farthest(forward *f, double gap, scree_gauge_reading *r
   const scree_gauge *g = f->gauge;
   SCREE_TRY(search_facets(f, f->level, g->surface, gap, error));
   if (g->refined && sqrt(g->surface->largest_facet) >= SMALL_FACET * g->length)
-    SCREE_TRY(search_facets(f, g->surface, f->level, gap, error));
+    SCREE_TRY(search_scan(f, gap, error));
   r->errors[SCREE_ERROR_HAUSDORFF] = f->maximum / g->length;
   vec3_store(r->farthest, f->at);
   return SCREE_OK;

@@ -21,6 +21,8 @@ enum { FEWER = 2 };
 static const double DENSE_GAP = 0.004;
 /* The most load of a level that will do: leaves room for what the measurement misses. */
 static const double MOST_LOAD = 0.98;
+/* From this load by the quick measurement on the dense one would not find a level to do. */
+static const double SURE_LOAD = 1.1;
 
 typedef struct search {
   const scree_curve *curve;
@@ -76,27 +78,31 @@ static scree_status narrow(search *s, const scree_gauge *gauge, double gap, brac
 }
 
 /* Between the coarsest usual level that keeps all, or the finest, and the next coarser usual one.
- */
-static scree_status first_bracket(search *s, const scree_gauge *quick, bracket *b) {
+ * *keeps: there may be such a level. Without another known the finest is taken to be one. */
+static scree_status first_bracket(search *s, const scree_gauge *quick, bracket *b, bool *keeps) {
+  const bool is_first = s->below == SIZE_MAX;
   size_t usual[SCREE_FIDELITY_MOST], count = scree_fidelity_levels(s->curve, usual);
   *b = (bracket){s->finest, scree_curve_level_count(s->curve)};
+  *keeps = is_first;
   while (count-- > 0 && usual[count] > s->finest) {
-    bool keeps = false, far = triangles_at(s->curve, usual[count]) < s->below / FEWER;
-    if (!far || s->below == SIZE_MAX)
-      SCREE_TRY(keeps_all(s, quick, SCREE_GAUGE_GAP, usual[count], &keeps));
-    if (keeps) {
-      b->fine = usual[count];
-      return SCREE_OK;
+    if (is_first || triangles_at(s->curve, usual[count]) >= s->below / FEWER) {
+      SCREE_TRY(keeps_all(s, quick, SCREE_GAUGE_GAP, usual[count], keeps));
+      if (*keeps) {
+        b->fine = usual[count];
+        return SCREE_OK;
+      }
     }
     b->coarse = usual[count];
   }
-  return SCREE_OK;
+  *keeps = is_first;
+  return is_first ? SCREE_OK : keeps_all(s, quick, SCREE_GAUGE_GAP, s->finest, keeps);
 }
 
 /* *keeps: level b->fine does; else none does from the finest on. */
 static scree_status find_level(search *s, const scree_gauge *quick, const scree_gauge *dense,
                                bracket *b, bool *keeps) {
-  SCREE_TRY(first_bracket(s, quick, b));
+  SCREE_TRY(first_bracket(s, quick, b, keeps));
+  if (!*keeps) return SCREE_OK;
   SCREE_TRY(narrow(s, quick, SCREE_GAUGE_GAP, b));
   for (size_t step = 1;; step *= 2) {
     SCREE_TRY(keeps_all(s, dense, DENSE_GAP, b->fine, keeps));
@@ -107,15 +113,23 @@ static scree_status find_level(search *s, const scree_gauge *quick, const scree_
   return *keeps ? narrow(s, dense, DENSE_GAP, b) : SCREE_OK;
 }
 
+/* Quick where that is sure, else dense. */
+static scree_status read_beyond(const search *s, const scree_gauge *quick, const scree_gauge *dense,
+                                size_t level_index, scree_gauge_reading *reading) {
+  SCREE_TRY(read_level(s, quick, SCREE_GAUGE_GAP, level_index, NULL, reading));
+  if (scree_normalised_error(reading->errors, s->tolerances, NULL) >= SURE_LOAD) return SCREE_OK;
+  return read_level(s, dense, DENSE_GAP, level_index, NULL, reading);
+}
+
 /* What the next coarser level is refused for; of the last level, what is nearest to it. What the
  * quick measurement refused may do by the dense one: then it is taken. */
-static scree_status find_limit(search *s, const scree_gauge *dense, size_t *level_index,
-                               scree_recommended *found) {
+static scree_status find_limit(search *s, const scree_gauge *quick, const scree_gauge *dense,
+                               size_t *level_index, scree_recommended *found) {
   scree_gauge_reading beyond = s->reading;
   for (;; ++*level_index) {
     found->is_last = *level_index + 1 == scree_curve_level_count(s->curve);
     if (found->is_last) break;
-    SCREE_TRY(read_level(s, dense, DENSE_GAP, *level_index + 1, NULL, &beyond));
+    SCREE_TRY(read_beyond(s, quick, dense, *level_index + 1, &beyond));
     if (!(scree_normalised_error(beyond.errors, s->tolerances, NULL) <= MOST_LOAD)) break;
     s->reading = beyond;
   }
@@ -138,7 +152,7 @@ static scree_status search_from(search *s, size_t from, const scree_gauge *quick
   SCREE_TRY(find_level(s, quick, dense, &b, is_found));
   *is_found |= b.fine == 0;
   if (!*is_found) return SCREE_OK;
-  return find_limit(s, dense, &b.fine, found);
+  return find_limit(s, quick, dense, &b.fine, found);
 }
 
 scree_status scree_recommend(const scree_curve *curve, const scree_gauge *quick,

@@ -1,8 +1,8 @@
 /* Decimation by edge collapses in the order of their cost.
  *
- *   passes:    rank all edges, take the cheapest that are independent, judge them side by side,
- *              collapse what is allowed; again, while that is worth its parallel loops. On the way
- *              the surface becomes the reference surface: the scan itself where it is not larger.
+ *   passes:    rank all edges side by side, collapse the cheapest that are allowed; again, while
+ *              that is worth its parallel loops. On the way the surface becomes the reference
+ *              surface: the scan itself where it is not larger.
  *   samples:   the vertices of the reference surface that went become samples of the distance.
  *   in order:  a queue of all edges; the cheapest is judged, and collapsed if it is allowed and
  *              still the cheapest. Costs are found anew whenever a quarter of the triangles has
@@ -21,10 +21,9 @@
  *
  * Garland and Heckbert 1997, "Surface simplification using quadric error metrics": greedy collapses
  * in the order of a quadratic cost. Lindstrom and Turk 1998, "Fast and memory efficient polygonal
- * simplification": E, and places that keep the volume (cost/volume.c). Luby 1986, "A simple
- * parallel algorithm for the maximal independent set problem": the passes' independent edges.
- * Klein, Liebich and Strasser 1996, "Mesh reduction with error control": samples
- * (cost/deviation.h). Hoppe 1996, "Progressive meshes": the record. */
+ * simplification": E, and places that keep the volume (cost/volume.c). Klein, Liebich and Strasser
+ * 1996, "Mesh reduction with error control": samples (cost/deviation.h). Hoppe 1996, "Progressive
+ * meshes": the record. */
 #include "simplify/decimate.h"
 
 #include "base/parallel.h"
@@ -133,6 +132,7 @@ scree_status scree_decimator_start(scree_decimator *d, const scree_mesh *mesh,
   *d = (scree_decimator){.options = *options,
                          .first_triangle_count = mesh->triangle_count,
                          .usual_far = INFINITY,
+                         .expect = scree_tune.expect,
                          .error = error};
   d->coster = options->method == SCREE_METHOD_QECD ? &scree_qecd_coster : &scree_volume_coster;
   SCREE_TRY(scree_halfmesh_build(mesh, NULL, &d->s, error));
@@ -150,6 +150,7 @@ scree_status scree_decimate_from(scree_decimator *d, const scree_fork *fork, int
                          .options = *options,
                          .first_triangle_count = fork->s.live_triangle_count,
                          .usual_far = INFINITY,
+                         .expect = scree_tune.expect,
                          .order = order,
                          .error = error};
   SCREE_TRY(scree_halfmesh_copy(&fork->s, &d->s, error));
@@ -201,7 +202,7 @@ scree_status scree_decimate_squeeze(scree_decimator *d) {
 
 scree_status scree_decimate_refresh(scree_decimator *d) {
   SCREE_TRY(scree_decimate_squeeze(d));
-  scree_surface_tree_fit(&d->tree, &d->s, NULL);
+  scree_surface_tree_fit(&d->tree, &d->s);
   return scree_has_samples(&d->samples) ? scree_samples_average(&d->samples, d->error) : SCREE_OK;
 }
 
@@ -229,7 +230,8 @@ static double deviation_for(const scree_decimator *d, double area, double cost) 
   return fmin(1, fmin(drift, usual));
 }
 
-/* The cost with the deviation's part, of the fan as it is set; above `most` at least `most`. */
+/* The cost with the deviation's part, of the fan as it is set; above `most` a lower bound, at least
+ * `most`. */
 static double whole_cost(const scree_decimator *d, const scree_fan *f, const scree_candidate *c,
                          double most) {
   if (!scree_has_samples(&d->samples)) return c->cost;
@@ -240,7 +242,8 @@ static double whole_cost(const scree_decimator *d, const scree_fan *f, const scr
   double to = most < INFINITY ? deviation_for(d, c->area, rest > 0 ? rest : 0) : INFINITY;
   double far = scree_larger(scree_deviation_find(&d->samples, &d->s, f, from, to), grown);
   if (far <= from) return c->cost;
-  return far < INFINITY ? c->cost + penalty(d, c->area, far) : scree_larger(most, c->cost);
+  double cost = c->cost + penalty(d, c->area, far);
+  return far <= to ? cost : scree_larger(most, cost);
 }
 
 /* Tries one place; the fan is set to it. */
@@ -264,8 +267,11 @@ scree_verdict scree_decimate_judge(const scree_decimator *d, uint32_t h, double 
   static const double NEAR = 2; /* another place is hardly worth its time for less */
   scree_verdict v = {.cost = INFINITY};
   scree_candidate best, others[SCREE_FALLBACK_COUNT];
-  if (!scree_fan_of_edge(&d->s, h, f) || !scree_fan_keeps_topology(&d->s, f)) return v;
   d->coster->evaluate(&d->s, &h, 1, &best);
+  v.plain = best.cost;
+  if (best.cost > most) v.cost = best.cost;
+  if (best.cost > most || !scree_fan_of_edge(&d->s, h, f) || !scree_fan_keeps_topology(&d->s, f))
+    return v;
   try_place(d, &best, most, f, &v);
   if (!(v.cost < NEAR * best.cost)) {
     for (int k = 0; k < SCREE_FALLBACK_COUNT; k++) d->coster->fall_back(&d->s, h, k, &others[k]);
@@ -280,22 +286,38 @@ scree_verdict scree_decimate_judge(const scree_decimator *d, uint32_t h, double 
   return v;
 }
 
-void scree_decimate_collapse(scree_decimator *d, size_t i, const scree_fan *f, double error) {
+bool scree_decimate_is_crowded(const scree_halfmesh *s, uint32_t v) {
+  uint32_t first = s->vertex[v].outgoing, h = first, count = 0;
+  do {
+    h = scree_turn(s, h);
+  } while (++count <= SCREE_FAN_MAX && h != first && h != SCREE_NONE);
+  return count > SCREE_FAN_MAX;
+}
+
+void scree_decimate_renew(scree_decimator *d, uint32_t v) {
+  if (!d->coster->merge && !scree_decimate_is_crowded(&d->s, v)) d->coster->sum(&d->s, v);
+}
+
+static void record_collapse(scree_decimator *d, const scree_fan *f, double error) {
   scree_collapse_record *r = &d->record;
-  scree_halfmesh *s = &d->s;
-  bool one = s->half[f->half_edge].twin == SCREE_NONE;
-  r->kept[i] = s->vertex[f->a].origin | (one ? SCREE_ONE_TRIANGLE : 0);
+  const scree_halfmesh *s = &d->s;
+  const size_t i = r->count++;
+  r->kept[i] = s->vertex[f->a].origin | (f->d == SCREE_NONE ? SCREE_ONE_TRIANGLE : 0);
   r->gone[i] = s->vertex[f->b].origin;
   r->position[i] = vec3_mad(s->centre, f->at, s->scale);
   scree_fan_measure(s, f, &r->area[i], &r->volume[i]);
   r->error[i] = (float)error;
-  scree_fan_collapse(s, f);
-  if (d->coster->merge) d->coster->merge(s, f->a, f->b);
 }
 
-void scree_decimate_count(scree_decimator *d, const scree_fan *f) {
-  d->record.count++;
+void scree_decimate_collapse(scree_decimator *d, const scree_fan *f, double error) {
+  record_collapse(d, f, error);
+  scree_fan_collapse(&d->s, f);
+  if (d->coster->merge) d->coster->merge(&d->s, f->a, f->b);
   d->s.live_vertex_count--;
   d->s.live_triangle_count -= f->d == SCREE_NONE ? 1 : 2;
   scree_markers_follow(&d->markers, f);
+  for (uint32_t i = 0; i < f->count; i++) {
+    scree_bounds b = scree_fan_bounds(f, i);
+    scree_surface_tree_grow(&d->tree, f->edge[i] / 3, &b, f->after[i]);
+  }
 }

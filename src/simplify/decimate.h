@@ -62,6 +62,7 @@ typedef struct scree_decimator {
   scree_samples samples;   /* method `volume`, once the fine passes are over */
   double usual_cost;       /* a tenth of the edges cost no more, without deviations */
   double usual_far;        /* the deviation that adds as much; INFINITY: none is usual yet */
+  double expect;           /* scree_tune.expect; 0: the cheapest edge always goes first */
   int leniency;            /* of the guards */
   int order;               /* 0: by the costs as they are */
   scree_fork fork;
@@ -85,7 +86,7 @@ scree_status scree_decimate_from(scree_decimator *d, const scree_fork *fork, int
 
 /* ---- For the driver's two parts, order/pass.c and order/queue.c ---- */
 
-/* Passes of many independent collapses, side by side, while there are more triangles than that. */
+/* Passes over the whole surface, while there are more triangles than that. */
 scree_status scree_decimate_in_passes(scree_decimator *d, size_t least);
 /* One collapse after the other, always the cheapest, until none is allowed or it is time to find
  * costs anew (scree_tune.refresh). *done: how many. */
@@ -103,6 +104,7 @@ double scree_decimate_set_usual(scree_decimator *d, double *costs, size_t count,
 typedef struct scree_verdict {
   double cost;  /* INFINITY: none is allowed. From `most` on a lower bound */
   double error; /* mean square move */
+  double plain; /* the cost of the best place without deviations */
   vec3 target;
 } scree_verdict;
 
@@ -111,13 +113,15 @@ typedef struct scree_verdict {
 scree_verdict scree_decimate_judge(const scree_decimator *d, uint32_t half_edge, double most,
                                    scree_fan *fan);
 
-/* Writes the fan's collapse to its place in the record and does it. With fans of which no triangle
- * is common to two, thread-safe. The samples, and the counts of the record and of the surface are
- * the caller's. */
-void scree_decimate_collapse(scree_decimator *d, size_t place, const scree_fan *fan, double error);
+/* Does the fan's collapse, and records it. The samples are the caller's, and which sums and costs
+ * are not those of the surface any more. */
+void scree_decimate_collapse(scree_decimator *d, const scree_fan *fan, double error);
 
-/* After collapses: counts, and markers. */
-void scree_decimate_count(scree_decimator *d, const scree_fan *fan);
+/* No edge of such a vertex may collapse: what its edges cost is asked for when it has fewer
+ * triangles. Else a fan would be summed and ranked anew as a whole for each that it loses. */
+bool scree_decimate_is_crowded(const scree_halfmesh *s, uint32_t vertex);
+/* Finds the sums of a vertex anew, unless it is crowded or the method merges them. */
+void scree_decimate_renew(scree_decimator *d, uint32_t vertex);
 
 /* Tells the ticker how far it has come; false: cancelled. */
 bool scree_decimate_tick(scree_decimator *d);

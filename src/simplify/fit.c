@@ -20,6 +20,8 @@
 
 /* A step must make the sum less by this. */
 #define WORTH 1e-3
+/* In the unit box: samples that are no farther in the mean lie on the surface. */
+#define ROUNDING 1e-14
 /* The volume's relative error, above rounding. */
 #define VOLUME_KEPT 1e-13
 
@@ -100,6 +102,12 @@ static double to_fan(const scree_fan *f, vec3 p, uint32_t *nearest) {
   return best;
 }
 
+static double sum_of_areas(const fit *f) {
+  double sum = 0;
+  for (size_t k = 0; k < f->gathered.count; k++) sum += f->area[f->gathered.items[k].sample];
+  return sum;
+}
+
 /* The sum of the gathered samples' distances from the fan as it is set, by area. */
 static double sum_of_distances(const fit *f) {
   const scree_samples *p = &f->samples;
@@ -159,7 +167,7 @@ static vec3 better_place(const fit *f) {
 /* Moves the fan's vertex to where the fan is set, if the guards allow; its samples were gathered.
  */
 static bool move(fit *f) {
-  const scree_surroundings around = {&f->s, &f->tree, &f->markers, NULL};
+  const scree_surroundings around = {&f->s, &f->tree, &f->markers};
   scree_fan *fan = &f->fan;
   if (scree_shape_is_spike(&f->s, fan->at) || !scree_shape_allows(&f->s, fan, 0) ||
       !scree_apart(&around, fan))
@@ -191,6 +199,7 @@ static void improve(fit *f, uint32_t v, bool *out_of_memory) {
   double usual = 0.5 * scree_tune.usual * f->samples.mean;
   if (!take_vertex(f, v, out_of_memory) || f->gathered.count < f->fan.count) return;
   double sum = sum_of_distances(f);
+  if (sum <= ROUNDING * sum_of_areas(f)) return;
   vec3 place = better_place(f);
   scree_fan_set(&f->fan, place);
   if (!(sum_of_distances(f) < (1 - WORTH) * sum)) return;

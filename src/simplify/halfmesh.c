@@ -43,8 +43,6 @@ void scree_halfmesh_free(scree_halfmesh *s) {
   scree_free(s->half);
   scree_free(s->flags);
   scree_free(s->sums);
-  scree_free(s->best);
-  scree_free(s->cost);
   *s = (scree_halfmesh){0};
 }
 
@@ -466,7 +464,6 @@ scree_status scree_halfmesh_copy(const scree_halfmesh *s, scree_halfmesh *copy,
                                  scree_error *error) {
   *copy = *s;
   copy->vertex = NULL, copy->half = NULL, copy->flags = NULL, copy->sums = NULL;
-  copy->best = NULL, copy->cost = NULL;
   SCREE_TRY_ALLOC(copy->vertex, s->vertex_count, error);
   SCREE_TRY_ALLOC(copy->half, 3 * s->triangle_count, error);
   SCREE_TRY_ALLOC(copy->flags, s->vertex_count, error);
@@ -493,18 +490,11 @@ static void renumber_triangles(void *context, scree_block block) {
   }
 }
 
-/* NONE also where it is gone. */
-static void renumber_edge(const compaction *c, uint32_t *h) {
-  bool stays = *h != SCREE_NONE && !scree_is_gone(c->s, *h / 3);
-  *h = stays ? 3 * c->triangle[*h / 3] + *h % 3 : SCREE_NONE;
-}
-
 static void renumber_vertices(void *context, scree_block block) {
   const compaction *c = context;
   for (size_t v = block.begin; v < block.end; v++) {
-    if (c->s->vertex[v].outgoing == SCREE_NONE) continue;
-    renumber_edge(c, &c->s->vertex[v].outgoing);
-    if (c->s->best) renumber_edge(c, &c->s->best[v]);
+    uint32_t *h = &c->s->vertex[v].outgoing;
+    if (*h != SCREE_NONE) *h = 3 * c->triangle[*h / 3] + *h % 3;
   }
 }
 
@@ -533,7 +523,6 @@ static void move_vertices(scree_halfmesh *s) {
       s->vertex[to] = s->vertex[v];
       s->flags[to] = s->flags[v];
       if (s->sums) memcpy(s->sums[to], s->sums[v], sizeof s->sums[v]);
-      if (s->best) s->best[to] = s->best[v], s->cost[to] = s->cost[v];
     }
     to++;
   }
@@ -569,6 +558,4 @@ void scree_halfmesh_give_back(const scree_halfmesh *s) {
   scree_discard_tail(s->vertex, s->vertex_count * sizeof *s->vertex);
   scree_discard_tail(s->half, 3 * s->triangle_count * sizeof *s->half);
   if (s->sums) scree_discard_tail(s->sums, s->vertex_count * sizeof *s->sums);
-  if (s->best) scree_discard_tail(s->best, s->vertex_count * sizeof *s->best);
-  if (s->cost) scree_discard_tail(s->cost, s->vertex_count * sizeof *s->cost);
 }

@@ -37,9 +37,6 @@ typedef struct scree_halfmesh {
   scree_half_edge *half;
   uint8_t *flags;     /* of vertices: SCREE_VERTEX_... */
   double (*sums)[10]; /* of vertices: the method's quadric, see cost/cost.h; NULL: none yet */
-  uint32_t *best;     /* of vertices: half-edge of the cheapest of the edges ranked there, or NONE;
-                         NULL: none is ranked yet (order/pass.c) */
-  double *cost;       /* of that */
   size_t vertex_count, triangle_count;           /* extents of the arrays */
   size_t live_vertex_count, live_triangle_count; /* still there */
   vec3 centre;    /* position in metres = centre + scale * position in the box */

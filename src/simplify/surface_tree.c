@@ -69,7 +69,7 @@ scree_status scree_surface_tree_make(const scree_halfmesh *s, scree_surface_tree
                                      scree_error *error) {
   tree->leaves = leaves_for(s->triangle_count);
   SCREE_TRY_ALLOC(tree->node, 2 * tree->leaves, error);
-  scree_surface_tree_fit(tree, s, NULL);
+  scree_surface_tree_fit(tree, s);
   return SCREE_OK;
 }
 
@@ -81,26 +81,15 @@ void scree_surface_tree_free(scree_surface_tree *tree) {
 typedef struct fitting {
   scree_surface_tree *tree;
   const scree_halfmesh *s;
-  const scree_planned *planned;
   size_t first; /* node of the level at hand */
 } fitting;
 
-/* Triangle t as it is, and as it is planned to be. */
-static void add_triangle(scree_bounds *bounds, scree_facing *facing, const fitting *f, size_t t) {
-  const scree_halfmesh *s = f->s;
+static void add_triangle(scree_bounds *bounds, scree_facing *facing, const scree_halfmesh *s,
+                         size_t t) {
   vec3 at[3];
-  int moved = 0;
   scree_corners(s, t, at);
   scree_facing_add(facing, vec3_triangle_normal(at[0], at[1], at[2]));
-  for (size_t i = 0; i < 3; i++) {
-    scree_bounds_add(bounds, at[i]);
-    uint32_t v = s->half[3 * t + i].from;
-    if (!f->planned || f->planned->chosen[v] == SCREE_NONE) continue;
-    at[i] = f->planned->target[f->planned->chosen[v]];
-    scree_bounds_add(bounds, at[i]);
-    moved++;
-  }
-  if (moved == 1) scree_facing_add(facing, vec3_triangle_normal(at[0], at[1], at[2]));
+  for (int i = 0; i < 3; i++) scree_bounds_add(bounds, at[i]);
 }
 
 static void fit_leaves(void *context, scree_block block) {
@@ -109,7 +98,7 @@ static void fit_leaves(void *context, scree_block block) {
     scree_bounds bounds = scree_bounds_empty();
     scree_facing facing = scree_facing_all();
     for (size_t t = LEAF * leaf; t < LEAF * leaf + LEAF && t < f->s->triangle_count; t++)
-      if (!scree_is_gone(f->s, t)) add_triangle(&bounds, &facing, f, t);
+      if (!scree_is_gone(f->s, t)) add_triangle(&bounds, &facing, f->s, t);
     f->tree->node[f->tree->leaves + leaf] =
         (scree_surface_node){bounds, scree_facing_averse(&facing)};
   }
@@ -124,9 +113,8 @@ static void fit_level(void *context, scree_block block) {
   }
 }
 
-void scree_surface_tree_fit(scree_surface_tree *tree, const scree_halfmesh *s,
-                            const scree_planned *planned) {
-  fitting f = {.tree = tree, .s = s, .planned = planned};
+void scree_surface_tree_fit(scree_surface_tree *tree, const scree_halfmesh *s) {
+  fitting f = {.tree = tree, .s = s};
   tree->leaves = leaves_for(s->triangle_count);
   scree_discard_tail(tree->node, 2 * tree->leaves * sizeof *tree->node);
   scree_parallel_for(tree->leaves, BLOCK, fit_leaves, &f);

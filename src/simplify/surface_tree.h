@@ -25,21 +25,12 @@ typedef struct scree_surface_tree {
   size_t leaves;            /* a power of two */
 } scree_surface_tree;
 
-/* What collapses of one pass will do: chosen[v] is NONE or the index of the collapse that takes
- * vertex v to target[chosen[v]]. */
-typedef struct scree_planned {
-  const uint32_t *chosen;
-  const vec3 *target;
-} scree_planned;
-
 scree_status scree_surface_tree_make(const scree_halfmesh *s, scree_surface_tree *tree,
                                      scree_error *error);
 void scree_surface_tree_free(scree_surface_tree *tree);
 
-/* Boxes of what is there, and of what is planned (NULL: nothing). The surface may have become
- * smaller. Parallel. */
-void scree_surface_tree_fit(scree_surface_tree *tree, const scree_halfmesh *s,
-                            const scree_planned *planned);
+/* Boxes of what is there. The surface may have become smaller. Parallel. */
+void scree_surface_tree_fit(scree_surface_tree *tree, const scree_halfmesh *s);
 
 /* A triangle lies within these bounds now, with that doubled area vector. */
 void scree_surface_tree_grow(scree_surface_tree *tree, uint32_t triangle,

@@ -29,6 +29,9 @@ typedef struct scree_tuning {
                      of the costs is lost; less, and each pass finds them all for little. */
   double shift;   /* the most that another order than the first adds to the cost of an edge, as a
                      share: far below what the noise of a scan changes it by. */
+  double expect;  /* share of what deviations added to an edge's cost that is expected to stay when
+                     something beside it changes: with all of it edges wait too long and counts
+                     scatter, with none each is judged some ten times more. */
   double refresh; /* share of the triangles after which costs, boxes and what is usual are found
                      anew. */
   /* samples */
@@ -52,6 +55,7 @@ static const scree_tuning scree_tune = {.stiff = 1e-5,
                                         .spike = 0.5,
                                         .batch = 0.5,
                                         .shift = 0.02,
+                                        .expect = 0.5,
                                         .refresh = 0.75,
                                         .crowd = 48,
                                         .sweeps = 3,

@@ -17,6 +17,11 @@ double scree_surface_nearest(const scree_surface *surface, vec3 p, uint32_t *nea
 void scree_surface_nearest_points(const scree_surface *surface, const vec3 *points, size_t count,
                                   double *distances, uint32_t *nearest);
 
+/* The facets of one surface that may reach farther than that from the other, as a mesh in which no
+ * two share a corner; empty where none may. */
+scree_status scree_surface_farther_part(const scree_surface *from, const scree_surface *to,
+                                        double than, scree_mesh *part, scree_error *error);
+
 /* How one way is measured. */
 typedef struct scree_deviation_rule {
   size_t sample_count; /* spread over the surface */

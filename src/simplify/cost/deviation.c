@@ -379,7 +379,7 @@ double scree_deviation_find(const scree_samples *p, const scree_halfmesh *s, con
     w.deviation2 = scree_larger(
         w.deviation2, to_scan(p, vec3_lerp(f->at, f->from[i], 0.5), first, near, w.deviation2));
   }
-  return w.deviation2 <= w.most2 ? sqrt(w.deviation2) : INFINITY;
+  return sqrt(w.deviation2);
 }
 
 SCREE_ORDER_BY2(by_distance, struct scree_sample, far, sample)

@@ -70,7 +70,7 @@ double scree_deviation_of(const scree_samples *samples, uint32_t sample, double 
  * alike, in whichever direction. A flat body packs by its thickness. */
 double scree_deviation_growth(const scree_samples *samples, const scree_halfmesh *s, vec3 at);
 
-/* The deviation; below `from` it need not be exact, above `to` it is INFINITY. */
+/* The deviation; below `from` it need not be exact, above `to` a lower bound. */
 double scree_deviation_find(const scree_samples *samples, const scree_halfmesh *s,
                             const scree_fan *fan, double from, double to);
 

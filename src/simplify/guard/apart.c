@@ -8,9 +8,8 @@
 /* There is room for so many triangles near one collapse, those whose leaves meet its box, without
  * asking for memory. */
 enum { ROOM = 4096 };
-/* Names of moved vertices, which no vertex has. */
-#define MOVED       (SCREE_NONE - 2)
-#define MOVED_OTHER (SCREE_NONE - 3)
+/* The name of the moved vertex, which no vertex has. */
+#define MOVED (SCREE_NONE - 2)
 
 /* A triangle with its corners named by vertices of the mesh given. */
 typedef struct corners {
@@ -21,7 +20,6 @@ typedef struct corners {
 typedef struct search {
   const scree_surroundings *around;
   const scree_fan *fan;
-  uint32_t self; /* its index among the planned, or NONE */
   scree_bounds box;
   corners moved[SCREE_FAN_MAX];
   scree_bounds bounds[SCREE_FAN_MAX]; /* of these */
@@ -63,22 +61,6 @@ static bool is_of_fan(const search *q, uint32_t t) {
   return false;
 }
 
-/* What a planned collapse before this one makes of triangle t; false: none does, or t goes. */
-static bool plan_of(const search *q, uint32_t t, corners *c) {
-  const scree_planned *planned = q->around->planned;
-  if (!planned) return false;
-  const scree_half_edge *half = q->around->s->half + 3 * (size_t)t;
-  int moved = 0;
-  for (int i = 0; i < 3; i++) {
-    uint32_t chosen = planned->chosen[half[i].from];
-    if (chosen == SCREE_NONE || chosen >= q->self) continue;
-    c->at[i] = planned->target[chosen];
-    c->name[i] = MOVED_OTHER;
-    moved++;
-  }
-  return moved == 1;
-}
-
 static uint32_t averse_of(const scree_fan *f) {
   scree_facing facing = scree_facing_all();
   for (uint32_t i = 0; i < f->count; i++) scree_facing_add(&facing, f->after[i]);
@@ -106,7 +88,6 @@ static bool certified(const search *q) {
     if (scree_is_gone(s, t)) continue;
     corners c = corners_of(s, t);
     if (!faces(&c, g, &q->box)) return false;
-    if (!is_of_fan(q, t) && plan_of(q, t, &c) && !faces(&c, g, &q->box)) return false;
   }
   return true;
 }
@@ -152,7 +133,6 @@ static bool meets_no_more(search *q) {
     if (scree_is_gone(s, t) || is_of_fan(q, t)) continue;
     corners c = corners_of(s, t);
     count_met(q, &c, &was, &will_be);
-    if (plan_of(q, t, &c)) count_met(q, &c, &was, &will_be);
   }
   return will_be <= was;
 }
@@ -163,7 +143,6 @@ bool scree_apart(const scree_surroundings *around, const scree_fan *f) {
   q.around = around;
   q.fan = f;
   q.box = scree_bounds_empty();
-  q.self = around->planned ? around->planned->chosen[f->a] : SCREE_NONE;
   scree_bounds_add(&q.box, f->at);
   scree_bounds_add(&q.box, s->vertex[f->a].at);
   scree_bounds_add(&q.box, s->vertex[f->b].at);
@@ -179,8 +158,8 @@ bool scree_apart(const scree_surroundings *around, const scree_fan *f) {
     if (!q.found) return false;
     scree_surface_tree_overlap(around->tree, s, &q.box, q.found, q.found_count);
   }
-  bool apart = certified(&q) || (meets_no_more(&q) && scree_markers_stay(around->markers, s, f,
-                                                                         &q.box, around->planned));
+  bool apart =
+      certified(&q) || (meets_no_more(&q) && scree_markers_stay(around->markers, s, f, &q.box));
   if (q.found != q.own) scree_free(q.found);
   return apart;
 }

@@ -5,7 +5,7 @@
  * two crossings in a row would go in and out, one of them facing away. So the surface in the box is
  * a graph over the plane across g, and replacing a part of it, boundary kept, by triangles that lie
  * in the box and face g too gives a graph again: no self-intersection. The box is that of the fan
- * before and after; what other collapses of the pass make of triangles in it counts as well.
+ * before and after.
  *
  * Search. Where that does not decide, pairs of triangles are tested exactly. */
 #pragma once
@@ -30,21 +30,19 @@ void scree_markers_free(scree_markers *markers);
 /* After a collapse. */
 void scree_markers_follow(scree_markers *markers, const scree_fan *fan);
 
-/* Whether no marker lies in what the fan sweeps over, where it is and where it is planned to be;
- * the bounds are the fan's, before and after. Markers of the fan itself do not count. */
+/* Whether no marker lies in what the fan sweeps over; the bounds are the fan's, before and after.
+ * Markers of the fan itself do not count. */
 bool scree_markers_stay(const scree_markers *markers, const scree_halfmesh *s, const scree_fan *fan,
-                        const scree_bounds *bounds, const scree_planned *planned);
+                        const scree_bounds *bounds);
 
 typedef struct scree_surroundings {
   const scree_halfmesh *s;
-  const scree_surface_tree *tree; /* of the surface and of what is planned */
-  const scree_markers *markers;   /* of its shells */
-  const scree_planned *planned;   /* NULL: nothing; else the fan's own collapse is among it */
+  const scree_surface_tree *tree;
+  const scree_markers *markers; /* of its shells */
 } scree_surroundings;
 
-/* True if the fan's triangles as it is set meet no more others, as these are and as planned
- * collapses before it in order (a lower index) make them, than they do now, and no shell is leapt
- * over. Thread-safe. */
+/* True if the fan's triangles as it is set meet no more others than they do now, and no shell is
+ * leapt over. Thread-safe. */
 bool scree_apart(const scree_surroundings *around, const scree_fan *fan);
 
 /* ---- what new triangles must not be, each by itself and with its neighbours ---- */
@@ -54,11 +52,6 @@ bool scree_apart(const scree_surroundings *around, const scree_fan *fan);
  * there more folds over 149 degrees (150, less what rounding to single precision takes) or more
  * triangles without area than before. */
 bool scree_shape_allows(const scree_halfmesh *s, const scree_fan *fan, int leniency);
-
-/* Whether a planned collapse before this one in order (the lower index) would make a fold with it,
- * both done. */
-bool scree_shape_folds_with(const scree_halfmesh *s, const scree_fan *fan,
-                            const scree_planned *planned, int leniency);
 
 /* Whether a vertex there would lie outside the scan's box by more than a share of the size of the
  * level's triangles. */

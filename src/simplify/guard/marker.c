@@ -55,12 +55,11 @@ static bool lies_within(const scree_bounds *b, vec3 p) {
 }
 
 bool scree_markers_stay(const scree_markers *markers, const scree_halfmesh *s, const scree_fan *f,
-                        const scree_bounds *bounds, const scree_planned *planned) {
+                        const scree_bounds *bounds) {
   for (size_t i = 0; i < markers->count; i++) {
-    uint32_t v = markers->vertex[i], chosen = planned ? planned->chosen[v] : SCREE_NONE;
-    vec3 p = s->vertex[v].at, q = chosen == SCREE_NONE ? p : planned->target[chosen];
-    if (!(lies_within(bounds, p) || lies_within(bounds, q)) || is_of_fan(s, f, v)) continue;
-    if (fabs(turns(s, f, p)) > 0.5 || fabs(turns(s, f, q)) > 0.5) return false;
+    vec3 p = s->vertex[markers->vertex[i]].at;
+    if (!lies_within(bounds, p) || is_of_fan(s, f, markers->vertex[i])) continue;
+    if (fabs(turns(s, f, p)) > 0.5) return false;
   }
   return true;
 }

@@ -79,19 +79,6 @@ bool scree_shape_allows(const scree_halfmesh *s, const scree_fan *f, int lenienc
          after.shape >= scree_smaller(shape, 0.5 * was.shape);
 }
 
-bool scree_shape_folds_with(const scree_halfmesh *s, const scree_fan *f,
-                            const scree_planned *planned, int leniency) {
-  uint32_t self = planned->chosen[f->a];
-  for (uint32_t i = 0; i < f->count; i++) {
-    if (beyond(s, f, i) == SCREE_NONE) continue;
-    uint32_t other = planned->chosen[s->half[scree_previous(beyond(s, f, i))].from];
-    if (other == SCREE_NONE || other >= self) continue;
-    vec3 n = vec3_triangle_normal(planned->target[other], f->to[i], f->from[i]);
-    if (cosine(f->after[i], n) < scree_tune.fold[leniency]) return true;
-  }
-  return false;
-}
-
 bool scree_shape_is_spike(const scree_halfmesh *s, vec3 x) {
   double room = scree_tune.spike * sqrt(s->area / (double)s->live_triangle_count);
   return !(x.x >= s->low.x - room && x.y >= s->low.y - room && x.z >= s->low.z - room &&

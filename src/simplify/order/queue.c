@@ -2,7 +2,9 @@
  * without the deviation's part, which is no more than the whole. When its turn comes it is judged;
  * where the whole cost is above the next in the queue, it waits at that. After a collapse the edges
  * about the new vertex get new costs, and edges beside it that could not be done before are looked
- * at again; others are found out when their turn comes. */
+ * at again; others are found out when their turn comes. What deviations added to an edge when it
+ * was judged changes little by what is done beside it: its new cost has a share of that, so that
+ * most are not judged again before their turn is near. */
 #include "base/rng.h"
 #include "simplify/decimate.h"
 #include "simplify/tuning.h"
@@ -20,6 +22,7 @@ typedef struct queue {
   uint32_t *edge;  /* the heap */
   uint32_t *place; /* per half-edge: in the heap, or NONE */
   double *cost;    /* per half-edge */
+  double *added;   /* per half-edge: by deviations, when it was last judged */
   bool *known;     /* per half-edge: its cost is the whole, as far as it was judged */
   size_t count;
   scree_gathered scratch;
@@ -84,10 +87,25 @@ static double shifted(const queue *q, uint32_t edge, double cost) {
   return cost * (1 + scree_tune.shift * scree_rng_uniform(&rng));
 }
 
+/* Where a collapse made one edge of two, each half-edge has its own. */
+static double added_to(const queue *q, uint32_t edge) {
+  uint32_t twin = q->d->s.half[edge].twin;
+  return twin == SCREE_NONE ? q->added[edge] : scree_larger(q->added[edge], q->added[twin]);
+}
+
+static void set_added(queue *q, uint32_t edge, double added) {
+  uint32_t twin = q->d->s.half[edge].twin;
+  q->added[edge] = added;
+  if (twin != SCREE_NONE) q->added[twin] = added;
+}
+
 static void rank(queue *q, const uint32_t *edges, size_t count) {
   scree_candidate c[SIDE_BY_SIDE];
   q->d->coster->evaluate(&q->d->s, edges, count, c);
-  for (size_t i = 0; i < count; i++) set(q, edges[i], shifted(q, edges[i], c[i].cost), false);
+  for (size_t i = 0; i < count; i++) {
+    double added = q->d->expect * added_to(q, edges[i]);
+    set(q, edges[i], shifted(q, edges[i], c[i].cost) + added, false);
+  }
 }
 
 /* Every edge; what is usual is set from their costs. */
@@ -118,6 +136,7 @@ static scree_status start(queue *q, scree_decimator *d) {
   SCREE_TRY_ALLOC(q->edge, half_edges, d->error);
   SCREE_TRY_ALLOC(q->place, half_edges, d->error);
   SCREE_TRY_ALLOC(q->cost, half_edges, d->error);
+  SCREE_TRY_ALLOC_ZERO(q->added, half_edges, d->error);
   SCREE_TRY_ALLOC(q->known, half_edges, d->error);
   rank_all(q);
   return q->count > 0 ? set_usual(q) : SCREE_OK;
@@ -127,6 +146,7 @@ static void end(queue *q) {
   scree_free(q->edge);
   scree_free(q->place);
   scree_free(q->cost);
+  scree_free(q->added);
   scree_free(q->known);
   scree_free(q->scratch.items);
 }
@@ -138,26 +158,12 @@ static void drop_triangle(queue *q, uint32_t t) {
   for (uint32_t h = 3 * t; h < 3 * t + 3; h++) drop(q, edge_of(&q->d->s, h));
 }
 
-/* No edge of such a vertex may collapse: what its edges cost is asked for when it has fewer
- * triangles. Else a fan would be summed and ranked anew as a whole for each that it loses. */
-static bool is_crowded(const scree_halfmesh *s, uint32_t v) {
-  uint32_t first = s->vertex[v].outgoing, h = first, count = 0;
-  do {
-    h = scree_turn(s, h);
-  } while (++count <= SCREE_FAN_MAX && h != first && h != SCREE_NONE);
-  return count > SCREE_FAN_MAX;
-}
-
-static void renew_sums(scree_decimator *d, uint32_t v) {
-  if (!d->coster->merge && !is_crowded(&d->s, v)) d->coster->sum(&d->s, v);
-}
-
 /* Every edge of vertex u. */
 static void renew_about(queue *q, uint32_t u) {
   const scree_halfmesh *s = &q->d->s;
   uint32_t edges[SIDE_BY_SIDE], first = s->vertex[u].outgoing, h = first, last;
   size_t count = 0;
-  if (is_crowded(s, u)) return;
+  if (scree_decimate_is_crowded(s, u)) return;
   do {
     if (count == SIDE_BY_SIDE - 1) rank(q, edges, count), count = 0;
     edges[count++] = edge_of(s, h);
@@ -171,11 +177,12 @@ static void renew_about(queue *q, uint32_t u) {
 static void renew(queue *q, const scree_fan *f) {
   scree_decimator *d = q->d;
   const scree_halfmesh *s = &d->s;
-  renew_sums(d, f->a);
+  scree_decimate_renew(d, f->a);
   for (uint32_t i = 0; i < f->count; i++) {
-    renew_sums(d, s->half[f->edge[i]].from);
+    scree_decimate_renew(d, s->half[f->edge[i]].from);
     uint32_t j = i + 1 < f->count ? i + 1 : 0;
-    if (s->half[f->edge[j]].from != scree_to(s, f->edge[i])) renew_sums(d, scree_to(s, f->edge[i]));
+    if (s->half[f->edge[j]].from != scree_to(s, f->edge[i]))
+      scree_decimate_renew(d, scree_to(s, f->edge[i]));
   }
   for (uint32_t i = 0; i < f->count; i++) {
     renew_about(q, s->half[f->edge[i]].from);
@@ -192,12 +199,7 @@ static scree_status collapse(queue *q, double error) {
   if (f->d != SCREE_NONE) drop_triangle(q, d->s.half[f->half_edge].twin / 3);
   if (scree_has_samples(&d->samples) && !scree_samples_move(&d->samples, &d->s, f, &q->scratch))
     return scree_fail_memory(d->error, q->scratch.count * sizeof *q->scratch.items, "samples");
-  scree_decimate_collapse(d, d->record.count, f, error);
-  scree_decimate_count(d, f);
-  for (uint32_t i = 0; i < f->count; i++) {
-    scree_bounds b = scree_fan_bounds(f, i);
-    scree_surface_tree_grow(&d->tree, f->edge[i] / 3, &b, f->after[i]);
-  }
+  scree_decimate_collapse(d, f, error);
   renew(q, f);
   return SCREE_OK;
 }
@@ -211,7 +213,7 @@ static double next_cost(const queue *q) {
 /* Collapses the cheapest edge that may be; *found: there was one. */
 static scree_status step(queue *q, bool *found) {
   scree_decimator *d = q->d;
-  const scree_surroundings around = {&d->s, &d->tree, &d->markers, NULL};
+  const scree_surroundings around = {&d->s, &d->tree, &d->markers};
   for (*found = false; q->count > 0;) {
     uint32_t e = q->edge[0];
     double next = next_cost(q), was = q->cost[e];
@@ -219,6 +221,7 @@ static scree_status step(queue *q, bool *found) {
     scree_verdict v = scree_decimate_judge(d, e, most, &q->fan);
     if (v.cost > next && v.cost < INFINITY && !(q->known[e] && v.cost <= was)) {
       set(q, e, v.cost, true);
+      set_added(q, e, scree_larger(0, v.cost - v.plain));
     } else if (v.cost < INFINITY && scree_apart(&around, &q->fan)) {
       *found = true;
       return collapse(q, v.error);
