@@ -13,9 +13,9 @@ done <numbers
 run curve icosphere-4.stl --grid 1e-2:0.05:1
 run simplify icosphere-4.stl -r 1e-2 -o out.ply
 run simplify icosphere-4.stl -r 1e-2 --fit -o fitted.ply
-run simplify icosphere-4.stl -n 7 -o six.off
-head -3 six.off | tail -1
-run simplify icosphere-4.stl -n 7 -o six.off
+run simplify icosphere-4.stl -n 3 -o least.off
+head -3 least.off | tail -1
+run simplify icosphere-4.stl -n 3 -o least.off
 run simplify icosphere-4.stl -n 500 -m qecd -o - -q | wc -c
 run simplify icosphere-4.stl -e 0.05mm -o fine.stl -q
 run simplify icosphere-4.stl -o x.stl 2>&1
