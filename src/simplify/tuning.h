@@ -66,9 +66,8 @@ enum {
   /* The reference surface has no more triangles: what lies below is far less than any deviation of
    * a level that is asked for, and larger scans take hardly more time and memory. */
   SCREE_REFERENCE_MOST = 50000,
-  /* Passes of independent collapses go on while a pass has enough for all threads: a size of blocks
-   * of parallel loops. Below, one collapse follows the other, which is better, and takes some
-   * tenths of a second. */
+  /* Down to so many triangles edges are ranked by passes; below, anew after each collapse, which is
+   * better, and takes a second. */
   SCREE_PASS_LEAST = 16384,
   /* Below so many triangles a curve may go on in several orders: well above what is chosen, so that
    * they part in time. */
