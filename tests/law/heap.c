@@ -63,12 +63,13 @@ static double farthest_way(const scree_world *world, const scree_body *before) {
 }
 
 /* So many of each of three devices of 0.1 kg, as the note's scales have it, into a cylinder of
- * 0.6 m. */
+ * 0.6 m. At other levels than these one or another may come to lie on two points and rock for half
+ * a minute. */
 static scree_scene *make_drop(const double counts[3], const char *steps_per_contact) {
   static const struct {
     const char *name;
     size_t triangles;
-  } devices[3] = {{"fp-1", 100}, {"fp-3", 60}, {"sp-1", 100}};
+  } devices[3] = {{"fp-1", 120}, {"fp-3", 70}, {"sp-1", 120}};
   const char *const fields[][2] = {
       {"width", "0.6"}, {"density", "1100"}, {"contact.steps", steps_per_contact}, {"still", "0"}};
   scree_poured poured[3];
