@@ -21,7 +21,7 @@ enum { FEWER = 2 };
 static const double DENSE_GAP = 0.004;
 /* The most load of a level that will do: leaves room for what the measurement misses. */
 static const double MOST_LOAD = 0.98;
-/* From this load by the quick measurement on the dense one would not find a level to do. */
+/* A level of this load by the quick measurement does not do by the dense one either. */
 static const double SURE_LOAD = 1.1;
 
 typedef struct search {
