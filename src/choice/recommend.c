@@ -83,14 +83,13 @@ static scree_status first_bracket(search *s, const scree_gauge *quick, bracket *
   const bool is_first = s->below == SIZE_MAX;
   size_t usual[SCREE_FIDELITY_MOST], count = scree_fidelity_levels(s->curve, usual);
   *b = (bracket){s->finest, scree_curve_level_count(s->curve)};
-  *keeps = is_first;
   while (count-- > 0 && usual[count] > s->finest) {
-    if (is_first || triangles_at(s->curve, usual[count]) >= s->below / FEWER) {
-      SCREE_TRY(keeps_all(s, quick, SCREE_GAUGE_GAP, usual[count], keeps));
-      if (*keeps) {
-        b->fine = usual[count];
-        return SCREE_OK;
-      }
+    bool far = !is_first && triangles_at(s->curve, usual[count]) < s->below / FEWER;
+    *keeps = false;
+    if (!far) SCREE_TRY(keeps_all(s, quick, SCREE_GAUGE_GAP, usual[count], keeps));
+    if (*keeps) {
+      b->fine = usual[count];
+      return SCREE_OK;
     }
     b->coarse = usual[count];
   }

@@ -191,7 +191,7 @@ bool scree_decimate_tick(scree_decimator *d) {
   return scree_tick(&d->ticker, "decimating", all > end ? (all - left) / (all - end) : 0);
 }
 
-scree_status scree_decimate_squeeze(scree_decimator *d) {
+static scree_status squeeze(scree_decimator *d) {
   SCREE_SCRATCH(uint32_t, vertices, d->s.vertex_count, d->error);
   SCREE_SCRATCH(uint32_t, triangles, d->s.triangle_count, d->error);
   if (scree_has_samples(&d->samples)) scree_samples_compact(&d->samples, &d->s);
@@ -201,7 +201,7 @@ scree_status scree_decimate_squeeze(scree_decimator *d) {
 }
 
 scree_status scree_decimate_refresh(scree_decimator *d) {
-  SCREE_TRY(scree_decimate_squeeze(d));
+  SCREE_TRY(squeeze(d));
   scree_surface_tree_fit(&d->tree, &d->s);
   return scree_has_samples(&d->samples) ? scree_samples_average(&d->samples, d->error) : SCREE_OK;
 }

@@ -92,9 +92,8 @@ scree_status scree_decimate_in_passes(scree_decimator *d, size_t least);
  * costs anew (scree_tune.refresh). *done: how many. */
 scree_status scree_decimate_in_order(scree_decimator *d, size_t *done);
 
-/* Squeezes the surface: all numbers of vertices and half-edges change. */
-scree_status scree_decimate_squeeze(scree_decimator *d);
-/* Squeezes it, and makes its tree fit and what is known of the samples new. */
+/* Squeezes the surface, so that all numbers of vertices and half-edges change, and makes its tree
+ * fit and what is known of the samples new. */
 scree_status scree_decimate_refresh(scree_decimator *d);
 /* Sets what is usual from costs of edges, at least one, which are reordered; answers the cost that
  * a share of them do not exceed. */

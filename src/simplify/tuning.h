@@ -31,7 +31,7 @@ typedef struct scree_tuning {
                      share: far below what the noise of a scan changes it by. */
   double expect;  /* share of what deviations added to an edge's cost that is expected to stay when
                      something beside it changes: with all of it edges wait too long and counts
-                     scatter, with none each is judged some ten times more. */
+                     rise, with none twice as many are judged. */
   double refresh; /* share of the triangles after which costs, boxes and what is usual are found
                      anew. */
   /* samples */

@@ -11,7 +11,7 @@
 #include <string.h>
 
 enum { BLOCK = 1024, SIDE_BY_SIDE = 256 }; /* of vertices; edges */
-/* Progress is told, and cancelling asked for, after so many collapses. */
+/* Progress is told, and cancelling asked for, after so many edges. */
 enum { TICK_EVERY = 4096 };
 /* A pass that takes less of the triangles is the last. */
 #define LEAST_SHARE 0.02
@@ -19,7 +19,7 @@ enum { TICK_EVERY = 4096 };
 typedef struct pass {
   scree_decimator *d;
   uint32_t *best; /* per vertex: half-edge of the cheapest of the edges ranked there, or NONE */
-  double *cost;   /* of that */
+  double *cost;   /* of that, or INFINITY */
   double limit;   /* the most for this pass */
   scree_keyed *order, *swap; /* vertices by their costs */
   scree_fan fan;
@@ -35,8 +35,8 @@ static void renew_block(void *context, scree_block block) {
   scree_decimator *d = context;
   scree_halfmesh *s = &d->s;
   for (size_t v = block.begin; v < block.end; v++) {
-    if (s->vertex[v].outgoing != SCREE_NONE && s->flags[v] & SCREE_VERTEX_STALE)
-      if (!d->coster->merge) d->coster->sum(s, (uint32_t)v);
+    bool is_stale = s->vertex[v].outgoing != SCREE_NONE && s->flags[v] & SCREE_VERTEX_STALE;
+    if (is_stale && !d->coster->merge) d->coster->sum(s, (uint32_t)v);
     s->flags[v] &= (uint8_t)~SCREE_VERTEX_STALE;
   }
 }
@@ -107,13 +107,12 @@ static uint32_t octave_of(const pass *p, double cost) {
  * octave they stay in the order of the surface, where neighbours are near in memory. */
 static scree_status sort_out(pass *p, size_t *count) {
   size_t n = p->d->s.vertex_count, room = 0;
-  for (size_t v = 0; v < n; v++) room += p->best[v] != SCREE_NONE && p->cost[v] <= p->limit;
+  for (size_t v = 0; v < n; v++) room += p->cost[v] <= p->limit;
   SCREE_TRY_ALLOC(p->order, room, p->d->error);
   SCREE_TRY_ALLOC(p->swap, room, p->d->error);
   *count = 0;
   for (uint32_t v = 0; v < n; v++)
-    if (p->best[v] != SCREE_NONE && p->cost[v] <= p->limit)
-      p->order[(*count)++] = (scree_keyed){octave_of(p, p->cost[v]), v};
+    if (p->cost[v] <= p->limit) p->order[(*count)++] = (scree_keyed){octave_of(p, p->cost[v]), v};
   scree_keyed *sorted = scree_radix_sort(p->order, p->swap, *count, 11);
   if (sorted != p->order) p->swap = p->order, p->order = sorted;
   return SCREE_OK;
