@@ -18,7 +18,7 @@ for name in ${*:-tutorials levels report browser}; do
       UPDATE=1 /usr/bin/python3 "$top/tests/docs/run_page.py" "$scree" "$build/libscree.so" "$top/docs/tutorials/$page.md" --long
     done
     ;;
-  levels) "$scree" render sample:dc-1 --rp 1e-1,1e-2,1e-3,1e-4,1e-5 --edges --columns 6 -s 1980x330 -f -o "$figures/levels.png" ;;
+  levels) "$scree" render sample:dc-1 --rp 1e-1,1e-2,1e-3,1e-4,1e-5 --edges --rays 64 --columns 6 -s 1980x330 -f -o "$figures/levels.png" ;;
   report)
     "$scree" repose --samples --resolution 1mm -p demo -o heap -q --no-picture
     /usr/bin/python3 "$top/tests/page/picture.py" heap/report.html "$figures/report.png"
