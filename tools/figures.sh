@@ -1,7 +1,7 @@
 #!/bin/sh
 # Makes the pictures of the manual again, in docs/figures/, by the program as it is built.
 # usage: figures.sh BUILD_FOLDER [NAME...]      without names those of minutes: tutorials levels report browser
-# choice takes two minutes, paper a quarter of an hour, study a night; report and browser need chromium, browser `make page`
+# choice takes two minutes, paper an hour, study a night; report and browser need chromium, browser `make page`
 set -eu
 build=$(realpath "$1")
 shift
