@@ -265,7 +265,7 @@ static double young_that_holds(const scree_scene *scene, const scree_scene_softn
   const scree_world *world = scene->world;
   size_t material = scene->shapes[s->shape].material,
          other = s->is_wall ? material_of_wall(scene, s->other) : scene->shapes[s->other].material;
-  double a = world->materials[material].young, b = world->materials[other].young;
+  double a = world->materials.items[material].young, b = world->materials.items[other].young;
   if (material == other) return a * s->stiffer;
   double least = s->stiffer * a * b / (a + b);
   return least < b ? least * b / (b - least) : (double)INFINITY;

@@ -169,8 +169,8 @@ static double energy_of_copy(const scree_world *world, const scree_pair *pair,
   copy.pair.list.end = INFINITY; /* the present list */
   assert_true(scree_evaluate_copy(world, &copy));
   scree_free_pair_copy(&copy);
-  *wrench = copy.pair.wrench;
-  return copy.pair.elastic;
+  *wrench = copy.pair.contact.wrench;
+  return copy.pair.contact.elastic;
 }
 
 /* Force and torque on body 0 against central differences of the energy over its six motions. The
@@ -262,7 +262,7 @@ static void deep_hits(void **state) {
 
 /* All features of both bodies among the sleepers, due at once: no search, no cones. */
 static void wake_everything(scree_world *world, size_t k) {
-  scree_neighbours *n = &world->neighbours.items[k];
+  scree_neighbours *n = &world->list.neighbours.items[k];
   scree_pair *pair = scree_pair_of(world, k);
   const scree_particle *a = world->bodies.particle[n->a], *b = world->bodies.particle[n->b];
   size_t count = a->point_count + b->point_count + a->edge_count * b->edge_count, made = 0;
@@ -271,8 +271,8 @@ static void wake_everything(scree_world *world, size_t k) {
     scree_scratch hand = {.pools = &world->pools, .neighbours = n};
     n->sleeping.count = 0;
     while (!scree_reserve_sleeping(&hand, (uint32_t)count))
-      assert_true(
-          scree_pack_sleeping(&world->pools, world->neighbours.items, world->neighbours.count));
+      assert_true(scree_pack_sleeping(&world->pools, world->list.neighbours.items,
+                                      world->list.neighbours.count));
     scree_sleeping_feature *all = &world->pools.sleeping_features[n->sleeping.first];
     for (uint32_t i = 0; i < a->point_count; i++)
       all[made++] = (scree_sleeping_feature){0, i, 0, SCREE_FEATURE_POINT_FACE};
@@ -297,9 +297,9 @@ static double apart_from_brute(scree_world *world, scree_world *brute, int steps
   double apart = 0;
   for (int step = 0; step < steps; step++) {
     scree_observation o, same;
-    if (brute->neighbours.count > 0) {
+    if (brute->list.neighbours.count > 0) {
       wake_everything(brute, 0);
-      brute->slots.items[0].wake = -INFINITY;
+      brute->list.slots.items[0].wake = -INFINITY;
     }
     law_step(world, 1);
     law_step(brute, 1);
@@ -436,8 +436,8 @@ static size_t count_astray(const scree_world *world, size_t *count) {
   size_t astray = 0;
   uint32_t next = 0;
   *count = 0;
-  for (size_t k = 0; k < world->neighbours.count; k++) {
-    uint32_t pair = world->pair_of.items[k];
+  for (size_t k = 0; k < world->list.neighbours.count; k++) {
+    uint32_t pair = world->list.pair_of.items[k];
     if (pair == scree_none) continue;
     assert_int_equal(world->pairs.items[pair].neighbours, k);
     astray += pair != next;
@@ -463,7 +463,7 @@ static void pairs_come_into_order(void **state) {
     if (count > most) most = count;
     scree_checksum after = scree_world_hash(world);
     assert_true(before.high == after.high && before.low == after.low);
-    world->pairs_stale = true; /* or the step would look for them where they were */
+    world->list.stale = true; /* or the step would look for them where they were */
   }
   print_message("sorted %zu times, up to %zu pairs\n", sorted, most);
   assert_true(sorted > 5 && most > 64);

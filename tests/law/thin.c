@@ -214,7 +214,8 @@ static void blades_win_nothing(void **state) {
 
 static uint64_t depth_queries(const scree_world *world) {
   uint64_t sum = 0;
-  for (int i = 0; i < world->scratch_count; i++) sum += world->scratch[i].depth_queries;
+  for (int i = 0; i < world->workspace.scratch_count; i++)
+    sum += world->workspace.scratch[i].counters.depth_queries;
   return sum;
 }
 

@@ -21,9 +21,9 @@ static void what_touched_is_awake(void **state) {
                              .velocity = {-15, 0, 0}};
   law_body(world, cube, thrown);
   const scree_pair *pair = NULL;
-  while (!pair || pair->substeps < 2) {
+  while (!pair || pair->substeps.count < 2) {
     law_step(world, 1);
-    pair = world->neighbours.count ? scree_pair_of(world, 0) : NULL;
+    pair = world->list.neighbours.count ? scree_pair_of(world, 0) : NULL;
     assert_true(scree_world_time(world) < 0.01);
   }
   world->bodies.frame[1].position.x += 0.004;
@@ -32,7 +32,8 @@ static void what_touched_is_awake(void **state) {
   assert_true(scree_pair_touches(world, 0));
   assert_non_null(pair);
   assert_int_equal(pair->active.count, 0);
-  assert_true(pair->touching && pair->substeps == 1 && !(pair->depth > 0) && !pair->depenetrating);
+  assert_true(pair->touching && pair->substeps.count == 1 && !(pair->depth > 0) &&
+              !pair->depenetrating);
   law_step(world, 100);
   assert_false(scree_pair_touches(world, 0));
   scree_world_free(world);

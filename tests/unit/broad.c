@@ -56,8 +56,8 @@ static scree_box box_of(const scree_world *world, size_t i) {
 }
 
 static bool is_listed(const scree_world *world, size_t a, size_t b, bool wall) {
-  for (size_t k = 0; k < world->neighbours.count; k++) {
-    const scree_neighbours *n = &world->neighbours.items[k];
+  for (size_t k = 0; k < world->list.neighbours.count; k++) {
+    const scree_neighbours *n = &world->list.neighbours.items[k];
     if (n->a == a && n->b == b && n->wall == wall) return true;
   }
   return false;
@@ -72,12 +72,12 @@ static bool balls_meet(const scree_world *world, size_t i, size_t j, double marg
 
 /* Counts the pairs whose boxes and balls meet. */
 static size_t check_bodies(const scree_world *world) {
-  double margin = world->margin;
+  double margin = world->list.margin;
   size_t meeting = 0, bodies = world->bodies.count;
   unsigned char *listed = calloc(bodies * bodies, 1);
   assert_non_null(listed);
-  for (size_t k = 0; k < world->neighbours.count; k++) {
-    const scree_neighbours *n = &world->neighbours.items[k], *before = n - 1;
+  for (size_t k = 0; k < world->list.neighbours.count; k++) {
+    const scree_neighbours *n = &world->list.neighbours.items[k], *before = n - 1;
     if (k > 0)
       assert_true(before->a < n->a || (before->a == n->a && before->wall < n->wall) ||
                   (before->a == n->a && before->wall == n->wall && before->b < n->b));
@@ -207,7 +207,7 @@ static void mesh_walls(void **state) {
              error);
   }
   CHECK_OK(scree_broad_update(world, &error), error);
-  double margin = world->margin;
+  double margin = world->list.margin;
   size_t near = 0, inside = 0, far = 0;
   for (size_t i = 0; i < 400; i++)
     for (size_t w = 0; w < 2; w++) {
@@ -267,7 +267,7 @@ static uint64_t pass_walls(double speed, bool each_step, size_t steps, scree_che
     CHECK_OK(scree_world_add_body(world, s.items[0][3], 0, &body, NULL, &error), error);
   }
   for (size_t k = 0; k < steps; k++) {
-    world->pairs_stale |= each_step;
+    world->list.stale |= each_step;
     CHECK_OK(scree_world_step(world, 1, &error), error);
   }
   *hash = scree_world_hash(world);

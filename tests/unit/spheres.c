@@ -214,7 +214,7 @@ static size_t same_in_lanes(scree_world *world, size_t steps, const char *name) 
       assert_memory_equal(at[l], &after[l], sizeof after[l]);
       assert_memory_equal(&alone.on_a, &four.on_a[l], sizeof alone.on_a);
       assert_memory_equal(&alone.on_b, &four.on_b[l], sizeof alone.on_b);
-      assert_true(alone.pair.overlap == four.overlap[l]);
+      assert_true(alone.pair.contact.overlap == four.overlap[l]);
       assert_true(!alone.work.too_fast && !alone.work.pressed && alone.work.missing == 0);
     }
   }

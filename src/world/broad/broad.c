@@ -89,7 +89,7 @@ scree_status scree_broad_reserve_bodies(scree_world *world, scree_error *error) 
                            2 * world->walls.count, sizeof *broad->wall_reach))
     return scree_fail_memory(error, world->walls.count * sizeof *broad->wall_reach, "walls");
   broad->wall_gap = broad->wall_reach + world->walls.count;
-  broad->sides.begin = world->side_begin;
+  broad->sides.begin = world->list.side_begin;
   broad->buckets.length = broad->bucket_count;
   broad->listed.length = broad->sides.length = broad->walls.length = world->bodies.count;
   return SCREE_OK;
@@ -98,14 +98,14 @@ scree_status scree_broad_reserve_bodies(scree_world *world, scree_error *error) 
 /* For the lists of `count` neighbours. */
 static bool reserve_lists(scree_world *world, uint64_t count) {
   size_t k = (size_t)count;
-  return count < SCREE_MOST_NEIGHBOURS && SCREE_RESERVE(&world->keys, k) &&
-         SCREE_RESERVE(&world->broad->match, k) && SCREE_RESERVE(&world->neighbours, k) &&
-         SCREE_RESERVE(&world->pair_of, k) && SCREE_RESERVE(&world->ledger, k) &&
-         SCREE_RESERVE(&world->sides, 2 * k) && SCREE_RESERVE(&world->acting, 2 * k) &&
-         SCREE_RESERVE(&world->wake_threshold, world->bodies.count + world->walls.count) &&
-         SCREE_RESERVE(&world->slots, k) && SCREE_RESERVE(&world->touching, k / 64 + 1) &&
-         SCREE_RESERVE(&world->broad->left_features, world->wall_pairs.count) &&
-         SCREE_RESERVE(&world->wall_pairs, k);
+  return count < SCREE_MOST_NEIGHBOURS && SCREE_RESERVE(&world->list.keys, k) &&
+         SCREE_RESERVE(&world->broad->match, k) && SCREE_RESERVE(&world->list.neighbours, k) &&
+         SCREE_RESERVE(&world->list.pair_of, k) && SCREE_RESERVE(&world->list.ledger, k) &&
+         SCREE_RESERVE(&world->list.sides, 2 * k) && SCREE_RESERVE(&world->list.acting, 2 * k) &&
+         SCREE_RESERVE(&world->list.wake_threshold, world->bodies.count + world->walls.count) &&
+         SCREE_RESERVE(&world->list.slots, k) && SCREE_RESERVE(&world->list.touching, k / 64 + 1) &&
+         SCREE_RESERVE(&world->broad->left_features, world->list.wall_pairs.count) &&
+         SCREE_RESERVE(&world->list.wall_pairs, k);
 }
 
 /* ---- stages ---- */
@@ -134,11 +134,11 @@ static void keep_keys(scree_world *world) {
   uint64_t *keys = broad->old_keys;
   uint32_t *begin = broad->old_begin;
   size_t capacity = broad->old_key_capacity;
-  broad->old_keys = world->keys.items;
-  broad->old_key_capacity = world->keys.capacity;
+  broad->old_keys = world->list.keys.items;
+  broad->old_key_capacity = world->list.keys.capacity;
   broad->old_begin = broad->listed.begin;
-  world->keys.items = keys;
-  world->keys.capacity = capacity;
+  world->list.keys.items = keys;
+  world->list.keys.capacity = capacity;
   broad->listed.begin = begin;
 }
 
@@ -162,7 +162,7 @@ static void find_all(scree_world *world) {
  * none overtakes another, nothing is written over that is still to move. */
 static void carry_neighbours(scree_world *world) {
   const uint32_t *from = world->broad->match.items;
-  size_t count = world->keys.count;
+  size_t count = world->list.keys.count;
   for (size_t k = 0; k < count; k++)
     if (from[k] != scree_none && from[k] > k) scree_lists_carry(world, k);
   for (size_t k = count; k-- > 0;)
@@ -182,16 +182,16 @@ static void drop_neighbours(scree_world *world) {
 /* The neighbours by the new keys. */
 static void list_neighbours(scree_world *world) {
   scree_broad *broad = world->broad;
-  size_t bodies = world->bodies.count, count = world->keys.count;
-  broad->old_neighbours = world->neighbours.items;
-  broad->old_pair_of = world->pair_of.items;
-  broad->old_ledger = world->ledger.items;
+  size_t bodies = world->bodies.count, count = world->list.keys.count;
+  broad->old_neighbours = world->list.neighbours.items;
+  broad->old_pair_of = world->list.pair_of.items;
+  broad->old_ledger = world->list.ledger.items;
   scree_broad_run(world, scree_grids_write, bodies);
   scree_broad_run(world, scree_lists_sort, bodies);
   scree_broad_run(world, scree_lists_match, count);
   drop_neighbours(world);
   carry_neighbours(world);
-  world->neighbours.count = world->pair_of.count = count;
+  world->list.neighbours.count = world->list.pair_of.count = count;
   scree_broad_run(world, scree_lists_renew, count);
   scree_pairs_tidy(world);
 }
@@ -199,7 +199,7 @@ static void list_neighbours(scree_world *world) {
 /* For every body the neighbours it is in, ascending: the order in which forces are summed; and what
  * else follows. */
 static void list_sides(scree_world *world) {
-  size_t bodies = world->bodies.count, count = world->keys.count;
+  size_t bodies = world->bodies.count, count = world->list.keys.count;
   scree_broad_run(world, scree_lists_count, count);
   place_groups(&world->broad->sides);
   scree_broad_run(world, scree_lists_side, count);
@@ -208,11 +208,11 @@ static void list_sides(scree_world *world) {
   scree_broad_run(world, scree_lists_walls, bodies);
   scree_broad_run(world, scree_lists_touching, count / 64 + 1);
   scree_broad_run(world, scree_lists_end, 1);
-  world->broad->old_bodies = world->listed_bodies = bodies;
+  world->broad->old_bodies = world->list.body_count = bodies;
 }
 
 bool scree_broad_is_valid(const scree_world *world) {
-  if (world->pairs_stale) return false;
+  if (world->list.stale) return false;
   for (size_t w = 0; w < world->walls.count; w++)
     if (scree_wall_has_left(&world->walls.items[w])) return false;
   for (size_t i = 0; i < world->bodies.count; i++)
@@ -231,7 +231,7 @@ static scree_status order_spheres(scree_world *world, scree_error *error) {
 scree_status scree_broad_update(scree_world *world, scree_error *error) {
   if (world->bodies.count == 0 || scree_broad_is_valid(world)) return SCREE_OK;
   SCREE_TRY(scree_broad_reserve_bodies(world, error));
-  world->margin = scree_broad_margin(world);
+  world->list.margin = scree_broad_margin(world);
   SCREE_TRY(order_spheres(world, error));
   keep_keys(world);
   find_all(world);
@@ -241,29 +241,29 @@ scree_status scree_broad_update(scree_world *world, scree_error *error) {
                              "pairs of spheres");
   if (!reserve_lists(world, count))
     return scree_fail_memory(error, (size_t)count * sizeof(scree_neighbours), "pairs of bodies");
-  world->keys.count = (size_t)count;
+  world->list.keys.count = (size_t)count;
   world->spheres.list.pairs.count = (size_t)spheres;
   list_neighbours(world);
   list_sides(world);
   SCREE_TRY(scree_spheres_list(world, error));
   scree_broad_run(world, scree_lists_date, world->bodies.count);
   scree_broad_run(world, scree_lists_date_walls, 1);
-  world->pairs_stale = false;
+  world->list.stale = false;
   world->timings.broad_builds++;
   return SCREE_OK;
 }
 
 bool scree_broad_reserve(scree_world *world) {
-  return reserve_lists(world, world->neighbours.count);
+  return reserve_lists(world, world->list.neighbours.count);
 }
 
 scree_status scree_broad_restore(scree_world *world, double margin, scree_error *error) {
-  size_t count = world->neighbours.count;
+  size_t count = world->list.neighbours.count;
   SCREE_TRY(scree_broad_reserve_bodies(world, error));
-  world->margin = margin;
+  world->list.margin = margin;
   if (world->bodies.count == 0) return SCREE_OK; /* there are no arrays yet */
   if (!reserve_lists(world, count)) return scree_fail_memory(error, 0, "pairs of bodies");
-  world->keys.count = count;
+  world->list.keys.count = count;
   scree_broad_run(world, scree_lists_key, count);
   place_groups(&world->broad->listed);
   scree_broad_run(world, scree_lists_sort, world->bodies.count);

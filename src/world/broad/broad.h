@@ -20,11 +20,12 @@ bool scree_broad_is_valid(const scree_world *world);
 /* The margin of a body's box, m: small bodies among large ones have one of their own size. */
 static inline double scree_body_margin(const scree_world *world, size_t i) {
   const double own_share = 0.4; /* at most of the body's size */
-  return scree_min(world->margin, own_share * world->bodies.particle[i]->measures.size);
+  return scree_min(world->list.margin, own_share * world->bodies.particle[i]->measures.size);
 }
 /* Since the neighbours were made it has moved farther than they hold for. */
 static inline bool scree_body_has_left(const scree_world *world, size_t i) {
-  return world->bodies.path[i] - world->body_path_at_build[i] > 0.5 * scree_body_margin(world, i);
+  return world->bodies.path[i] - world->list.body_path_at_build[i] >
+         0.5 * scree_body_margin(world, i);
 }
 static inline bool scree_wall_has_left(const scree_world_wall *wall) {
   return wall->path - wall->path_at_build > wall->slack;

@@ -363,8 +363,8 @@ bool scree_pair_list(const scree_world *world, scree_pair *pair, scree_scratch *
   listing l;
   if (!scree_listing_begin(&l, world, pair, scratch)) return true;
   for (int g = 0; g < GROUP_COUNT; g++) list_group(&l, (group)g);
-  scratch->list_builds++;
-  scratch->closest_queries += l.closest_queries;
-  scratch->candidate_seconds += scree_now() - started;
+  scratch->counters.list_builds++;
+  scratch->counters.closest_queries += l.closest_queries;
+  scratch->counters.candidate_seconds += scree_now() - started;
   return !l.full;
 }

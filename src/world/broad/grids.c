@@ -52,13 +52,13 @@ void scree_grids_box(scree_world *world, size_t i) {
   for (size_t w = 0; w < world->walls.count; w++)
     raise_real(&broad->wall_reach[w],
                vec3_distance(frame->position, world->walls.items[w].frame.position) +
-                   particle->measures.bounding_radius + 2 * world->margin);
+                   particle->measures.bounding_radius + 2 * world->list.margin);
 }
 
 /* Half the margin is for the walls that move; sheets and planes have it in any case. They reach as
  * far from their position as bodies can be while the list lasts, and their own points. */
 static void prepare_walls(scree_world *world) {
-  const double margin = world->margin;
+  const double margin = world->list.margin;
   for (size_t w = 0; w < world->walls.count; w++) {
     scree_world_wall *wall = &world->walls.items[w];
     bool still = wall->motion_count == 0 && wall->travel == 0 &&
@@ -122,7 +122,7 @@ static uint64_t key_with(uint32_t body, uint32_t partner) {
 }
 
 static void write_key(const scree_world *world, uint64_t key) {
-  world->keys.items[scree_groups_take(&world->broad->listed, key >> 32)] = key;
+  world->list.keys.items[scree_groups_take(&world->broad->listed, key >> 32)] = key;
 }
 
 /* Whether both are spheres, which have lists of their own, by their places; but for two that were
@@ -268,7 +268,7 @@ static bool near_mesh(const scree_world *world, size_t body, const scree_world_w
   double reach = particle->measures.bounding_radius + wall->surface->measures.rounding +
                  0.5 * scree_body_margin(world, body) + wall->slack;
   if (scree_is_near(wall->surface, p, reach)) return true;
-  bool put = world->body_path_at_build[body] < 0 || wall->path_at_build < 0;
+  bool put = world->list.body_path_at_build[body] < 0 || wall->path_at_build < 0;
   if (put && wall->surface->measures.volume > 0 && scree_is_inside(wall->surface, p)) return true;
   return is_within(world, wall, 0);
 }
@@ -280,7 +280,7 @@ static bool near_wall(const scree_world *world, size_t body, const scree_world_w
   vec3 p = mat3_tmul_vec(&wall->frame.rotation, vec3_sub(frame->position, wall->frame.position));
   vec3 closest, normal;
   double reach = world->bodies.particle[body]->measures.bounding_radius +
-                 0.5 * scree_body_margin(world, body) + 0.5 * world->margin;
+                 0.5 * scree_body_margin(world, body) + 0.5 * world->list.margin;
   double distance = scree_wall_distance(wall, p, scree_wall_side(wall, p), &closest, &normal);
   return is_within(world, wall, distance - reach);
 }
@@ -305,7 +305,7 @@ void scree_grids_widen_walls(scree_world *world) {
                  gap = world->broad->wall_gap[w] ? real_of(~world->broad->wall_gap[w]) : farthest,
                  more = scree_min(gap, farthest);
     wall->slack += more;
-    wall->reach = scree_min(farthest + more, scree_wall_extent(wall) + world->margin);
+    wall->reach = scree_min(farthest + more, scree_wall_extent(wall) + world->list.margin);
   }
 }
 

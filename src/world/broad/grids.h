@@ -89,7 +89,7 @@ struct scree_broad {
     uint32_t *items; /* old neighbours */
     size_t capacity;
   } left_features;
-  scree_groups sides, walls; /* of each body: places in world->sides, neighbours that are walls */
+  scree_groups sides, walls; /* of each body: places in list.sides, neighbours that are walls */
   /* Where the old ones are; here they are moved in place, on a device to other memory. */
   scree_neighbours *old_neighbours;
   uint32_t *old_pair_of;

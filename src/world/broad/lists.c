@@ -30,15 +30,15 @@ static bool is_with_wall(uint64_t key) {
 }
 
 void scree_lists_key(scree_world *world, size_t k) {
-  const scree_neighbours *n = &world->neighbours.items[k];
-  world->keys.items[k] = scree_key_of(n->a, n->b, n->wall);
+  const scree_neighbours *n = &world->list.neighbours.items[k];
+  world->list.keys.items[k] = scree_key_of(n->a, n->b, n->wall);
   scree_atomic_add(&world->broad->listed.count[n->a], 1);
 }
 
 void scree_lists_sort(scree_world *world, size_t i) {
   const scree_broad *broad = world->broad;
   uint32_t begin = broad->listed.begin[i], count = broad->listed.begin[i + 1] - begin;
-  sort_keys(world->keys.items + begin, count);
+  sort_keys(world->list.keys.items + begin, count);
   broad->sides.count[i] = count;
 }
 
@@ -57,7 +57,7 @@ static uint32_t find_key(const uint64_t *keys, const uint32_t *begins, uint64_t 
 
 void scree_lists_match(scree_world *world, size_t k) {
   const scree_broad *broad = world->broad;
-  uint64_t key = world->keys.items[k];
+  uint64_t key = world->list.keys.items[k];
   broad->match.items[k] = first_of(key) < broad->old_bodies
                               ? find_key(broad->old_keys, broad->old_begin, key)
                               : scree_none;
@@ -65,7 +65,7 @@ void scree_lists_match(scree_world *world, size_t k) {
 
 static bool is_dropped(const scree_world *world, size_t k) {
   const scree_broad *broad = world->broad;
-  return find_key(world->keys.items, broad->listed.begin, broad->old_keys[k]) == scree_none;
+  return find_key(world->list.keys.items, broad->listed.begin, broad->old_keys[k]) == scree_none;
 }
 
 void scree_lists_drop(scree_world *world, size_t i) {
@@ -102,18 +102,18 @@ void scree_lists_carry(scree_world *world, size_t k) {
   const scree_broad *broad = world->broad;
   uint32_t from = broad->match.items[k];
   if (from == scree_none) return;
-  world->neighbours.items[k] = broad->old_neighbours[from];
-  world->pair_of.items[k] = broad->old_pair_of[from];
-  world->ledger.items[k] = broad->old_ledger[from];
+  world->list.neighbours.items[k] = broad->old_neighbours[from];
+  world->list.pair_of.items[k] = broad->old_pair_of[from];
+  world->list.ledger.items[k] = broad->old_ledger[from];
 }
 
 void scree_lists_renew(scree_world *world, size_t k) {
-  uint64_t key = world->keys.items[k];
+  uint64_t key = world->list.keys.items[k];
   if (world->broad->match.items[k] == scree_none) {
-    world->neighbours.items[k] =
+    world->list.neighbours.items[k] =
         scree_neighbours_new(world, first_of(key), scree_key_second(key), is_with_wall(key));
-    world->pair_of.items[k] = scree_none;
-    world->ledger.items[k] = (scree_balance){0, 0, 0};
+    world->list.pair_of.items[k] = scree_none;
+    world->list.ledger.items[k] = (scree_balance){0, 0, 0};
     return;
   }
   scree_pair *pair = scree_pair_of(world, k);
@@ -121,7 +121,7 @@ void scree_lists_renew(scree_world *world, size_t k) {
 }
 
 void scree_lists_count(scree_world *world, size_t k) {
-  uint64_t key = world->keys.items[k];
+  uint64_t key = world->list.keys.items[k];
   if (!is_with_wall(key)) scree_atomic_add(&world->broad->sides.count[scree_key_second(key)], 1);
 }
 
@@ -130,23 +130,24 @@ void scree_lists_count(scree_world *world, size_t k) {
 void scree_lists_side(scree_world *world, size_t k) {
   const scree_broad *broad = world->broad;
   const uint32_t *begin = broad->listed.begin, *sides = broad->sides.begin;
-  uint64_t key = world->keys.items[k];
+  uint64_t key = world->list.keys.items[k];
   uint32_t a = first_of(key), b = scree_key_second(key);
-  world->sides.items[sides[a + 1] - (begin[a + 1] - (uint32_t)k)] = (uint32_t)(2 * k);
+  world->list.sides.items[sides[a + 1] - (begin[a + 1] - (uint32_t)k)] = (uint32_t)(2 * k);
   if (!is_with_wall(key))
-    world->sides.items[scree_groups_take(&broad->sides, b) - (begin[b + 1] - begin[b])] =
+    world->list.sides.items[scree_groups_take(&broad->sides, b) - (begin[b + 1] - begin[b])] =
         (uint32_t)(2 * k + 1);
-  const scree_neighbours *n = &world->neighbours.items[k];
-  world->slots.items[k] = (scree_slot){n->asleep ? n->wake : -INFINITY, a,
-                                       is_with_wall(key) ? (uint32_t)world->bodies.count + b : b};
+  const scree_neighbours *n = &world->list.neighbours.items[k];
+  world->list.slots.items[k] =
+      (scree_slot){n->asleep ? n->wake : -INFINITY, a,
+                   is_with_wall(key) ? (uint32_t)world->bodies.count + b : b};
 }
 
 void scree_lists_body(scree_world *world, size_t i) {
   const scree_broad *broad = world->broad;
   uint32_t begin = broad->listed.begin[i], end = broad->listed.begin[i + 1], walls = 0;
   uint32_t sides = broad->sides.begin[i + 1] - broad->sides.begin[i];
-  scree_sort_places(world->sides.items + broad->sides.begin[i], sides - (end - begin));
-  while (walls < end - begin && is_with_wall(world->keys.items[end - 1 - walls])) walls++;
+  scree_sort_places(world->list.sides.items + broad->sides.begin[i], sides - (end - begin));
+  while (walls < end - begin && is_with_wall(world->list.keys.items[end - 1 - walls])) walls++;
   broad->walls.count[i] = walls;
   broad->listed.count[i] = 0;
   scree_set_body_wake_threshold(world, i);
@@ -156,29 +157,29 @@ void scree_lists_walls(scree_world *world, size_t i) {
   const scree_broad *broad = world->broad;
   uint32_t begin = broad->walls.begin[i], count = broad->walls.begin[i + 1] - begin,
            first = broad->listed.begin[i + 1] - count;
-  for (uint32_t j = 0; j < count; j++) world->wall_pairs.items[begin + j] = first + j;
+  for (uint32_t j = 0; j < count; j++) world->list.wall_pairs.items[begin + j] = first + j;
 }
 
 void scree_lists_touching(scree_world *world, size_t word) {
   uint64_t bits = 0;
-  for (size_t k = 64 * word; k < 64 * word + 64 && k < world->neighbours.count; k++) {
+  for (size_t k = 64 * word; k < 64 * word + 64 && k < world->list.neighbours.count; k++) {
     const scree_pair *pair = scree_pair_of(world, k);
     if (pair && pair->touching) bits |= (uint64_t)1 << k % 64;
   }
-  world->touching.items[word] = bits;
+  world->list.touching.items[word] = bits;
 }
 
 void scree_lists_end(scree_world *world, size_t i) {
   (void)i;
-  world->slots.count = world->neighbours.count;
-  world->wake_threshold.count = world->bodies.count + world->walls.count;
-  world->sides.count = world->broad->sides.total;
-  world->wall_pairs.count = world->broad->walls.total;
+  world->list.slots.count = world->list.neighbours.count;
+  world->list.wake_threshold.count = world->bodies.count + world->walls.count;
+  world->list.sides.count = world->broad->sides.total;
+  world->list.wall_pairs.count = world->broad->walls.total;
   for (size_t w = 0; w < world->walls.count; w++) scree_set_wall_wake_threshold(world, w);
 }
 
 void scree_lists_date(scree_world *world, size_t i) {
-  world->body_path_at_build[i] = world->bodies.path[i];
+  world->list.body_path_at_build[i] = world->bodies.path[i];
 }
 
 void scree_lists_date_walls(scree_world *world, size_t i) {

@@ -96,7 +96,7 @@ static uint32_t cell_of(double place) {
 }
 
 static uint32_t code_of(const scree_world *world, size_t i) {
-  const double cell = cell_margins * world->margin;
+  const double cell = cell_margins * world->list.margin;
   vec3 p = vec3_scale(scree_world_fold(world, world->bodies.frame[i].position), 1 / cell);
   return spread(cell_of(p.x)) | spread(cell_of(p.y)) << 1 | spread(cell_of(p.z)) << 2;
 }

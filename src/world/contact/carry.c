@@ -24,13 +24,13 @@ vec3 scree_substep_spin(const scree_substep_body *m, vec3 momentum) {
 }
 
 double scree_part_of_step(const scree_world *world, const scree_pair *pair) {
-  return world->time_step / pair->substeps;
+  return world->time_step / pair->substeps.count;
 }
 
 scree_wrench scree_wrench_of_others(const scree_world *world, const scree_pair *pair,
                                     const scree_scratch *scratch, bool of_b) {
   const scree_bodies *b = &world->bodies;
-  const scree_pair_wrench *last = &scratch->last;
+  const scree_pair_wrench *last = &scratch->before.wrench;
   if (of_b && pair->wall) return (scree_wrench){{0, 0, 0}, {0, 0, 0}};
   uint32_t index = of_b ? pair->b : pair->a;
   vec3 force = of_b ? vec3_neg(last->force) : last->force,
@@ -66,7 +66,7 @@ void scree_kick_by_others(scree_substep_body *m, double time, double half) {
  * to seven times smaller than the reduced one. */
 static uint32_t hardened_parts(const scree_world *world, const scree_pair *pair) {
   const scree_pair_law *law = &pair->law;
-  const double beyond = pair->overlap + pair->list.travel - hard_from * law->limit;
+  const double beyond = pair->contact.overlap + pair->list.travel - hard_from * law->limit;
   if (!pair->touching || !(beyond > 0)) return 1;
   const double stiffer = 1 + hard_most_turning * scree_min(1, beyond / (hard_width * law->limit)),
                pace = 3.14159265358979323846 / law->contact_time * sqrt(7 * stiffer),
@@ -110,12 +110,12 @@ scree_frame scree_owed_frame(const scree_world *world, const scree_pair *pair,
   m.others = scree_wrench_of_others(world, pair, scratch, of_b);
   scree_kick_by_others(&m, 0.5 * (world->time_step - scree_part_of_step(world, pair)), 0);
   scree_frame f = m.frame;
-  const scree_pair_wrench *owed = &pair->owed;
+  const scree_pair_wrench *owed = &pair->substeps.owed;
   scree_kick(&m, of_b ? vec3_neg(owed->force) : owed->force, of_b ? owed->torque_b : owed->torque_a,
              0);
   vec3 ahead = vec3_sub(f.velocity_now, f.velocity), spin = vec3_sub(f.spin_now, f.spin);
-  m.frame.velocity_now = vec3_mad(m.frame.velocity, ahead, 1.0 / pair->substeps);
-  m.frame.spin_now = vec3_mad(m.frame.spin, spin, 1.0 / pair->substeps);
+  m.frame.velocity_now = vec3_mad(m.frame.velocity, ahead, 1.0 / pair->substeps.count);
+  m.frame.spin_now = vec3_mad(m.frame.spin, spin, 1.0 / pair->substeps.count);
   return m.frame;
 }
 
@@ -129,7 +129,7 @@ static double power_by_others(const scree_world *world, const scree_pair *pair,
     u = vec3_mad(u, m[1].others.force, -1 / m[1].mass);
     spin = vec3_sub(spin, scree_substep_spin(&m[1], m[1].others.moment));
   }
-  return vec3_dot(pair->spring.force, u) + vec3_dot(pair->spring.moment, spin);
+  return vec3_dot(pair->book.spring.force, u) + vec3_dot(pair->book.spring.moment, spin);
 }
 
 double scree_work_by_others(const scree_world *world, const scree_pair *pair,
@@ -143,5 +143,5 @@ double scree_unforeseen_work(const scree_world *world, const scree_pair *pair,
   scree_substep_body m[2] = {scree_substep_body_of(world, pair->a, false),
                              scree_substep_body_of(world, pair->b, pair->wall)};
   for (int k = 0; k < 2; k++) m[k].others = scree_wrench_of_others(world, pair, scratch, k == 1);
-  return scree_work_by_others(world, pair, m) - pair->foreseen;
+  return scree_work_by_others(world, pair, m) - pair->substeps.foreseen;
 }

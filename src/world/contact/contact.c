@@ -38,17 +38,18 @@ static void add_later_work(const scree_world *world, const scree_pair *pair, scr
   vec3 slip = vec3_sub(a->velocity, b->velocity),
        arm = vec3_mad(scree_pair_between(world, pair, a, b), slip, -scratch->drift),
        u = vec3_sub(slip, vec3_cross(a->spin, arm)), spin = vec3_sub(a->spin, b->spin);
-  double half = 0.5 * pair->kick;
+  double half = 0.5 * pair->book.kick;
   scratch->spring_work =
-      half * (vec3_dot(pair->spring.force, u) + vec3_dot(pair->spring.moment, spin));
-  work->later_dashpot += half * power_of(&pair->dashpot, u, spin);
-  work->later_tangential += half * (power_of(&pair->tangential, u, spin) - pair->belt_power);
+      half * (vec3_dot(pair->book.spring.force, u) + vec3_dot(pair->book.spring.moment, spin));
+  work->later_dashpot += half * power_of(&pair->book.dashpot, u, spin);
+  work->later_tangential +=
+      half * (power_of(&pair->book.tangential, u, spin) - pair->contact.belt_power);
 }
 
 double scree_half_work_of_wall(const scree_world *world, const scree_pair *pair) {
-  const scree_wrench all = {pair->wrench.force, vec3_neg(pair->wrench.torque_b)};
+  const scree_wrench all = {pair->contact.wrench.force, vec3_neg(pair->contact.wrench.torque_b)};
   return 0.5 * world->time_step *
-         scree_wall_power(&world->walls.items[pair->b], &all, pair->belt_power);
+         scree_wall_power(&world->walls.items[pair->b], &all, pair->contact.belt_power);
 }
 
 /* A ball in the frame of b around all points whose motion counts: the list's region, else the
@@ -135,7 +136,7 @@ static bool has_room(const scree_pair *pair, scree_scratch *scratch) {
 }
 
 static void begin_visits(const scree_pair *pair, scree_scratch *scratch) {
-  scratch->nap = least_sleep * pair->list.travel + scree_pair_edge_reach(pair);
+  scratch->found.nap = least_sleep * pair->list.travel + scree_pair_edge_reach(pair);
   scratch->contacts.count = 0;
 }
 
@@ -148,15 +149,16 @@ void scree_pair_visit_feature(const scree_world *world, const scree_pair *pair, 
 /* What the visits found. Feature pairs that cannot touch soon go to sleep, but move only after the
  * law: the contacts point at their anchors. */
 static void end_visits(const scree_pair *pair, scree_scratch *scratch) {
-  scratch->least_gap = INFINITY;
-  scratch->any_inside = false;
-  scratch->to_sleep = 0;
+  scratch->found.least_gap = INFINITY;
+  scratch->found.any_inside = false;
+  scratch->found.to_sleep = 0;
   for (uint32_t i = 0; i < pair->active.count; i++) {
     scree_feature_pair *feature = &scratch->features[i];
-    if (feature->gap < scratch->least_gap) scratch->least_gap = feature->gap;
-    scratch->any_inside |= feature->inside;
-    if (!(feature->gap > scratch->nap && feature->gap > 0) || feature->inside) feature->gap = 0;
-    scratch->to_sleep += feature->gap > 0;
+    if (feature->gap < scratch->found.least_gap) scratch->found.least_gap = feature->gap;
+    scratch->found.any_inside |= feature->inside;
+    if (!(feature->gap > scratch->found.nap && feature->gap > 0) || feature->inside)
+      feature->gap = 0;
+    scratch->found.to_sleep += feature->gap > 0;
   }
 }
 
@@ -183,21 +185,21 @@ static void settle_features(scree_pair *pair, scree_scratch *scratch) {
 
 static void clear_results(scree_pair *pair) {
   pair->touching = false;
-  pair->elastic_since = 0;
-  pair->followed = false;
-  pair->elastic = pair->tangential_elastic = pair->overlap = 0;
-  pair->contact_count = 0;
+  pair->substeps.elastic_since = 0;
+  pair->substeps.followed = false;
+  pair->contact.elastic = pair->contact.tangential_elastic = pair->contact.overlap = 0;
+  pair->contact.count = 0;
 }
 
 double scree_hysteresis_loss(const scree_pair *pair, double before) {
-  return scree_spent_at(pair, pair->largest) - scree_spent_at(pair, before);
+  return scree_spent_at(pair, pair->history.largest) - scree_spent_at(pair, before);
 }
 
 void scree_note_pressed(const scree_world *world, const scree_pair *pair, scree_scratch *scratch,
                         scree_pair_work *work) {
   const double from = hard_from * pair->law.limit;
   work->pressed |= scree_is_through(world, pair);
-  if (!(pair->overlap > from) || pair->depenetrating) return;
+  if (!(pair->contact.overlap > from) || pair->depenetrating) return;
   work->begins_hardening |= !(scratch->overlap_before > from);
   work->missing = scree_max(work->missing, scree_stiffness_missing(world, pair));
 }
@@ -223,8 +225,8 @@ bool scree_pair_wake(scree_pair *pair, scree_scratch *scratch) {
 static void take_places(const scree_world *world, const scree_pair *pair, scree_scratch *scratch) {
   scratch->a = &world->bodies.frame[pair->a];
   scratch->b = scree_pair_frame_b(world, pair);
-  scratch->drift = world->time_step / pair->substeps;
-  if (pair->substeps == 1) return;
+  scratch->drift = world->time_step / pair->substeps.count;
+  if (pair->substeps.count == 1) return;
   scratch->own[0] = scree_owed_frame(world, pair, scratch, false);
   scratch->own[1] = scree_owed_frame(world, pair, scratch, true);
   scratch->a = &scratch->own[0];
@@ -233,8 +235,8 @@ static void take_places(const scree_world *world, const scree_pair *pair, scree_
 
 /* What is to be found before the law. */
 static void ask(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
-  scratch->depenetrating = pair->depenetrating;
-  scratch->was_depenetrating = pair->was_depenetrating;
+  scratch->before.depenetrating = pair->depenetrating;
+  scratch->before.was_depenetrating = pair->was_depenetrating;
   pair->was_depenetrating = false;
   scree_pair_ask_depths(world, pair, scratch);
 }
@@ -243,59 +245,61 @@ static void ask(const scree_world *world, scree_pair *pair, scree_scratch *scrat
 static void apply_contact_law(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
                               scree_pair_work *work) {
   const scree_frame *relative = &scratch->relative;
-  const bool depenetrating = scratch->depenetrating, was_depenetrating = scratch->was_depenetrating;
+  const bool depenetrating = scratch->before.depenetrating,
+             was_depenetrating = scratch->before.was_depenetrating;
   if (pair->depenetrating)
-    work->let_go = pair->elastic + pair->elastic_since; /* of the last step */
-  scratch->overlap_before = pair->overlap;
+    work->let_go = pair->contact.elastic + pair->substeps.elastic_since; /* of the last step */
+  scratch->overlap_before = pair->contact.overlap;
   clear_results(pair);
-  double largest = pair->largest;
+  double largest = pair->history.largest;
   scree_powers powers = scree_pair_apply_law(world, pair, relative, scratch);
-  pair->kick = 0;
+  pair->book.kick = 0;
   if (was_depenetrating)
-    work->let_go -= pair->elastic; /* what the features feel anew was not loaded by work */
+    work->let_go -= pair->contact.elastic; /* what the features feel anew was not loaded by work */
   if (!pair->touching) return;
-  pair->kick = 0.5 * (scratch->drift + scratch->step);
+  pair->book.kick = 0.5 * (scratch->drift + scratch->step);
   work->begins_depenetration |= !depenetrating && pair->depenetrating;
-  const double half = 0.5 * scratch->drift, rest = 0.5 * pair->kick - half;
+  const double half = 0.5 * scratch->drift, rest = 0.5 * pair->book.kick - half;
   work->dashpot = half * powers.dashpot;
   work->tangential = half * powers.tangential;
-  pair->later_dashpot += rest * powers.dashpot;
-  pair->later_tangential += rest * powers.tangential;
-  if (world->options.law == SCREE_LAW_HYSTERETIC && pair->largest > largest)
+  pair->book.later_dashpot += rest * powers.dashpot;
+  pair->book.later_tangential += rest * powers.tangential;
+  if (world->options.law == SCREE_LAW_HYSTERETIC && pair->history.largest > largest)
     work->lost = scree_hysteresis_loss(pair, largest);
   scree_note_pressed(world, pair, scratch, work);
 }
 
 void scree_pair_begin_work(const scree_world *world, const scree_pair *pair,
                            scree_scratch *scratch) {
-  scratch->last =
-      pair->touching ? pair->wrench : (scree_pair_wrench){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  scratch->before.wrench =
+      pair->touching ? pair->contact.wrench : (scree_pair_wrench){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
   take_places(world, pair, scratch);
-  scratch->work = (scree_pair_work){.later_dashpot = pair->later_dashpot,
-                                    .later_tangential = pair->later_tangential};
+  scratch->work = (scree_pair_work){.later_dashpot = pair->book.later_dashpot,
+                                    .later_tangential = pair->book.later_tangential};
   add_later_work(world, pair, scratch, &scratch->work);
-  if (pair->substeps > 1) scratch->spring_work += scree_unforeseen_work(world, pair, scratch);
+  if (pair->substeps.count > 1) scratch->spring_work += scree_unforeseen_work(world, pair, scratch);
   if (pair->touching && pair->wall) scratch->work.wall = scree_half_work_of_wall(world, pair);
 }
 
 void scree_pair_relate(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
-  scratch->before = pair->list;
-  scratch->slept = pair->asleep;
+  scratch->before.list = pair->list;
+  scratch->before.asleep = pair->asleep;
   scree_pair_begin_work(world, pair, scratch);
   double speed = relate(world, pair, scratch);
   pair->list.travel = speed * world->time_step;
-  pair->list.path += scratch->slept ? slept_path(world, pair, scratch) : speed * scratch->drift;
+  pair->list.path +=
+      scratch->before.asleep ? slept_path(world, pair, scratch) : speed * scratch->drift;
   pair->asleep = false;
 }
 
 void scree_pair_step_back(scree_pair *pair, const scree_scratch *scratch) {
-  pair->list = scratch->before;
-  pair->asleep = scratch->slept;
+  pair->list = scratch->before.list;
+  pair->asleep = scratch->before.asleep;
 }
 
 void scree_pair_meet(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   scratch->work.too_fast = passes_unseen(world, pair);
-  pair->later_dashpot = pair->later_tangential = 0;
+  pair->book.later_dashpot = pair->book.later_tangential = 0;
   end_visits(pair, scratch);
   scratch->substeps = scree_substep_count(world, pair, &scratch->relative, scratch);
   scratch->step = world->time_step / scratch->substeps;
@@ -304,7 +308,7 @@ void scree_pair_meet(const scree_world *world, scree_pair *pair, scree_scratch *
 
 void scree_pair_contact_law(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   apply_contact_law(world, pair, scratch, &scratch->work);
-  if (scratch->to_sleep > 0) settle_features(pair, scratch);
+  if (scratch->found.to_sleep > 0) settle_features(pair, scratch);
 }
 
 bool scree_pair_narrow_phase(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
@@ -317,7 +321,7 @@ bool scree_pair_narrow_phase(const scree_world *world, scree_pair *pair, scree_s
   for (uint32_t i = 0; i < pair->active.count; i++)
     scree_pair_visit_feature(world, pair, i, scratch);
   scree_pair_meet(world, pair, scratch);
-  if (scree_asks_depths(&scratch->question))
+  if (scree_asks_depths(&scratch->found.question))
     scree_pair_find_depths(world, pair, scratch, &scratch->work);
   scree_pair_contact_law(world, pair, scratch);
   return true;
@@ -334,10 +338,11 @@ void scree_pair_narrow_phase_between(const scree_world *world, scree_pair *pair,
     scree_pair_visit_feature(world, pair, i, scratch);
   end_visits(pair, scratch);
   ask(world, pair, scratch);
-  if (scree_asks_depths(&scratch->question)) scree_pair_find_depths(world, pair, scratch, &part);
+  if (scree_asks_depths(&scratch->found.question))
+    scree_pair_find_depths(world, pair, scratch, &part);
   apply_contact_law(world, pair, scratch, &part);
-  pair->later_dashpot += part.later_dashpot + part.dashpot - part.lost - part.let_go;
-  pair->later_tangential += part.later_tangential + part.tangential;
+  pair->book.later_dashpot += part.later_dashpot + part.dashpot - part.lost - part.let_go;
+  pair->book.later_tangential += part.later_tangential + part.tangential;
   scratch->work.begins_depenetration |= part.begins_depenetration;
   scratch->work.pressed |= part.pressed;
   scratch->work.begins_hardening |= part.begins_hardening;

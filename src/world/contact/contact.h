@@ -32,7 +32,7 @@ static inline double scree_pair_contact_radius(const scree_world *w, const scree
  * count: those that come in behind a corner are tapered, and deeper than they are felt. 0 at rest.
  */
 static inline double scree_pair_edge_reach(const scree_pair *p) {
-  double beyond = p->overlap - p->law.reach;
+  double beyond = p->contact.overlap - p->law.reach;
   return beyond > 0 ? 2 * beyond : 0;
 }
 

@@ -397,7 +397,7 @@ static scree_smooth_maximum felt_overlap(const scree_world *world, const scree_p
 
 /* Bodies that part are apart here: once they are pushed, where their springs would hardly press. */
 static double apart_depth(const scree_pair *pair) {
-  bool pushed = vec3_norm2(pair->separation) > 0;
+  bool pushed = vec3_norm2(pair->apart.direction) > 0;
   return pushed ? -apart_share * pair->law.reach : 0;
 }
 
@@ -411,14 +411,14 @@ static void note_start(const scree_pair *pair, double depth, scree_pair_work *wo
 /* How far apart the cores are, by features that meet from outside, less what these may be off by.
  */
 static double gap_of_cores(const scree_pair *pair, const scree_scratch *scratch) {
-  double touching = scree_min(scratch->least_gap, 0); /* what sleeps is farther */
+  double touching = scree_min(scratch->found.least_gap, 0); /* what sleeps is farther */
   return scree_max(0, touching + (1 - near_share) * pair->law.reach + pair->law.smoothing);
 }
 
 /* Whether the cores were so far apart before the step that they cannot have met in it. */
 static bool stay_apart(const scree_pair *pair, const scree_scratch *scratch) {
-  double before = scratch->slept ? (near_share - 1) * pair->law.reach : pair->depth;
-  return !pair->depenetrating && !scratch->any_inside && !scratch->question.start &&
+  double before = scratch->before.asleep ? (near_share - 1) * pair->law.reach : pair->depth;
+  return !pair->depenetrating && !scratch->found.any_inside && !scratch->found.question.start &&
          before + pair->list.travel <= 0;
 }
 
@@ -432,14 +432,14 @@ static double way_since(const scree_particle *a, const scree_scratch *scratch) {
 
 /* Bodies that part, and at `least` so deep, need no look. */
 static bool part_still(const scree_pair *pair, double least) {
-  bool pushed = vec3_norm2(pair->separation) > 0;
-  return pair->depenetrating && pushed && least > (1 - depenetration_look_share) * pair->found &&
-         least > 0;
+  bool pushed = vec3_norm2(pair->apart.direction) > 0;
+  return pair->depenetrating && pushed &&
+         least > (1 - depenetration_look_share) * pair->apart.found && least > 0;
 }
 
 void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
-  scree_depth_question *question = &scratch->question;
+  scree_depth_question *question = &scratch->found.question;
   *question = (scree_depth_question){0};
   if (!b) return;
   question->start = scree_pair_is_new(pair);
@@ -487,24 +487,24 @@ static bool are_apart(const scree_world *world, const scree_pair *pair,
 
 static void answer(const scree_world *world, scree_pair *pair, double start, double depth,
                    scree_scratch *scratch, scree_pair_work *work) {
-  const scree_depth_question *question = &scratch->question;
+  const scree_depth_question *question = &scratch->found.question;
   if (question->start) note_start(pair, start, work);
   if (!question->edges) return;
-  pair->depth = pair->found = depth;
-  scratch->depth_queries++;
+  pair->depth = pair->apart.found = depth;
+  scratch->counters.depth_queries++;
   if (question->start) note_start(pair, pair->depth, work);
   if (pair->depth <= question->claimed && question->claimed > 0) pair->depenetrating = true;
   if (!pair->depenetrating || !are_apart(world, pair, scratch)) return;
   pair->depenetrating = false;
   pair->was_depenetrating = true;
-  pair->separation = (vec3){0, 0, 0};
+  pair->apart.direction = (vec3){0, 0, 0};
   start_anew(pair, scratch);
-  work->let_go = pair->elastic + pair->elastic_since; /* of the last step */
+  work->let_go = pair->contact.elastic + pair->substeps.elastic_since; /* of the last step */
 }
 
 void scree_pair_find_depths(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
                             scree_pair_work *work) {
-  const scree_depth_question *question = &scratch->question;
+  const scree_depth_question *question = &scratch->found.question;
   const scree_frame *relative = &scratch->relative;
   double start = question->start ? start_depth(world, pair, relative) : 0, depth = 0;
   if (question->edges)
@@ -525,15 +525,15 @@ static entries entries_of(const scree_world *world, const scree_pair *pair,
   entries all;
   make_sides(world, pair, &scratch->relative, all.sides);
   for (int k = 0; k < 2; k++) {
-    all.edges[k] = scratch->question.edges ? all.sides[k].from->edge_count : 0;
-    all.points[k] = scratch->question.start ? all.sides[k].from->point_count : 0;
+    all.edges[k] = scratch->found.question.edges ? all.sides[k].from->edge_count : 0;
+    all.points[k] = scratch->found.question.start ? all.sides[k].from->point_count : 0;
   }
   return all;
 }
 
 size_t scree_depth_count(const scree_world *world, const scree_pair *pair,
                          const scree_scratch *scratch) {
-  if (!scree_asks_depths(&scratch->question)) return 0;
+  if (!scree_asks_depths(&scratch->found.question)) return 0;
   entries all = entries_of(world, pair, scratch);
   return all.edges[0] + all.edges[1] + all.points[0] + all.points[1];
 }
@@ -541,7 +541,7 @@ size_t scree_depth_count(const scree_world *world, const scree_pair *pair,
 scree_depth scree_depth_of(const scree_world *world, const scree_pair *pair,
                            const scree_scratch *scratch, size_t entry) {
   const entries all = entries_of(world, pair, scratch);
-  const double above = scratch->question.above;
+  const double above = scratch->found.question.above;
   for (int k = 0; k < 2; k++) {
     const side *sd = &all.sides[k];
     if (entry < all.edges[k])
@@ -557,12 +557,12 @@ scree_depth scree_depth_of(const scree_world *world, const scree_pair *pair,
 void scree_pair_take_depths(const scree_world *world, scree_pair *pair, const scree_depth *found,
                             scree_scratch *scratch, scree_pair_work *work) {
   const entries all = entries_of(world, pair, scratch);
-  double start = 0, depth = scratch->question.above;
+  double start = 0, depth = scratch->found.question.above;
   for (int k = 0; k < 2; k++) {
     const side *sd = &all.sides[k];
     for (size_t i = 0; i < all.edges[k]; i++, found++) {
       const scree_edge *edge = &sd->from->edges[sd->from->edge_tree.order[i]];
-      double own = contact_edge(sd, pair, edge, scratch->question.above, found, scratch);
+      double own = contact_edge(sd, pair, edge, scratch->found.question.above, found, scratch);
       depth = scree_max(depth, own);
     }
   }

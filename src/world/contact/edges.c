@@ -275,8 +275,8 @@ static bool is_met_from_behind(const scree_world *world, const scree_pair *pair,
   if (!pair->touching || !feature->has_reference) return false;
   vec3 behind = vec3_scale(x->offset, -1 / x->distance);
   if (!is_only_normal(x, behind)) return false;
-  const float *along = pair->tangential.force;
-  vec3 force = vec3_sub(pair->wrench.force, (vec3){along[0], along[1], along[2]});
+  const float *along = pair->book.tangential.force;
+  vec3 force = vec3_sub(pair->contact.wrench.force, (vec3){along[0], along[1], along[2]});
   force = mat3_tmul_vec(&scree_pair_frame_b(world, pair)->rotation, force);
   return vec3_dot(behind, force) > pressing_cosine * vec3_norm(force) &&
          is_crossed(world, pair, relative, x);
@@ -343,7 +343,8 @@ static bool find_deep_contact(const scree_world *world, const scree_pair *pair,
   if (behind) /* what changes nothing */
     c->first = scree_max(
         c->first,
-        pair->overlap - scree_blend_at(&pair->law, world->options.sharing, pair->overlap).width);
+        pair->contact.overlap -
+            scree_blend_at(&pair->law, world->options.sharing, pair->contact.overlap).width);
   return armed && !stale;
 }
 

@@ -12,7 +12,7 @@ static void fall_asleep(const scree_world *world, scree_pair *pair, scree_neighb
 void scree_pair_leave(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   const vec3 at = scratch->relative.position; /* as the step began */
   scree_pair_watch(world, pair, scratch);
-  if (scratch->substeps > 1 || pair->substeps > 1) scree_pair_follow(world, pair, scratch);
+  if (scratch->substeps > 1 || pair->substeps.count > 1) scree_pair_follow(world, pair, scratch);
   if (pair->touching && pair->wall) scratch->work.wall += scree_half_work_of_wall(world, pair);
   if (!scree_pair_stays_awake(pair)) fall_asleep(world, pair, scratch->neighbours, at);
 }

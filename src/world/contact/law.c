@@ -97,7 +97,7 @@ static double inverse_mass(const scree_world *world, const scree_pair *pair,
  * the overlap in a small part of the way: the force must move the bodies by little of that way in a
  * step, by K m dt^2/mu. */
 static double most_resolved(const scree_pair *pair, double step, double inverse, double least) {
-  double moves = scree_spring_at(pair, pair->overlap).force * step * step * inverse;
+  double moves = scree_spring_at(pair, pair->contact.overlap).force * step * step * inverse;
   return scree_max(least, resolved_share * pair->law.reach / moves);
 }
 
@@ -158,7 +158,7 @@ static double damping_at(const scree_world *world, const scree_pair *pair,
          share = scree_min(1, 1 / (inverse * scree_reduced_mass(&pair->law))),
          damping = pair->law.damping * sqrt(share);
   damping *= scree_hardened_damping(pair);
-  return damping * scree_dashpot_grown(&pair->law, pair->overlap);
+  return damping * scree_dashpot_grown(&pair->law, pair->contact.overlap);
 }
 
 static double along_motion(const scree_wrench *wrench, vec3 velocity, vec3 spin) {
@@ -231,8 +231,9 @@ static void fade(double spring, scree_contact_point *contact, load_sums *sums) {
 static void judge(const scree_world *world, scree_pair *pair, const scree_contact_list *contacts) {
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   if (!scree_knows_depths(a, b)) return;
-  bool jammed = pair->overlap > 0.5 * pair->law.reach && scree_lasting(pair) == 1 && !b->sheet,
-       pressed = pair->overlap > most_pressed * pair->law.limit && pair->depth > 0;
+  bool jammed =
+           pair->contact.overlap > 0.5 * pair->law.reach && scree_lasting(pair) == 1 && !b->sheet,
+       pressed = pair->contact.overlap > most_pressed * pair->law.limit && pair->depth > 0;
   if (!jammed && !pressed && !contacts->items[contacts->count - 1].of_depth)
     return; /* depths come last */
   vec3 net = {0, 0, 0};
@@ -307,7 +308,7 @@ static void roll(const scree_world *world, scree_pair *pair, const slider *slidi
   const rolling_arm arm =
       find_rolling_arm(world, pair, scratch, vec3_scale(sums->normal.force, 1 / size));
   const vec3 n = arm.n, spin = scratch->relative.spin,
-             rolled = scree_stretched(pair->rolled, vec3_scale(spin, arm.felt), spin,
+             rolled = scree_stretched(pair->history.rolled, vec3_scale(spin, arm.felt), spin,
                                       sliding->touch.slid),
              twisted = vec3_scale(n, vec3_dot(rolled, n)),
              twists = vec3_scale(n, vec3_dot(sliding->spin, n));
@@ -322,7 +323,7 @@ static void roll(const scree_world *world, scree_pair *pair, const slider *slidi
   law.friction *= pair->law.friction;
   along = vec3_add(
       along, scree_slide(&law, &about, 1, (vec3){0, 0, 0}, twisted, twists, sums->pressed, energy));
-  pair->rolled = vec3_add(across.stretch, about.stretch);
+  pair->history.rolled = vec3_add(across.stretch, about.stretch);
   const vec3 couple = vec3_scale(along, arm.felt);
   sums->tangential.moment = vec3_add(sums->tangential.moment, couple);
   sums->tangential_power += vec3_dot(couple, spin);
@@ -334,13 +335,13 @@ static void store_wrenches(const scree_world *world, const scree_scratch *scratc
   scree_wrench normal = turned(&sums->normal, &b->rotation);
   scree_wrench dashpot = turned(&sums->dashpot, &b->rotation);
   scree_wrench tangential = turned(&sums->tangential, &b->rotation);
-  pair->dashpot = scree_kept(&dashpot);
-  pair->tangential = scree_kept(&tangential);
-  pair->belt_power = (float)sums->belt_power;
+  pair->book.dashpot = scree_kept(&dashpot);
+  pair->book.tangential = scree_kept(&tangential);
+  pair->contact.belt_power = (float)sums->belt_power;
   vec3 arm = scree_pair_between(world, pair, a, b);
   vec3 force = vec3_add(normal.force, tangential.force),
        moment = vec3_add(normal.moment, tangential.moment);
-  pair->wrench =
+  pair->contact.wrench =
       (scree_pair_wrench){force, vec3_sub(moment, vec3_cross(arm, force)), vec3_neg(moment)};
 }
 
@@ -368,7 +369,7 @@ static vec3 separation_from_wall(const scree_particle *a, const scree_particle *
 /* The way in which bodies part, kept in the frame of b until they are apart. */
 static vec3 separation_of(const scree_world *world, scree_pair *pair, const scree_frame *relative,
                           const scree_scratch *scratch) {
-  if (vec3_norm2(pair->separation) > 0) return pair->separation;
+  if (vec3_norm2(pair->apart.direction) > 0) return pair->apart.direction;
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   vec3 way = vec3_unit(scree_separation_off_rims(world, pair, relative));
   if (vec3_norm2(way) == 0 && b->face_count)
@@ -376,7 +377,7 @@ static vec3 separation_of(const scree_world *world, scree_pair *pair, const scre
                      : vec3_unit(scree_separation_direction(a, b, relative));
   if (vec3_norm2(way) == 0) way = vec3_unit(relative->position);
   if (vec3_norm2(way) == 0) way = (vec3){0, 0, 1};
-  return pair->separation = way;
+  return pair->apart.direction = way;
 }
 
 /* Where bodies that part are pushed. */
@@ -409,9 +410,9 @@ static double held_with(const scree_world *world, const scree_pair *pair, vec3 w
 /* The pair remembers nothing of a contact. */
 static void forget_contact(scree_pair *pair, scree_contact_list *contacts) {
   for (size_t i = 0; i < contacts->count; i++) contacts->items[i].anchor->weight = 0;
-  pair->largest = 0;
-  pair->spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
-  pair->rolled = (vec3){0, 0, 0};
+  pair->history.largest = 0;
+  pair->book.spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
+  pair->history.rolled = (vec3){0, 0, 0};
 }
 
 /* Edges that lie in each other may each be nearest to a separation direction that is the other's
@@ -422,27 +423,28 @@ static scree_powers part(const scree_world *world, scree_pair *pair, const scree
                          scree_scratch *scratch) {
   scree_contact_list *contacts = &scratch->contacts; /* with room for more than one */
   forget_contact(pair, contacts);
-  if (scratch->question.edges) pair->pushed = place_of_push(world, pair, contacts, relative);
-  vec3 at = pair->pushed, way = separation_of(world, pair, relative, scratch),
+  if (scratch->found.question.edges)
+    pair->apart.place = place_of_push(world, pair, contacts, relative);
+  vec3 at = pair->apart.place, way = separation_of(world, pair, relative, scratch),
        arm = vec3_cross(at, way);
   pair->touching = true;
-  pair->contact_count = 1;
-  pair->age += scratch->drift;
-  pair->overlap = scree_max(0, pair->depth + pair->law.reach);
+  pair->contact.count = 1;
+  pair->history.age += scratch->drift;
+  pair->contact.overlap = scree_max(0, pair->depth + pair->law.reach);
   slider law = make_slider(world, pair, relative, scratch->drift);
   vec3 seen = vec3_add(law.velocity, vec3_cross(law.spin, at)),
        v = vec3_add(relative->velocity, vec3_cross(relative->spin, at));
   double brake = depenetration_damping * scree_reduced_mass(&pair->law) / world->time_step *
                  (scree_depenetration_speed(&pair->law) - vec3_dot(seen, way)),
          push = scree_max(0, brake + held_with(world, pair, way, scratch)),
-         most = pair->law.stiffness * scree_min(pair->overlap, pair->law.limit),
+         most = pair->law.stiffness * scree_min(pair->contact.overlap, pair->law.limit),
          force = scree_min(most, push);
   load_sums sums = {0};
   add_wrench(&sums.normal, way, arm, force);
   sums.dashpot = sums.normal;
   contacts->items[0] = (scree_contact_point){.at = at,
                                              .normal = way,
-                                             .overlap = pair->overlap,
+                                             .overlap = pair->contact.overlap,
                                              .taper = 1,
                                              .weight = 1,
                                              .gap_gradient = 1,
@@ -457,7 +459,7 @@ static double press(const scree_world *world, scree_pair *pair, const overlap_sl
                     const scree_scratch *scratch, scree_touch_time *touch) {
   const scree_frame *relative = &scratch->relative;
   if (scree_is_settled(pair, scree_lasting(pair))) {
-    pair->spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
+    pair->book.spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
     *touch = (scree_touch_time){1, scratch->drift, false};
     return scree_press_settled(world->options.law == SCREE_LAW_HYSTERETIC, pair);
   }
@@ -471,7 +473,7 @@ static double press(const scree_world *world, scree_pair *pair, const overlap_sl
   *touch = scree_touch_time_of(pair, &motion);
   const double spring = scree_press_moving(pair, &motion);
   const scree_wrench pressed = {vec3_scale(all.force, spring), vec3_scale(all.moment, spring)};
-  pair->spring = turned(&pressed, &scratch->b->rotation);
+  pair->book.spring = turned(&pressed, &scratch->b->rotation);
   return spring;
 }
 
@@ -522,12 +524,12 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   if (contacts->count == 0 ||
       !scree_find_smooth_maximum(&pair->law, world->options.sharing, contacts, &maximum)) {
     forget_contact(pair, contacts);
-    pair->age = 0;
+    pair->history.age = 0;
     return (scree_powers){0, 0};
   }
   pair->touching = true;
-  pair->age += scratch->drift;
-  pair->overlap = maximum.value;
+  pair->history.age += scratch->drift;
+  pair->contact.overlap = maximum.value;
   overlap_slope slope = find_slope(world, pair, &maximum, scratch);
   scree_touch_time touch;
   double spring = press(world, pair, &slope, scratch, &touch), energy = 0;
@@ -551,9 +553,9 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   }
   judge(world, pair, contacts);
   roll(world, pair, &law, scratch, &energy, &sums);
-  pair->contact_count = count;
-  pair->tangential_elastic = energy;
-  pair->elastic += energy;
+  pair->contact.count = count;
+  pair->contact.tangential_elastic = energy;
+  pair->contact.elastic += energy;
   store_wrenches(world, scratch, pair, &sums);
   return (scree_powers){sums.dashpot_power, sums.tangential_power};
 }

@@ -66,11 +66,12 @@ static inline double scree_spent_at(const scree_pair *pair, double m) {
 static inline scree_spring_state scree_bearing_at(bool hysteretic, const scree_pair *pair,
                                                   double m) {
   if (!hysteretic) return scree_spring_at(pair, m);
-  if (m >= pair->largest) return scree_loaded_at(pair, m);
+  if (m >= pair->history.largest) return scree_loaded_at(pair, m);
   const double e2 = pair->law.restitution * pair->law.restitution;
   const scree_spring_state back =
-      scree_loaded_at(pair, scree_max(0, pair->largest - (pair->largest - m) / e2));
-  return (scree_spring_state){back.force, e2 * back.energy + scree_spent_at(pair, pair->largest)};
+      scree_loaded_at(pair, scree_max(0, pair->history.largest - (pair->history.largest - m) / e2));
+  return (scree_spring_state){back.force,
+                              e2 * back.energy + scree_spent_at(pair, pair->history.largest)};
 }
 
 /* The width l in which features share the overlap m, and dl/dm. Turning the bodies is as stiff as
@@ -98,16 +99,16 @@ static inline double scree_reduced_mass(const scree_pair_law *law) {
 /* How far the contact is no impact any more, from 0 to 1: the tangential dashpot. An oblique impact
  * follows the spring and slider alone; what rests on each other is calmed. */
 static inline double scree_lasting(const scree_pair *pair) {
-  double age = pair->age / pair->law.contact_time;
+  double age = pair->history.age / pair->law.contact_time;
   return age < 1.5 ? 0 : age > 3 ? 1 : (age - 1.5) / 1.5;
 }
 
 /* With q = (2 U/K)^1/2 in place of m the motion is that of a linear spring where C grows as dq/dm:
  * so e is kept, however hard the spring is. By how much more than where it is soft. */
 static inline double scree_hardened_damping(const scree_pair *pair) {
-  if (!(pair->overlap > hard_from * pair->law.limit)) return 1;
-  const scree_spring_state soft = scree_soft_spring_at(&pair->law, pair->overlap),
-                           is = scree_spring_at(pair, pair->overlap);
+  if (!(pair->contact.overlap > hard_from * pair->law.limit)) return 1;
+  const scree_spring_state soft = scree_soft_spring_at(&pair->law, pair->contact.overlap),
+                           is = scree_spring_at(pair, pair->contact.overlap);
   /* in what lasts steps do not bear as much where many hold one */
   return 1 +
          (is.force / soft.force * sqrt(soft.energy / is.energy) - 1) * (1 - scree_lasting(pair));
@@ -118,8 +119,8 @@ static inline double scree_hardened_damping(const scree_pair *pair) {
 static inline double scree_stiffness_missing(const scree_world *world, const scree_pair *pair) {
   const bool hysteretic = world->options.law == SCREE_LAW_HYSTERETIC;
   const scree_spring_state soft = scree_soft_spring_at(&pair->law, pair->law.limit),
-                           is = hysteretic ? scree_loaded_at(pair, pair->overlap)
-                                           : scree_spring_at(pair, pair->overlap);
+                           is = hysteretic ? scree_loaded_at(pair, pair->contact.overlap)
+                                           : scree_spring_at(pair, pair->contact.overlap);
   return scree_lasting(pair) == 1 ? is.force / soft.force : is.energy / soft.energy;
 }
 
@@ -127,7 +128,7 @@ static inline double scree_stiffness_missing(const scree_world *world, const scr
  * deeper from the start, or has edges that do. */
 static inline bool scree_is_through(const scree_world *world, const scree_pair *pair) {
   const double half = 0.5 / world->options.overlap_limit;
-  return !(pair->overlap <= scree_min(most_pressed, half) * pair->law.limit) &&
+  return !(pair->contact.overlap <= scree_min(most_pressed, half) * pair->law.limit) &&
          !pair->depenetrating;
 }
 
@@ -171,23 +172,25 @@ static inline scree_overlap_motion scree_overlap_moves(const scree_world *world,
                                                        double rate_now) {
   const bool hysteretic = world->options.law == SCREE_LAW_HYSTERETIC;
   const double e = pair->law.restitution;
-  return (scree_overlap_motion){
-      .overlap = pair->overlap,
-      .before = scratch->overlap_before,
-      .rate = rate,
-      .rate_now = rate_now,
-      .drift = scratch->drift,
-      .step = scratch->step,
-      .spring_work = scratch->spring_work,
-      .lasts = scree_lasting(pair),
-      .rest = hysteretic && pair->overlap < pair->largest ? (1 - e * e) * pair->largest : 0,
-      .hysteretic = hysteretic,
-      .first = scratch->overlap_before == 0 || scratch->was_depenetrating};
+  return (scree_overlap_motion){.overlap = pair->contact.overlap,
+                                .before = scratch->overlap_before,
+                                .rate = rate,
+                                .rate_now = rate_now,
+                                .drift = scratch->drift,
+                                .step = scratch->step,
+                                .spring_work = scratch->spring_work,
+                                .lasts = scree_lasting(pair),
+                                .rest = hysteretic && pair->contact.overlap < pair->history.largest
+                                            ? (1 - e * e) * pair->history.largest
+                                            : 0,
+                                .hysteretic = hysteretic,
+                                .first = scratch->overlap_before == 0 ||
+                                         scratch->before.was_depenetrating};
 }
 
 /* In a contact that lasts, deep beside its way in a step, the balance is not drawn. */
 static inline bool scree_is_settled(const scree_pair *pair, double lasts) {
-  return lasts == 1 && pair->overlap >= steep_overlap * pair->list.travel;
+  return lasts == 1 && pair->contact.overlap >= steep_overlap * pair->list.travel;
 }
 
 /* The way on the other side of the touch's begin or end. */
@@ -237,7 +240,7 @@ typedef struct scree_felt {
  * finds it. */
 static inline scree_felt scree_felt_at_edge(const scree_pair *pair, const scree_overlap_motion *m) {
   const double x = m->overlap, kick = 0.5 * (m->drift + m->step), speed = fabs(m->rate),
-               spent = m->rest > 0 ? scree_spent_at(pair, pair->largest) : 0;
+               spent = m->rest > 0 ? scree_spent_at(pair, pair->history.largest) : 0;
   const bool begins = m->rate_now > 0;
   scree_felt f = {scree_bearing_at(m->hysteretic, pair, x).force, 1};
   for (int round = 0; round < 2; round++) {
@@ -255,10 +258,10 @@ static inline scree_felt scree_felt_at_edge(const scree_pair *pair, const scree_
  * the energy that comes back from both. */
 static inline double scree_spring_force(bool hysteretic, scree_pair *pair, double m,
                                         scree_felt felt) {
-  pair->elastic = scree_bearing_at(hysteretic, pair, m).energy - pair->law.pull * m;
+  pair->contact.elastic = scree_bearing_at(hysteretic, pair, m).energy - pair->law.pull * m;
   if (hysteretic) {
-    pair->largest = scree_max(pair->largest, m);
-    pair->elastic -= scree_spent_at(pair, pair->largest);
+    pair->history.largest = scree_max(pair->history.largest, m);
+    pair->contact.elastic -= scree_spent_at(pair, pair->history.largest);
   }
   return felt.force - pair->law.pull * felt.pull;
 }
@@ -273,7 +276,7 @@ static inline double scree_repaid(double lasts, double balance, double kick_work
 }
 
 static inline double scree_press_settled(bool hysteretic, scree_pair *pair) {
-  const double m = pair->overlap;
+  const double m = pair->contact.overlap;
   return scree_spring_force(hysteretic, pair, m,
                             (scree_felt){scree_bearing_at(hysteretic, pair, m).force, 1});
 }
@@ -292,10 +295,10 @@ static inline double scree_press_moving(scree_pair *pair, const scree_overlap_mo
   double half = -0.25 * (m->drift + m->step) * m->rate,
          stored = scree_energy_between(false, pair, overlap, before) -
                   0.5 * pair->law.pull * (overlap + before),
-         worked = pair->worked + m->spring_work;
+         worked = pair->history.worked + m->spring_work;
   if (m->first) worked = before > 0 ? -stored : 0; /* what is there already */
   if (!edge) spring *= 1 + scree_repaid(m->lasts, stored + worked, 2 * half * spring, is.energy);
-  pair->worked = worked + half * spring;
+  pair->history.worked = worked + half * spring;
   return spring;
 }
 
@@ -313,7 +316,7 @@ static inline scree_slider scree_slider_of(const scree_pair *pair, double ratio,
   const scree_pair_law *l = &pair->law;
   if (l->hertz == 0)
     return (scree_slider){l->stiffness * ratio, lasts * l->damping * sqrt(ratio), l->friction, 1};
-  double grown = sqrt(pair->overlap);
+  double grown = sqrt(pair->contact.overlap);
   return (scree_slider){l->mindlin,
                         lasts * l->damping * sqrt(l->mindlin / (1.5 * l->hertz)) / sqrt(grown),
                         l->friction, grown};
@@ -351,7 +354,7 @@ static inline vec3 scree_slide(const scree_slider *law, scree_anchor *anchor, do
 /* The stiffness of rolling resistance over (mu_r R)^2. */
 static inline double scree_rolling_stiffness(const scree_pair *pair) {
   double hertz = pair->law.hertz;
-  return 2.25 * (hertz > 0 ? 1.5 * hertz * sqrt(pair->overlap) : pair->law.stiffness);
+  return 2.25 * (hertz > 0 ? 1.5 * hertz * sqrt(pair->contact.overlap) : pair->law.stiffness);
 }
 
 /* The couple of a spring and dashpot against rolling. Ai and others' type C: the spring alone is
@@ -379,7 +382,7 @@ static inline vec3 scree_roll(bool epsd, scree_pair *pair, vec3 n, vec3 rolled, 
                             .friction = arm};
   scree_anchor spring = {.weight = 1};
   vec3 couple = scree_resist_rolling(epsd, &law, &spring, n, rolled, seen, pressed, energy);
-  pair->rolled = spring.stretch;
+  pair->history.rolled = spring.stretch;
   return couple;
 }
 

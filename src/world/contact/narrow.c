@@ -404,7 +404,7 @@ static double point_surface_contact(const scree_world *world, const scree_pair *
   if (feature->face_count == 0 || pair->list.path > feature->valid) {
     refresh_faces(surface, p, feature, pair->list.path,
                   scree_max(0.25 * pair->law.reach, 8 * pair->list.travel));
-    scratch->closest_queries++;
+    scratch->counters.closest_queries++;
   }
   surface_contact contacts[SCREE_ANCHORS];
   probe x = {.surface = surface, .pair = pair, .feature = feature, .p = p, .drift = scratch->drift};
@@ -481,7 +481,7 @@ static double wall_contact(const scree_world *world, const scree_pair *pair,
 double scree_feature_contact(const scree_world *world, const scree_pair *pair,
                              scree_feature_pair *feature, const scree_frame *relative,
                              scree_scratch *scratch) {
-  scratch->feature_evaluations++;
+  scratch->counters.feature_evaluations++;
   switch ((scree_feature_kind)feature->kind) {
   case SCREE_FEATURE_POINT_FACE:
   case SCREE_FEATURE_FACE_POINT:

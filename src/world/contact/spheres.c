@@ -60,19 +60,19 @@ static double path_of(const scree_world *world, const scree_neighbours *n) {
 }
 
 bool scree_spheres_stay_apart(scree_world *world, size_t k) {
-  scree_neighbours *n = &world->neighbours.items[k];
+  scree_neighbours *n = &world->list.neighbours.items[k];
   double side = 0;
   meeting m = meet_wall(world, n->a, &world->walls.items[n->b], &side);
   if (m.overlap > 0) return false;
   n->asleep = true;
-  world->slots.items[k].wake = n->wake = path_of(world, n) - m.overlap;
+  world->list.slots.items[k].wake = n->wake = path_of(world, n) - m.overlap;
   return true;
 }
 
 /* On which side of a sheet it was before: a step by which it woke may have taken it in. */
 static double side_before(const scree_world *world, const scree_pair *pair) {
   if (!pair->wall) return 0;
-  if (pair->side != 0 || !pair->asleep) return pair->side;
+  if (pair->sphere.side != 0 || !pair->asleep) return pair->sphere.side;
   const scree_frame *a = &world->bodies.frame[pair->a];
   const scree_world_wall *wall = &world->walls.items[pair->b];
   vec3 between = vec3_sub(a->position, wall->frame.position),
@@ -95,11 +95,12 @@ static vec3 turned_by(vec3 spring, vec3 r) {
 
 static void let_go(scree_pair *pair) {
   pair->touching = false;
-  pair->contact_count = 0;
-  pair->elastic = pair->tangential_elastic = pair->overlap = pair->age = pair->kick = 0;
-  pair->largest = 0;
-  pair->spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
-  pair->rolled = pair->slid = (vec3){0, 0, 0};
+  pair->contact.count = 0;
+  pair->contact.elastic = pair->contact.tangential_elastic = pair->contact.overlap =
+      pair->history.age = pair->book.kick = 0;
+  pair->history.largest = 0;
+  pair->book.spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
+  pair->history.rolled = pair->sphere.slid = (vec3){0, 0, 0};
 }
 
 /* All that the law is told of a touch. The velocities of a against b where they meet: of the last
@@ -153,7 +154,7 @@ static double press(const scree_world *world, scree_pair *pair, touch *t,
                     const scree_scratch *scratch) {
   const vec3 n = t->at.normal;
   if (scree_is_settled(pair, t->lasts)) {
-    pair->spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
+    pair->book.spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
     t->time = (scree_touch_time){1, world->time_step, false};
     return scree_press_settled(world->options.law == SCREE_LAW_HYSTERETIC, pair);
   }
@@ -163,7 +164,8 @@ static double press(const scree_world *world, scree_pair *pair, touch *t,
   moves.inverse = 1 / (pair->law.stiffness * pace * pace);
   t->time = scree_touch_time_of(pair, &moves);
   const double spring = scree_press_moving(pair, &moves);
-  pair->spring = (scree_wrench){vec3_scale(n, spring), vec3_cross(t->at.at, vec3_scale(n, spring))};
+  pair->book.spring =
+      (scree_wrench){vec3_scale(n, spring), vec3_cross(t->at.at, vec3_scale(n, spring))};
   return spring;
 }
 
@@ -174,7 +176,7 @@ static vec3 roll(const scree_world *world, scree_pair *pair, const touch *t, dou
   const scree_sphere_motion *a = &t->a, *b = &t->b;
   const vec3 n = t->at.normal, spin = vec3_sub(a->spin, b->spin),
              seen = seen_of(t, spin, vec3_sub(a->spin_now, b->spin_now)), turning = across(spin, n),
-             rolled = vec3_mad(turned_by(pair->rolled, t->turned), turning, t->time.slid),
+             rolled = vec3_mad(turned_by(pair->history.rolled, t->turned), turning, t->time.slid),
              couple = scree_roll(world->options.rolling == SCREE_ROLLING_EPSD, pair, n, rolled,
                                  across(seen, n), t->time.damped, pressed, energy);
   *power += vec3_dot(couple, turning);
@@ -188,10 +190,10 @@ static vec3 slide(const scree_world *world, scree_pair *pair, const touch *t, do
   const vec3 belt = belt_velocity(world, pair, &t->at), v = vec3_sub(across(t->drift, n), belt),
              seen = vec3_sub(across(t->seen, n), belt);
   scree_anchor spring = {.weight = before > 0 && pair->law.hertz > 0 ? sqrt(before) : law.grown};
-  vec3 xi = vec3_mad(turned_by(pair->slid, t->turned), v, t->time.slid),
+  vec3 xi = vec3_mad(turned_by(pair->sphere.slid, t->turned), v, t->time.slid),
        force = scree_slide(&law, &spring, law.grown, n, xi, seen, pressed, energy);
-  pair->slid = spring.stretch;
-  pair->belt_power = (float)vec3_dot(force, belt);
+  pair->sphere.slid = spring.stretch;
+  pair->contact.belt_power = (float)vec3_dot(force, belt);
   *power += vec3_dot(force, v);
   return force;
 }
@@ -202,16 +204,16 @@ static void store_wrenches(scree_pair *pair, const meeting *m, vec3 along, vec3 
                            double normal, double dashpot) {
   const vec3 force = vec3_mad(along, m->normal, normal), twist = vec3_cross(m->normal, along);
   scree_wrench damps = {vec3_scale(m->normal, dashpot), {0, 0, 0}}, rubs = {along, {0, 0, 0}};
-  pair->wrench.force = force;
-  pair->wrench.torque_a = vec3_mad(couple, twist, -m->of_a);
-  pair->wrench.torque_b = vec3_neg(vec3_mad(couple, twist, m->of_b));
+  pair->contact.wrench.force = force;
+  pair->contact.wrench.torque_a = vec3_mad(couple, twist, -m->of_a);
+  pair->contact.wrench.torque_b = vec3_neg(vec3_mad(couple, twist, m->of_b));
   if (pair->wall) {
     damps.moment = vec3_cross(m->at, damps.force);
     rubs.moment = vec3_add(vec3_cross(m->at, along), couple);
-    pair->wrench.torque_b = vec3_neg(vec3_add(vec3_cross(m->at, force), couple));
+    pair->contact.wrench.torque_b = vec3_neg(vec3_add(vec3_cross(m->at, force), couple));
   }
-  pair->dashpot = scree_kept(&damps);
-  pair->tangential = scree_kept(&rubs);
+  pair->book.dashpot = scree_kept(&damps);
+  pair->book.tangential = scree_kept(&rubs);
 }
 
 static void apply_law(const scree_world *world, scree_pair *pair, touch *t,
@@ -219,10 +221,11 @@ static void apply_law(const scree_world *world, scree_pair *pair, touch *t,
   const meeting *at = &t->at;
   const vec3 n = at->normal;
   scree_pair_work *work = &scratch->work;
-  const double largest = pair->largest, spring = press(world, pair, t, scratch),
+  const double largest = pair->history.largest, spring = press(world, pair, t, scratch),
                pull = pair->law.pull,
-               damping = t->time.damped * scree_hardened_damping(pair) *
-                         (pair->law.damping * scree_dashpot_grown(&pair->law, pair->overlap)),
+               damping =
+                   t->time.damped * scree_hardened_damping(pair) *
+                   (pair->law.damping * scree_dashpot_grown(&pair->law, pair->contact.overlap)),
                pressing = spring + pull,
                pressed = scree_max(0, pressing - damping * vec3_dot(t->seen, n)),
                dashpot = pressed - pressing, half = 0.5 * world->time_step;
@@ -231,12 +234,12 @@ static void apply_law(const scree_world *world, scree_pair *pair, touch *t,
   t->couple = roll(world, pair, t, pressed, &energy, &power);
   t->dashpot = dashpot;
   store_wrenches(pair, at, t->along, t->couple, pressed - pull, dashpot);
-  pair->tangential_elastic = energy;
-  pair->elastic += energy;
-  pair->kick = world->time_step;
+  pair->contact.tangential_elastic = energy;
+  pair->contact.elastic += energy;
+  pair->book.kick = world->time_step;
   work->dashpot = half * dashpot * vec3_dot(t->drift, n);
   work->tangential = half * power;
-  if (world->options.law == SCREE_LAW_HYSTERETIC && pair->largest > largest)
+  if (world->options.law == SCREE_LAW_HYSTERETIC && pair->history.largest > largest)
     work->lost = scree_hysteresis_loss(pair, largest);
 }
 
@@ -246,7 +249,7 @@ static void tell(const scree_world *world, const scree_pair *pair, const meeting
   vec3 place = pair->wall ? at->at : vec3_scale(at->normal, at->of_b);
   *contact = (scree_contact_point){.at = mat3_tmul_vec(turned, place),
                                    .normal = mat3_tmul_vec(turned, at->normal),
-                                   .force = mat3_tmul_vec(turned, pair->wrench.force),
+                                   .force = mat3_tmul_vec(turned, pair->contact.wrench.force),
                                    .overlap = at->overlap,
                                    .taper = 1,
                                    .weight = 1,
@@ -260,28 +263,29 @@ static void begin_work(const scree_pair *pair, const touch *t, scree_scratch *sc
   scratch->spring_work = 0;
   if (!pair->touching) return;
   const vec3 slip = vec3_sub(t->a.velocity, t->b.velocity);
-  const double half = 0.5 * pair->kick;
-  scratch->spring_work = half * vec3_dot(pair->spring.force, slip);
-  scratch->work.later_dashpot = half * vec3_dot(scree_kept_as_wrench(&pair->dashpot).force, slip);
+  const double half = 0.5 * pair->book.kick;
+  scratch->spring_work = half * vec3_dot(pair->book.spring.force, slip);
+  scratch->work.later_dashpot =
+      half * vec3_dot(scree_kept_as_wrench(&pair->book.dashpot).force, slip);
   scratch->work.later_tangential =
-      half *
-      (vec3_dot(scree_kept_as_wrench(&pair->tangential).force, slip) +
-       vec3_dot(pair->wrench.torque_a, t->a.spin) + vec3_dot(pair->wrench.torque_b, t->b.spin));
+      half * (vec3_dot(scree_kept_as_wrench(&pair->book.tangential).force, slip) +
+              vec3_dot(pair->contact.wrench.torque_a, t->a.spin) +
+              vec3_dot(pair->contact.wrench.torque_b, t->b.spin));
 }
 
 /* Where they meet and how they move being known; false where they are apart. */
 static bool evaluate(const scree_world *world, scree_pair *pair, touch *t, scree_scratch *scratch) {
   scratch->step = scratch->drift = world->time_step;
-  scratch->overlap_before = pair->overlap;
-  scratch->was_depenetrating = false;
+  scratch->overlap_before = pair->contact.overlap;
+  scratch->before.was_depenetrating = false;
   if (!(t->at.overlap > 0)) {
     let_go(pair);
     return false;
   }
   pair->touching = true;
-  pair->contact_count = 1;
-  pair->age += world->time_step;
-  pair->overlap = t->at.overlap;
+  pair->contact.count = 1;
+  pair->history.age += world->time_step;
+  pair->contact.overlap = t->at.overlap;
   find_motions(world, pair, t);
   pair->list.travel = vec3_norm(t->drift) * world->time_step;
   apply_law(world, pair, t, scratch);
@@ -305,7 +309,7 @@ void scree_spheres_evaluate(const scree_world *world, scree_pair *pair, scree_sc
   double side = side_before(world, pair);
   t.at = pair->wall ? meet_wall(world, pair->a, &world->walls.items[pair->b], &side)
                     : meet_sphere(world, pair->a, pair->b);
-  pair->side = side;
+  pair->sphere.side = side;
   pair->asleep = !evaluate(world, pair, &t, scratch);
   if (pair->asleep && pair->wall)
     scratch->neighbours->wake = path_of(world, scratch->neighbours) - t.at.overlap;
@@ -331,32 +335,32 @@ static void recall(const scree_sphere_contact *c, double radius_a, double radius
              twist = vec3_cross(n, along), none = {0, 0, 0};
   const double inside = 0.5 * c->overlap;
   pair->touching = c->overlap > 0;
-  pair->overlap = c->overlap;
-  pair->largest = c->largest;
-  pair->age = c->age;
-  pair->kick = c->kick;
-  pair->slid = c->slid;
-  pair->rolled = kept(c->rolled);
-  pair->spring = (scree_wrench){vec3_scale(n, c->springs), none};
+  pair->contact.overlap = c->overlap;
+  pair->history.largest = c->largest;
+  pair->history.age = c->age;
+  pair->book.kick = c->kick;
+  pair->sphere.slid = c->slid;
+  pair->history.rolled = kept(c->rolled);
+  pair->book.spring = (scree_wrench){vec3_scale(n, c->springs), none};
   const scree_wrench damps = {vec3_scale(n, c->damps), none}, rubs = {along, none};
-  pair->dashpot = scree_kept(&damps);
-  pair->tangential = scree_kept(&rubs);
-  pair->wrench.torque_a = vec3_mad(couple, twist, inside - radius_a);
-  pair->wrench.torque_b = vec3_neg(vec3_mad(couple, twist, radius_b - inside));
+  pair->book.dashpot = scree_kept(&damps);
+  pair->book.tangential = scree_kept(&rubs);
+  pair->contact.wrench.torque_a = vec3_mad(couple, twist, inside - radius_a);
+  pair->contact.wrench.torque_b = vec3_neg(vec3_mad(couple, twist, radius_b - inside));
 }
 
 static void remember(const scree_pair *pair, const touch *t, scree_sphere_contact *c) {
-  c->slid = pair->slid;
-  c->overlap = pair->overlap;
-  c->largest = pair->largest;
-  c->kick = pair->kick;
+  c->slid = pair->sphere.slid;
+  c->overlap = pair->contact.overlap;
+  c->largest = pair->history.largest;
+  c->kick = pair->book.kick;
   keep(c->normal, t->at.normal);
   c->damps = (float)t->dashpot;
   keep(c->rubs, t->along);
-  c->springs = (float)vec3_dot(pair->spring.force, t->at.normal);
+  c->springs = (float)vec3_dot(pair->book.spring.force, t->at.normal);
   keep(c->couple, t->couple);
-  c->age = (float)pair->age;
-  keep(c->rolled, pair->rolled);
+  c->age = (float)pair->history.age;
+  keep(c->rolled, pair->history.rolled);
 }
 
 static void forget(scree_sphere_contact *c) {
@@ -367,14 +371,14 @@ static void forget(scree_sphere_contact *c) {
 static void find_energies(const scree_world *world, scree_pair *pair) {
   const bool hysteretic = world->options.law == SCREE_LAW_HYSTERETIC;
   const scree_felt none = {0, 0};
-  scree_spring_force(hysteretic, pair, pair->overlap, none);
+  scree_spring_force(hysteretic, pair, pair->contact.overlap, none);
   const scree_slider sliding = scree_slider_of(pair, world->options.tangential_ratio, 0);
-  double tangential = 0.5 * sliding.stiffness * sliding.grown * vec3_norm2(pair->slid);
+  double tangential = 0.5 * sliding.stiffness * sliding.grown * vec3_norm2(pair->sphere.slid);
   if (pair->law.rolling > 0)
     tangential += 0.5 * scree_rolling_stiffness(pair) * pair->law.rolling * pair->law.rolling *
-                  vec3_norm2(pair->rolled);
-  pair->tangential_elastic = tangential;
-  pair->elastic += tangential;
+                  vec3_norm2(pair->history.rolled);
+  pair->contact.tangential_elastic = tangential;
+  pair->contact.elastic += tangential;
 }
 
 scree_pair scree_sphere_pair_of(const scree_world *world, size_t k) {
@@ -384,20 +388,20 @@ scree_pair scree_sphere_pair_of(const scree_world *world, size_t k) {
   scree_pair pair = {.a = a,
                      .b = b,
                      .spheres = true,
-                     .substeps = 1,
+                     .substeps.count = 1,
                      .depth = -INFINITY,
                      .law = s->laws.items[two->law]};
   if (two->contact == scree_none) return pair;
   const scree_sphere_contact *c = &s->list.contacts.items[two->contact & ~scree_sphere_touches];
   recall(c, radius_of(world, a), radius_of(world, b), &pair);
   if (!pair.touching) return pair;
-  pair.contact_count = 1;
+  pair.contact.count = 1;
   const scree_bodies *bodies = &world->bodies;
   pair.list.travel =
       vec3_distance(bodies->frame[a].velocity, bodies->frame[b].velocity) * world->time_step;
   find_energies(world, &pair);
-  vec3 pressed = vec3_scale(kept(c->normal), scree_spring_at(&pair, pair.overlap).force);
-  pair.wrench.force = vec3_add(pressed, kept(c->rubs));
+  vec3 pressed = vec3_scale(kept(c->normal), scree_spring_at(&pair, pair.contact.overlap).force);
+  pair.contact.wrench.force = vec3_add(pressed, kept(c->rubs));
   return pair;
 }
 
@@ -430,7 +434,7 @@ static void begin_pair(const scree_spheres *s, const scree_sphere_pair *two, siz
   pair->spheres = true;
   pair->neighbours = (uint32_t)k | scree_of_spheres;
   pair->law = s->laws.items[two->law];
-  pair->elastic = pair->tangential_elastic = 0;
+  pair->contact.elastic = pair->contact.tangential_elastic = 0;
 }
 
 /* All that it calls becomes a part of it: a sixth of its time. */
@@ -462,8 +466,9 @@ __attribute__((flatten)) bool scree_sphere_pair_step(scree_world *world, size_t 
   two->contact |= scree_sphere_touches;
   remember(pair, &t, c);
   result->work = *work;
-  result->on_a = (scree_sphere_load){pair->wrench.force, pair->wrench.torque_a};
-  result->on_b = (scree_sphere_load){vec3_neg(pair->wrench.force), pair->wrench.torque_b};
+  result->on_a = (scree_sphere_load){pair->contact.wrench.force, pair->contact.wrench.torque_a};
+  result->on_b =
+      (scree_sphere_load){vec3_neg(pair->contact.wrench.force), pair->contact.wrench.torque_b};
   return true;
 }
 

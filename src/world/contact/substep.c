@@ -85,16 +85,16 @@ static void settle_debts(scree_pair *pair, const scree_substep_body begin[2],
   vec3 mean = vec3_scale(vec3_sub(end[0].frame.position, a->frame.position), 1 / dt),
        turning_a = turning_momentum(a, end[0].orientation, dt), turning_b = {0, 0, 0};
   if (b->free) turning_b = turning_momentum(b, end[1].orientation, dt);
-  pair->wrench.force = vec3_scale(vec3_sub(mean, a->frame.velocity), a->mass / dt);
-  pair->wrench.torque_a = vec3_scale(vec3_sub(turning_a, a->momentum), 1 / dt);
-  pair->owed.force = vec3_scale(vec3_sub(end[0].frame.velocity, mean), a->mass);
-  pair->owed.torque_a = vec3_sub(end[0].momentum, turning_a);
+  pair->contact.wrench.force = vec3_scale(vec3_sub(mean, a->frame.velocity), a->mass / dt);
+  pair->contact.wrench.torque_a = vec3_scale(vec3_sub(turning_a, a->momentum), 1 / dt);
+  pair->substeps.owed.force = vec3_scale(vec3_sub(end[0].frame.velocity, mean), a->mass);
+  pair->substeps.owed.torque_a = vec3_sub(end[0].momentum, turning_a);
   if (b->free) {
-    pair->wrench.torque_b = vec3_scale(vec3_sub(turning_b, b->momentum), 1 / dt);
-    pair->owed.torque_b = vec3_sub(end[1].momentum, turning_b);
+    pair->contact.wrench.torque_b = vec3_scale(vec3_sub(turning_b, b->momentum), 1 / dt);
+    pair->substeps.owed.torque_b = vec3_sub(end[1].momentum, turning_b);
   }
-  take_out(&pair->wrench, begin, 1);
-  take_out(&pair->owed, begin, 0.5 * (dt - h));
+  take_out(&pair->contact.wrench, begin, 1);
+  take_out(&pair->substeps.owed, begin, 0.5 * (dt - h));
 }
 
 /* The impulse up to the step's beginning, less half of the step's. */
@@ -105,26 +105,28 @@ static vec3 motion_ahead(vec3 owed, vec3 force, double half, vec3 mean, double d
 void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   const uint32_t count = scratch->substeps;
   const double dt = world->time_step, h = scratch->step;
-  const shown first = {pair->elastic, pair->tangential_elastic, pair->contact_count};
+  const shown first = {pair->contact.elastic, pair->contact.tangential_elastic,
+                       pair->contact.count};
   scree_substep_body begin[2] = {scree_substep_body_of(world, pair->a, false),
                                  scree_substep_body_of(world, pair->b, pair->wall)};
   for (int k = 0; k < 2; k++) {
     const scree_wrench last = scree_wrench_of_others(world, pair, scratch, k == 1);
-    begin[k].others = foresee(&last, &pair->others[k], pair->substeps > 1);
+    begin[k].others = foresee(&last, &pair->substeps.others[k], pair->substeps.count > 1);
   }
   scree_substep_body now[2] = {begin[0], begin[1]};
-  kick_both(&now[0], &now[1], &pair->owed, 1, 0);
-  const scree_pair_wrench w = pair->wrench, owed = pair->owed; /* at the step's beginning */
+  kick_both(&now[0], &now[1], &pair->substeps.owed, 1, 0);
+  const scree_pair_wrench w = pair->contact.wrench,
+                          owed = pair->substeps.owed; /* at the step's beginning */
   const double half = pair->touching ? 0.5 * scratch->drift : 0;
   bool acts = vec3_norm2(owed.force) > 0;
   vec3 on_wall = {0, 0, 0};
   scratch->a = &now[0].frame;
   scratch->b = &now[1].frame;
   for (uint32_t i = 1;; i++) {
-    double time = pair->touching ? pair->kick : 0;
+    double time = pair->touching ? pair->book.kick : 0;
     acts |= pair->touching;
-    on_wall = vec3_mad(on_wall, pair->wrench.torque_b, time / dt);
-    kick_both(&now[0], &now[1], &pair->wrench, time, time > 0 ? 0.5 * h / time : 0);
+    on_wall = vec3_mad(on_wall, pair->contact.wrench.torque_b, time / dt);
+    kick_both(&now[0], &now[1], &pair->contact.wrench, time, time > 0 ? 0.5 * h / time : 0);
     for (int k = 0; k < 2; k++) scree_kick_by_others(&now[k], i == 1 ? 0.5 * (dt + h) : h, 0.5 * h);
     drift(&now[0], h);
     drift(&now[1], h);
@@ -133,17 +135,17 @@ void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch
     scree_pair_narrow_phase_between(world, pair, scratch);
   }
   settle_debts(pair, begin, now, dt, h);
-  if (pair->wall) pair->wrench.torque_b = on_wall;
-  if (count == 1) pair->owed = (scree_pair_wrench){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-  pair->touching = pair->followed = acts;
-  pair->ahead =
-      (scree_pair_wrench){motion_ahead(owed.force, w.force, half, pair->wrench.force, dt),
-                          motion_ahead(owed.torque_a, w.torque_a, half, pair->wrench.torque_a, dt),
-                          motion_ahead(owed.torque_b, w.torque_b, half, pair->wrench.torque_b, dt)};
-  pair->elastic_since = (float)(pair->elastic - first.elastic);
-  pair->elastic = first.elastic;
-  pair->tangential_elastic = first.tangential_elastic;
-  pair->contact_count = first.contact_count;
-  pair->substeps = (uint8_t)count;
-  pair->foreseen = scree_work_by_others(world, pair, now);
+  if (pair->wall) pair->contact.wrench.torque_b = on_wall;
+  if (count == 1) pair->substeps.owed = (scree_pair_wrench){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  pair->touching = pair->substeps.followed = acts;
+  pair->substeps.ahead = (scree_pair_wrench){
+      motion_ahead(owed.force, w.force, half, pair->contact.wrench.force, dt),
+      motion_ahead(owed.torque_a, w.torque_a, half, pair->contact.wrench.torque_a, dt),
+      motion_ahead(owed.torque_b, w.torque_b, half, pair->contact.wrench.torque_b, dt)};
+  pair->substeps.elastic_since = (float)(pair->contact.elastic - first.elastic);
+  pair->contact.elastic = first.elastic;
+  pair->contact.tangential_elastic = first.tangential_elastic;
+  pair->contact.count = first.contact_count;
+  pair->substeps.count = (uint8_t)count;
+  pair->substeps.foreseen = scree_work_by_others(world, pair, now);
 }

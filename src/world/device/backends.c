@@ -11,10 +11,10 @@ static const scree_backend *chosen = &scree_backend_cpu;
 static int chosen_device = 0;
 
 const scree_backend *scree_backend_of(const scree_world *world) {
-  return world->backend ? world->backend : chosen;
+  return world->residence.backend ? world->residence.backend : chosen;
 }
 int scree_backend_device_of(const scree_world *world) {
-  return world->backend ? world->device : chosen_device;
+  return world->residence.backend ? world->residence.device : chosen_device;
 }
 
 /* "cpu", "cuda" or "cuda:N". */
@@ -60,7 +60,7 @@ scree_status scree_world_set_backend(scree_world *world, const char *name, scree
         "backend '%s': the world is on cuda:%d already; it stays there, or goes on on "
         "the processor",
         name, there);
-  world->backend = backend;
-  world->device = device;
+  world->residence.backend = backend;
+  world->residence.device = device;
   return SCREE_OK;
 }

@@ -16,7 +16,7 @@ enum { ASK_EVERY = 1024 }; /* steps, of which one is done alone to see what it t
 static scree_status one_step(scree_world *world, size_t most, size_t *done) {
   (void)most;
   *done = 1;
-  double *took = &world->alone_seconds, before = world->timings.total;
+  double *took = &world->residence.alone_seconds, before = world->timings.total;
   const bool many = scree_worker_count() > 1,
              alone = many && !scree_share_all_steps &&
                      (world->step_count % ASK_EVERY == 0 || *took < shared_from);
@@ -32,7 +32,7 @@ static scree_status one_step(scree_world *world, size_t most, size_t *done) {
 /* The state is stepped where it is, but for one that was on a device. */
 static scree_status begin(scree_world *world, int device, scree_error *error) {
   (void)device;
-  return world->on_device ? scree_world_change(world, SCREE_ALL_PARTS, error) : SCREE_OK;
+  return world->residence.on_device ? scree_world_change(world, SCREE_ALL_PARTS, error) : SCREE_OK;
 }
 
 const scree_backend scree_backend_cpu = {"cpu", begin, one_step};

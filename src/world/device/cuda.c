@@ -173,8 +173,8 @@ enum { PARTS_AT_ONCE = 32768, PARTS = 64, VISITS = 4 };
 
 /* For so many steps. */
 static scree_status launch(scree_world *w, size_t steps) {
-  struct scree_device_world *d = w->on_device;
-  const size_t bodies = w->bodies.count, pairs = w->neighbours.count,
+  struct scree_device_world *d = w->residence.on_device;
+  const size_t bodies = w->bodies.count, pairs = w->list.neighbours.count,
                awake = d->awake ? d->awake : pairs,
                spheres = w->spheres.list.pairs.count ? w->spheres.list.count : 0,
                parts = PARTS * pairs < PARTS_AT_ONCE ? PARTS * pairs : PARTS_AT_ONCE;
@@ -204,13 +204,13 @@ static scree_status launch(scree_world *w, size_t steps) {
 
 /* The pools that were asked for more than they have grow. */
 static scree_status make_room(scree_world *w) {
-  struct scree_device_world *d = w->on_device;
+  struct scree_device_world *d = w->residence.on_device;
   scree_status status = scree_cuda_fetch(w, d, SCREE_ALL_PARTS, &w->failure);
   if (status) return status;
   while (d->contact_capacity < d->contacts_used) d->contact_capacity *= 2;
   bool good = w->spare_pairs.count >= 0 || scree_pairs_grow(w);
-  if (!good || !scree_pools_grow(&w->pools, w->pairs.items, w->pairs.count, w->neighbours.items,
-                                 w->neighbours.count))
+  if (!good || !scree_pools_grow(&w->pools, w->pairs.items, w->pairs.count,
+                                 w->list.neighbours.items, w->list.neighbours.count))
     return scree_fail_memory(&w->failure, 0, "contact features of a pair");
   const double begun = w->time; /* the device has done some steps since */
   for (uint64_t i = 0; i < d->header.done; i++) w->time += w->time_step;
@@ -243,9 +243,9 @@ static scree_status list_here(scree_world *w, struct scree_device_world *d) {
 
 /* The device has the state, and neighbours that hold. */
 static scree_status prepare(scree_world *w) {
-  struct scree_device_world *d = w->on_device;
+  struct scree_device_world *d = w->residence.on_device;
   SCREE_TRY(scree_joints_prepare(w, &w->failure));
-  const bool lists_spheres = (d->header.stale || w->pairs_stale) &&
+  const bool lists_spheres = (d->header.stale || w->list.stale) &&
                              (w->spheres.list.count > 1 || scree_spheres_are_there(w));
   if (d->current && lists_spheres) /* which are listed here */
     SCREE_TRY(scree_world_change(w, SCREE_ALL_PARTS, &w->failure));
@@ -254,7 +254,7 @@ static scree_status prepare(scree_world *w) {
   SCREE_TRY(scree_cuda_tell(d, offsetof(scree_world, time_step), sizeof w->time_step, &w->failure));
   scree_cuda_part_with(w, d);
   d->settled = false;
-  if (there && (d->header.stale || w->pairs_stale)) SCREE_TRY(list_there(w, d));
+  if (there && (d->header.stale || w->list.stale)) SCREE_TRY(list_there(w, d));
   d->header.stale = d->header.fallen = d->header.parted = 0;
   return SCREE_OK;
 }
@@ -280,28 +280,28 @@ static void go_on(struct scree_device_world *d, bool resume) {
 
 /* Bodies that are below the floor. */
 static scree_status note_fallen(scree_world *w) {
-  struct scree_device_world *d = w->on_device;
+  struct scree_device_world *d = w->residence.on_device;
   if (!d->header.fallen) return SCREE_OK;
   SCREE_TRY(scree_cuda_fetch_removed(w, d, &w->failure));
   size_t removed = 0;
   for (size_t i = 0; i < w->bodies.count; i++) removed += w->bodies.removed[i];
   w->bodies.removed_count = removed;
-  w->pairs_stale = true;
+  w->list.stale = true;
   return SCREE_OK;
 }
 
 static scree_status note_parted(scree_world *w) {
-  if (!w->on_device->header.parted) return SCREE_OK;
+  if (!w->residence.on_device->header.parted) return SCREE_OK;
   SCREE_TRY(scree_world_change(w, SCREE_PART_JOINTS, &w->failure));
   scree_joints_regroup(w);
   return SCREE_OK;
 }
 
 static scree_status finish(scree_world *w) {
-  const scree_device_step *h = &w->on_device->header;
+  const scree_device_step *h = &w->residence.on_device->header;
   const scree_trouble *t = &h->tally.trouble;
   if (!scree_is_trouble(t) && h->offender == scree_none) return SCREE_OK;
-  scree_status status = scree_cuda_fetch(w, w->on_device, SCREE_ALL_PARTS, &w->failure);
+  scree_status status = scree_cuda_fetch(w, w->residence.on_device, SCREE_ALL_PARTS, &w->failure);
   if (status) return status;
   return h->offender != scree_none ? scree_describe_offender(w, h->offender)
                                    : scree_describe_trouble(w, t);
@@ -315,23 +315,23 @@ static void count_steps(scree_world *w, const scree_device_step *h, double start
   w->timings.contacts += scree_now() - started;
   w->timings.total += scree_now() - started;
   w->timings.steps += h->done;
-  if (h->done) w->on_device->awake = (size_t)(h->evaluations / h->done);
+  if (h->done) w->residence.on_device->awake = (size_t)(h->evaluations / h->done);
   w->timings.list_builds += h->list_builds;
-  w->timings.pair_evaluations += h->done * (w->neighbours.count + w->spheres.list.pairs.count);
+  w->timings.pair_evaluations += h->done * (w->list.neighbours.count + w->spheres.list.pairs.count);
 }
 
 /* Mostly nothing was. */
 static scree_status fetch_hardened(scree_world *w) {
-  struct scree_device_world *d = w->on_device;
+  struct scree_device_world *d = w->residence.on_device;
   if (d->header.tally.hardened == 0) return SCREE_OK;
-  const size_t count = w->material_count * (w->material_count + 1) / 2;
-  return scree_cuda_read(&d->queue, w->hardened,
-                         d->own[BLOCK_WORLD].at + offsetof(scree_world, hardened),
-                         count * sizeof *w->hardened, &w->failure);
+  const size_t count = w->materials.count * (w->materials.count + 1) / 2;
+  return scree_cuda_read(&d->queue, w->materials.hardened,
+                         d->own[BLOCK_WORLD].at + offsetof(scree_world, materials.hardened),
+                         count * sizeof *w->materials.hardened, &w->failure);
 }
 
 static scree_status step(scree_world *w, size_t most, size_t *done) {
-  struct scree_device_world *d = w->on_device;
+  struct scree_device_world *d = w->residence.on_device;
   if (w->bodies.count == 0) { /* there are no arrays */
     scree_status status = scree_world_change(w, SCREE_ALL_PARTS, &w->failure);
     return status ? status : scree_backend_cpu.step(w, most, done);
@@ -401,7 +401,8 @@ static scree_status sum_there(scree_world *w, struct scree_device_world *d, scre
   SCREE_TRY(scree_cuda_send_changed(w, d, error));
   SCREE_TRY(scree_cuda_reserve(block, count * sizeof *parts, error));
   const uintptr_t at = (uintptr_t)block->at;
-  SCREE_TRY(scree_cuda_broad_tell(&place, offsetof(scree_world, sums), &at, sizeof at, error));
+  SCREE_TRY(
+      scree_cuda_broad_tell(&place, offsetof(scree_world, residence.sums), &at, sizeof at, error));
   SCREE_TRY(scree_cuda_tell(d, offsetof(scree_world, step_count), sizeof w->step_count, error));
   SCREE_TRY(scree_cuda_launch(&d->queue, SCREE_KERNEL_sums, count, 1, place.worlds, 0, error));
   for (size_t first = 0; first < count; first += AT_ONCE) {
@@ -422,24 +423,24 @@ static bool sum(struct scree_device_world *d, scree_sums *sums) {
 }
 
 static void release(scree_world *w) {
-  struct scree_device_world *d = w->on_device;
+  struct scree_device_world *d = w->residence.on_device;
   scree_cuda_free_state(w, d);
   scree_free(d);
-  w->on_device = NULL;
+  w->residence.on_device = NULL;
 }
 
 static const scree_remote on_device = {bring, change, sum, release};
 
 static scree_status begin(scree_world *w, int device, scree_error *error) {
-  if (w->on_device) return scree_cuda_use(w->on_device->queue.device, error);
+  if (w->residence.on_device) return scree_cuda_use(w->residence.on_device->queue.device, error);
   struct scree_device_world *d = scree_alloc_zero(1, sizeof *d);
   if (d) d->image = scree_alloc_zero(1, sizeof *d->image);
   if (!d || !d->image) {
     scree_free(d);
     return scree_fail_memory(error, sizeof *w, "a world on a device");
   }
-  w->on_device = d;
-  w->remote = &on_device;
+  w->residence.on_device = d;
+  w->residence.remote = &on_device;
   d->world = w;
   d->queue.device = device;
   scree_status status = scree_cuda_use(device, error);
@@ -447,7 +448,7 @@ static scree_status begin(scree_world *w, int device, scree_error *error) {
 }
 
 int scree_cuda_device_of(const scree_world *w) {
-  return w->on_device ? w->on_device->queue.device : -1;
+  return w->residence.on_device ? w->residence.on_device->queue.device : -1;
 }
 
 const scree_backend scree_backend_cuda = {"cuda", begin, step};

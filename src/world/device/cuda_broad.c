@@ -57,8 +57,8 @@ typedef struct kept {
 #define KEPT(member, old)                                                                          \
   { offsetof(scree_world, member), FIELD(old), sizeof *((scree_world *)0)->member }
 static const kept all_kept[KEPT_COUNT] = {
-    KEPT(neighbours.items, old_neighbours), KEPT(pair_of.items, old_pair_of),
-    KEPT(ledger.items, old_ledger), KEPT(keys.items, old_keys)};
+    KEPT(list.neighbours.items, old_neighbours), KEPT(list.pair_of.items, old_pair_of),
+    KEPT(list.ledger.items, old_ledger), KEPT(list.keys.items, old_keys)};
 #undef KEPT
 
 static void lead(void *structure, size_t field, scree_device_address address) {
@@ -116,7 +116,7 @@ scree_status scree_cuda_broad_send(scree_cuda_broad **made, scree_world *w,
     lead(b, arrays[i].field, broad->arrays[i].at);
   }
   b->wall_gap = b->wall_reach + w->walls.count;
-  lead(b, FIELD(sides.begin), place->array(w, offsetof(scree_world, side_begin))->at);
+  lead(b, FIELD(sides.begin), place->array(w, offsetof(scree_world, list.side_begin))->at);
   SCREE_TRY(clear_counts(broad, place, error));
   SCREE_TRY(scree_cuda_write(place->queue, (uintptr_t)b->listed.begin, w->broad->listed.begin,
                              (b->old_bodies + 1) * sizeof *b->listed.begin, error));
@@ -137,7 +137,7 @@ static scree_status launch(const scree_cuda_broad *broad, const scree_world *w,
                            const scree_cuda_place *place, scree_kernel first, scree_kernel last,
                            scree_error *error) {
   const scree_broad *b = &broad->image;
-  const size_t n = w->bodies.count, k = w->neighbours.count,
+  const size_t n = w->bodies.count, k = w->list.neighbours.count,
                chunks = scree_groups_chunks(&b->listed), buckets = scree_groups_chunks(&b->buckets),
                counts[SCREE_KERNEL_COUNT] = {
                    [SCREE_KERNEL_grids] = 1,
@@ -176,9 +176,9 @@ scree_status scree_cuda_broad_find(scree_cuda_broad *broad, scree_world *w,
                                    const scree_cuda_place *place, size_t *count,
                                    scree_error *error) {
   scree_broad *b = &broad->image;
-  w->margin = scree_broad_margin(w);
-  SCREE_TRY(scree_cuda_broad_tell(place, offsetof(scree_world, margin), &w->margin,
-                                  sizeof w->margin, error));
+  w->list.margin = scree_broad_margin(w);
+  SCREE_TRY(scree_cuda_broad_tell(place, offsetof(scree_world, list.margin), &w->list.margin,
+                                  sizeof w->list.margin, error));
   exchange_begins(b);
   b->widest = 0;
   b->used = 0;
@@ -216,9 +216,9 @@ static scree_status reserve_lists(scree_world *w, const scree_cuda_place *place,
                                   scree_error *error) {
 #define LIST(member, length)                                                                       \
   { offsetof(scree_world, member.items), (length) * sizeof *w->member.items }
-  const array all[] = {LIST(slots, count),     LIST(touching, count / 64 + 1),
-                       LIST(sides, 2 * count), LIST(acting, 2 * count),
-                       LIST(awake, count),     LIST(wall_pairs, count)};
+  const array all[] = {LIST(list.slots, count),      LIST(list.touching, count / 64 + 1),
+                       LIST(list.sides, 2 * count),  LIST(list.acting, 2 * count),
+                       LIST(workspace.awake, count), LIST(list.wall_pairs, count)};
 #undef LIST
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     scree_cuda_block *block = place->array(w, all[i].field);
@@ -245,16 +245,16 @@ scree_status scree_cuda_broad_list(scree_cuda_broad *broad, scree_world *w,
                                    scree_error *error) {
   SCREE_TRY(exchange_neighbours(broad, w, place, count, error));
   SCREE_TRY(reserve_lists(w, place, count, error));
-  SCREE_TRY(reserve_own(broad, w->neighbours.count, count, error));
-  SCREE_TRY(scree_cuda_broad_tell(place, offsetof(scree_world, neighbours.count), &count,
+  SCREE_TRY(reserve_own(broad, w->list.neighbours.count, count, error));
+  SCREE_TRY(scree_cuda_broad_tell(place, offsetof(scree_world, list.neighbours.count), &count,
                                   sizeof count, error));
-  SCREE_TRY(
-      scree_cuda_broad_tell(place, offsetof(scree_world, keys.count), &count, sizeof count, error));
+  SCREE_TRY(scree_cuda_broad_tell(place, offsetof(scree_world, list.keys.count), &count,
+                                  sizeof count, error));
   SCREE_TRY(write_image(broad, place, error));
-  w->neighbours.count = count;
+  w->list.neighbours.count = count;
   SCREE_TRY(launch(broad, w, place, SCREE_KERNEL_key_write, SCREE_KERNEL_list_date, error));
-  broad->image.old_bodies = w->broad->old_bodies = w->listed_bodies = w->bodies.count;
-  w->pairs_stale = false;
+  broad->image.old_bodies = w->broad->old_bodies = w->list.body_count = w->bodies.count;
+  w->list.stale = false;
   w->timings.broad_builds++;
   return SCREE_OK;
 }

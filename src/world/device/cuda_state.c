@@ -28,12 +28,12 @@ enum { FIRST_CONTACTS = 4096 };
 
 /* Forces on bodies, here or away. */
 static bool has_applied(const scree_world *w) {
-  return w->bodies.applied || w->on_device->applied;
+  return w->bodies.applied || w->residence.on_device->applied;
 }
 
 /* All arrays that the kernels use, but for those with pointers in them. */
 static size_t list_spans(const scree_world *w, span spans[SCREE_MOST_SPANS]) {
-  const size_t n = w->bodies.count, k = w->neighbours.count, p = w->pairs.count;
+  const size_t n = w->bodies.count, k = w->list.neighbours.count, p = w->pairs.count;
   const size_t spheres = w->spheres.list.pairs.count ? w->spheres.list.count : 0;
   const scree_pools *pools = &w->pools;
   const size_t items = pools->features_used, sleeping_features = pools->sleeping_used;
@@ -60,26 +60,27 @@ static size_t list_spans(const scree_world *w, span spans[SCREE_MOST_SPANS]) {
       OF(bodies.turn, n, BODIES, COMES_BACK),
       OF(bodies.removed, n, REMOVED, SENT),
       OF(bodies.material, n, BODIES, SENT),
-      OF(neighbours.items, k, LISTS, COMES_BACK),
-      OF(pair_of.items, k, LISTS, COMES_BACK),
-      OF(ledger.items, k, LISTS, COMES_BACK),
-      OF(keys.items, k, LISTS, MADE),
+      OF(list.neighbours.items, k, LISTS, COMES_BACK),
+      OF(list.pair_of.items, k, LISTS, COMES_BACK),
+      OF(list.ledger.items, k, LISTS, COMES_BACK),
+      OF(list.keys.items, k, LISTS, MADE),
       OF(pairs.items, p, LISTS, COMES_BACK),
       OF(spare_pairs.items, p, LISTS, COMES_BACK),
       POOL(pools.features, pools->feature_capacity, items),
       POOL(pools.further, pools->feature_capacity, items),
       POOL(pools.sleeping_features, pools->sleeping_capacity, sleeping_features),
-      OF(slots.items, k, LISTS, COMES_BACK),
-      OF(wake_threshold.items, w->on_device->body_count + w->walls.count, LISTS, COMES_BACK),
-      OF(touching.items, k / 64 + 1, LISTS, COMES_BACK),
-      OF(sides.items, w->sides.count, LISTS, MADE),
-      OF(wall_pairs.items, w->wall_pairs.count, LISTS, MADE),
+      OF(list.slots.items, k, LISTS, COMES_BACK),
+      OF(list.wake_threshold.items, w->residence.on_device->body_count + w->walls.count, LISTS,
+         COMES_BACK),
+      OF(list.touching.items, k / 64 + 1, LISTS, COMES_BACK),
+      OF(list.sides.items, w->list.sides.count, LISTS, MADE),
+      OF(list.wall_pairs.items, w->list.wall_pairs.count, LISTS, MADE),
       OF(bodies.applied, has_applied(w) ? n : 0, BODIES, COMES_BACK),
       OF(bodies.balance, n, BODIES, COMES_BACK),
-      OF(side_begin, n + 1, LISTS, SENT),
-      {FIELD(acting.items), w->sides.count * sizeof(uint32_t), 0, SCREE_PART_LISTS, MADE},
-      {FIELD(awake.items), k * sizeof(uint32_t), 0, SCREE_PART_LISTS, MADE},
-      OF(body_path_at_build, n, BODIES, COMES_BACK),
+      OF(list.side_begin, n + 1, LISTS, SENT),
+      {FIELD(list.acting.items), w->list.sides.count * sizeof(uint32_t), 0, SCREE_PART_LISTS, MADE},
+      {FIELD(workspace.awake.items), k * sizeof(uint32_t), 0, SCREE_PART_LISTS, MADE},
+      OF(list.body_path_at_build, n, BODIES, COMES_BACK),
       OF(spheres.list.body, spheres, LISTS, SENT),
       OF(spheres.list.place_of, spheres ? w->spheres.list.body_count : 0, LISTS, SENT),
       OF(spheres.list.begin, spheres ? spheres + 1 : 0, LISTS, SENT),
@@ -164,7 +165,7 @@ static scree_device_address pack_shape(packer *p, const scree_particle *particle
 }
 
 static const scree_world_wall *walls_of(const scree_world *w) {
-  return w->walls.items ? w->walls.items : w->on_device->walls;
+  return w->walls.items ? w->walls.items : w->residence.on_device->walls;
 }
 
 /* Walls first, so that bodies that are added change no address. */
@@ -254,11 +255,11 @@ static scree_status send_walls(const scree_world *w, struct scree_device_world *
 
 /* How many lists are made at once, and how many depths looked for. */
 static uint32_t lists_of(const scree_world *w) {
-  size_t share = w->neighbours.count / 32;
+  size_t share = w->list.neighbours.count / 32;
   return share < 64 ? 64 : share > 4096 ? 4096 : (uint32_t)share;
 }
 static size_t depths_of(const scree_world *w) {
-  size_t share = 8 * w->neighbours.count;
+  size_t share = 8 * w->list.neighbours.count;
   return share < 65536 ? 65536 : share > 1 << 22 ? 1 << 22 : share;
 }
 
@@ -267,7 +268,7 @@ static scree_cuda_block *array_at(scree_world *w, size_t field) {
   span spans[SCREE_MOST_SPANS];
   size_t count = list_spans(w, spans), i = 0;
   while (i < count && spans[i].field != field) i++;
-  return &w->on_device->arrays[i];
+  return &w->residence.on_device->arrays[i];
 }
 
 scree_cuda_place scree_cuda_place_of(struct scree_device_world *d) {
@@ -294,14 +295,15 @@ static scree_status send_image(scree_world *w, struct scree_device_world *d,
   span spans[SCREE_MOST_SPANS];
   size_t count = list_spans(w, spans);
   memcpy(d->image, w, sizeof *w);
-  void **const hosts_own[] = {(void **)&d->image->scratch,   (void **)&d->image->progress.items,
-                              (void **)&d->image->offenders, (void **)&d->image->on_device,
-                              (void **)&d->image->kept.path, (void **)&d->image->kept.bytes};
+  void **const hosts_own[] = {
+      (void **)&d->image->workspace.scratch,   (void **)&d->image->workspace.progress.items,
+      (void **)&d->image->workspace.offenders, (void **)&d->image->residence.on_device,
+      (void **)&d->image->kept.path,           (void **)&d->image->kept.bytes};
   for (size_t i = 0; i < sizeof hosts_own / sizeof *hosts_own; i++) *hosts_own[i] = NULL;
   for (size_t i = 0; i < count; i++)
     lead_to((char *)d->image + spans[i].field, spans[i].capacity ? d->arrays[i].at : 0);
   lead_to(&d->image->broad, broad);
-  lead_to(&d->image->sums, d->own[BLOCK_SUMS].at);
+  lead_to(&d->image->residence.sums, d->own[BLOCK_SUMS].at);
   lead_to(&d->image->bodies.particle, d->own[BLOCK_PARTICLES].at);
   lead_to(&d->image->walls.items, d->own[BLOCK_WALLS].at);
   lead_to(&d->image->pools.contacts, d->own[BLOCK_CONTACTS].at);
@@ -313,7 +315,7 @@ static scree_status send_image(scree_world *w, struct scree_device_world *d,
 
 scree_status scree_cuda_reserve_own(const scree_world *w, struct scree_device_world *d,
                                     scree_error *error) {
-  const size_t k = w->neighbours.count;
+  const size_t k = w->list.neighbours.count;
   if (d->contact_capacity == 0) d->contact_capacity = FIRST_CONTACTS;
   size_t sizes[BLOCK_COUNT] = {[BLOCK_WORLD] = sizeof *w,
                                [BLOCK_WORLDS] = sizeof(scree_device_address),
@@ -384,9 +386,9 @@ static scree_status make_room_for_bodies(scree_world *w, struct scree_device_wor
   if (w->bodies.count == d->body_count) return SCREE_OK;
   const struct {
     size_t field, size;
-  } lists[] = {{FIELD(side_begin), (w->bodies.count + 1) * sizeof *w->side_begin},
-               {FIELD(wake_threshold.items),
-                (w->bodies.count + w->walls.count) * sizeof *w->wake_threshold.items}};
+  } lists[] = {{FIELD(list.side_begin), (w->bodies.count + 1) * sizeof *w->list.side_begin},
+               {FIELD(list.wake_threshold.items),
+                (w->bodies.count + w->walls.count) * sizeof *w->list.wake_threshold.items}};
   scree_cuda_place place = scree_cuda_place_of(d);
   scree_device_address broad;
   SCREE_TRY(scree_broad_reserve_bodies(w, error));
@@ -487,10 +489,10 @@ scree_status scree_cuda_fetch_removed(scree_world *w, struct scree_device_world 
 }
 
 void scree_cuda_lose(scree_world *w) {
-  take_back(w, w->on_device, SCREE_ALL_PARTS);
-  w->on_device->current = false;
-  w->on_device->changed = 0;
-  w->neighbours.count = w->wall_pairs.count = w->spheres.list.pairs.count = 0;
+  take_back(w, w->residence.on_device, SCREE_ALL_PARTS);
+  w->residence.on_device->current = false;
+  w->residence.on_device->changed = 0;
+  w->list.neighbours.count = w->list.wall_pairs.count = w->spheres.list.pairs.count = 0;
   w->diverged = true;
   scree_world_write_kept(w);
 }
@@ -498,7 +500,7 @@ void scree_cuda_lose(scree_world *w) {
 /* What steps change of the struct itself. */
 static scree_status fetch_numbers(scree_world *w, struct scree_device_world *d,
                                   scree_error *error) {
-  const size_t from = FIELD(spare_pairs), size = FIELD(slots) - from;
+  const size_t from = FIELD(spare_pairs), size = FIELD(spheres) - from;
   scree_world *image = d->image;
   SCREE_TRY(
       scree_cuda_read(&d->queue, (char *)image + from, d->own[BLOCK_WORLD].at + from, size, error));
@@ -536,7 +538,7 @@ static scree_status fetch_parts(scree_world *w, struct scree_device_world *d, un
       SCREE_TRY(scree_cuda_read(&d->queue, pointer_at(w, s->field), d->arrays[i].at, used, error));
   }
   if (parts & SCREE_PART_WALLS) SCREE_TRY(fetch_walls(w, d, error));
-  if (listed) SCREE_TRY(scree_broad_restore(w, w->margin, error));
+  if (listed) SCREE_TRY(scree_broad_restore(w, w->list.margin, error));
   if (listed) d->listed = false;
   return SCREE_OK;
 }

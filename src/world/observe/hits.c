@@ -18,9 +18,9 @@ static bool add(scree_losses *losses, const scree_pair_losses *one) {
 }
 
 static bool add_neighbours(const scree_world *world, uint32_t k, scree_losses *losses) {
-  const scree_balance *balance = &world->ledger.items[k];
+  const scree_balance *balance = &world->list.ledger.items[k];
   const scree_pair *pair = scree_pair_of(world, k);
-  const scree_neighbours *n = &world->neighbours.items[k];
+  const scree_neighbours *n = &world->list.neighbours.items[k];
   const scree_pair_losses one = {.a = n->a,
                                  .b = n->b,
                                  .at = k,
@@ -51,7 +51,7 @@ static bool add_spheres(const scree_world *world, uint32_t k, scree_losses *loss
 bool scree_find_losses(const scree_world *world, scree_losses *losses) {
   bool good = true;
   losses->count = 0;
-  for (uint32_t k = 0; k < world->neighbours.count && good; k++)
+  for (uint32_t k = 0; k < world->list.neighbours.count && good; k++)
     good = add_neighbours(world, k, losses);
   for (uint32_t k = 0; k < world->spheres.list.pairs.count && good; k++)
     good = add_spheres(world, k, losses);
@@ -92,7 +92,7 @@ bool scree_pair_normal_energy(const scree_world *world, uint32_t which, scree_pa
     at = vec3_mad(at, point->at, point->weight);
     weights += point->weight;
   }
-  *energy = now->elastic - now->tangential_elastic;
+  *energy = now->contact.elastic - now->contact.tangential_elastic;
   if (!(weights > 0) || !(vec3_norm(n) > 0)) return true;
   const scree_frame *a = &world->bodies.frame[now->a], *b = scree_pair_frame_b(world, now);
   n = vec3_unit(mat3_mul_vec(&b->rotation, n));
@@ -101,7 +101,7 @@ bool scree_pair_normal_energy(const scree_world *world, uint32_t which, scree_pa
   double light = mobility(world, now->a, from_a, n);
   if (!now->wall) light += mobility(world, now->b, from_b, n);
   /* From the middle of the last step to now, by half of the coming kick. */
-  double push = 0.5 * world->time_step * light * vec3_dot(n, now->wrench.force);
+  double push = 0.5 * world->time_step * light * vec3_dot(n, now->contact.wrench.force);
   double speed = vec3_dot(n, vec3_sub(velocity_at(a, from_a), velocity_at(b, from_b))) + push;
   const scree_pair_work *work = &copy->scratch.work;
   *energy += 0.5 * speed * speed / light + work->lost - work->later_dashpot - work->dashpot;

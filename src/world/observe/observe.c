@@ -7,7 +7,8 @@
 
 static scree_sums sums_of(const scree_world *world) {
   scree_sums all = {0};
-  if (world->on_device && world->remote->sum(world->on_device, &all)) return all;
+  if (world->residence.on_device && world->residence.remote->sum(world->residence.on_device, &all))
+    return all;
   all = (scree_sums){0};
   for (size_t part = 0; part < scree_sum_part_count(world); part++) {
     scree_sums sums = scree_sum_part(world, part);
@@ -18,7 +19,7 @@ static scree_sums sums_of(const scree_world *world) {
 
 scree_world_hardening scree_world_get_hardening(const scree_world *world, size_t material_a,
                                                 size_t material_b) {
-  const scree_hardening *h = &world->hardened[scree_hardened_at(material_a, material_b)];
+  const scree_hardening *h = &world->materials.hardened[scree_hardened_at(material_a, material_b)];
   scree_world_hardening hardening = {.count = h->count};
   memcpy(&hardening.deepest, &h->deepest, sizeof h->deepest);
   memcpy(&hardening.stiffness_missing, &h->missing, sizeof h->missing);
@@ -26,8 +27,8 @@ scree_world_hardening scree_world_get_hardening(const scree_world *world, size_t
 }
 
 static void sum_hardened(const scree_world *world, scree_observation *o) {
-  for (size_t a = 0; a < world->material_count; a++)
-    for (size_t b = a; b < world->material_count; b++) {
+  for (size_t a = 0; a < world->materials.count; a++)
+    for (size_t b = a; b < world->materials.count; b++) {
       const scree_world_hardening h = scree_world_get_hardening(world, a, b);
       o->hardened_count += h.count;
       o->stiffness_missing = scree_max(o->stiffness_missing, h.stiffness_missing);
@@ -89,12 +90,12 @@ scree_checksum scree_world_hash(const scree_world *world) {
     mix(&hash, vectors, sizeof vectors);
     mix(&hash, &b->orientation[i], sizeof b->orientation[i]);
   }
-  for (size_t k = 0; k < world->neighbours.count; k++) {
+  for (size_t k = 0; k < world->list.neighbours.count; k++) {
     const scree_pair *pair = scree_pair_of(world, k);
     if (pair && pair->spheres) {
       const uint32_t names[2] = {pair->a, pair->b};
       mix(&hash, names, sizeof names);
-      mix(&hash, &pair->slid, sizeof pair->slid);
+      mix(&hash, &pair->sphere.slid, sizeof pair->sphere.slid);
     }
     for (uint32_t i = 0; pair && i < pair->active.count; i++) {
       const scree_feature_pair *feature = &world->pools.features[pair->active.first + i];

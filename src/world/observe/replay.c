@@ -16,17 +16,17 @@ bool scree_copy_pair(const scree_world *world, const scree_pair *pair, scree_pai
   *p = *pair;
   *n = (scree_neighbours){.a = pair->a, .b = pair->b, .spheres = true, .law = pair->law};
   if (pair->spheres && !pair->wall) return true; /* two spheres have no lists */
-  *n = world->neighbours.items[pair->neighbours];
+  *n = world->list.neighbours.items[pair->neighbours];
   p->active.count = n->sleeping.count = 0; /* nothing to move yet */
   if (!scree_pack_features(&copy->pools, p, 1, 0) || !scree_pack_sleeping(&copy->pools, n, 1))
     return false;
   p->active.count = pair->active.count;
-  n->sleeping.count = world->neighbours.items[pair->neighbours].sleeping.count;
+  n->sleeping.count = world->list.neighbours.items[pair->neighbours].sleeping.count;
   for (uint32_t i = 0; i < p->active.count; i++) {
     copy->pools.features[i] = from->features[pair->active.first + i];
     copy->pools.further[i] = from->further[pair->active.first + i];
   }
-  uint32_t first = world->neighbours.items[pair->neighbours].sleeping.first;
+  uint32_t first = world->list.neighbours.items[pair->neighbours].sleeping.first;
   for (uint32_t i = 0; i < n->sleeping.count; i++)
     copy->pools.sleeping_features[i] = from->sleeping_features[first + i];
   return true;

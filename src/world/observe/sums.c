@@ -45,15 +45,16 @@ static void add_motion_ahead(const scree_world *world, size_t i, vec3 impulse, v
 
 /* Elastic energy of the tangential springs is no dissipation yet. */
 static void add_pair(const scree_world *world, const scree_pair *pair, scree_sums *sums) {
-  scree_sum_add(&sums->elastic, pair->elastic);
-  scree_sum_add(&sums->tangential_elastic, pair->tangential_elastic);
-  const scree_pair_wrench *ahead = &pair->ahead;
-  if (pair->followed) add_motion_ahead(world, pair->a, ahead->force, ahead->torque_a, sums);
-  if (pair->followed && !pair->wall)
+  scree_sum_add(&sums->elastic, pair->contact.elastic);
+  scree_sum_add(&sums->tangential_elastic, pair->contact.tangential_elastic);
+  const scree_pair_wrench *ahead = &pair->substeps.ahead;
+  if (pair->substeps.followed)
+    add_motion_ahead(world, pair->a, ahead->force, ahead->torque_a, sums);
+  if (pair->substeps.followed && !pair->wall)
     add_motion_ahead(world, pair->b, vec3_neg(ahead->force), ahead->torque_b, sums);
   sums->pairs++;
   sums->depenetrating += pair->depenetrating;
-  sums->contacts += pair->contact_count;
+  sums->contacts += pair->contact.count;
   sums->body_sides += pair->wall ? 1 : 2;
 }
 
@@ -72,7 +73,7 @@ static void sum_body(const scree_world *world, size_t i, scree_sums *sums) {
 }
 
 static void sum_neighbours(const scree_world *world, size_t k, scree_sums *sums) {
-  const scree_balance *balance = &world->ledger.items[k];
+  const scree_balance *balance = &world->list.ledger.items[k];
   scree_sum_add(&sums->dashpot, balance->dashpot);
   scree_sum_add(&sums->tangential, balance->tangential);
   scree_sum_add(&sums->wall, balance->wall);
@@ -96,7 +97,7 @@ static size_t blocks_of(size_t count) {
 }
 
 size_t scree_sum_part_count(const scree_world *world) {
-  return blocks_of(world->bodies.count) + blocks_of(world->neighbours.count) +
+  return blocks_of(world->bodies.count) + blocks_of(world->list.neighbours.count) +
          blocks_of(world->spheres.list.pairs.count) + 1;
 }
 
@@ -105,7 +106,7 @@ scree_sums scree_sum_part(const scree_world *world, size_t part) {
     size_t count;
     void (*add)(const scree_world *world, size_t i, scree_sums *sums);
   } kinds[] = {{world->bodies.count, sum_body},
-               {world->neighbours.count, sum_neighbours},
+               {world->list.neighbours.count, sum_neighbours},
                {world->spheres.list.pairs.count, sum_spheres}};
   scree_sums sums = {0};
   for (size_t kind = 0; kind < 3; kind++) {

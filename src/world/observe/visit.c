@@ -32,10 +32,10 @@ static bool report(const scree_world *world, const scree_pair *pair,
 
 static void share_mean(const scree_world *world, const scree_pair *pair, scree_pair_copy *copy) {
   scree_contact_list *contacts = &copy->scratch.contacts;
-  if (pair->substeps <= 1) return;
+  if (pair->substeps.count <= 1) return;
   double weights = 0;
   for (size_t i = 0; i < contacts->count; i++) weights += fmax(0, contacts->items[i].weight);
-  vec3 lacks = vec3_sub(pair->wrench.force, copy->pair.wrench.force);
+  vec3 lacks = vec3_sub(pair->contact.wrench.force, copy->pair.contact.wrench.force);
   lacks = mat3_tmul_vec(&scree_pair_frame_b(world, pair)->rotation, lacks);
   for (size_t i = 0; i < contacts->count; i++)
     if (contacts->items[i].weight > 0)
@@ -61,7 +61,7 @@ scree_status scree_world_visit_contacts(const scree_world *world, scree_contact_
   SCREE_TRY(scree_world_bring(world, SCREE_ALL_PARTS, error));
   scree_pair_copy copy = {0};
   bool good = true, going = true;
-  for (size_t k = 0; k < world->neighbours.count && good && going; k++)
+  for (size_t k = 0; k < world->list.neighbours.count && good && going; k++)
     good = visit_pair(world, scree_pair_of(world, k), &copy, visit, context, &going);
   for (size_t k = 0; k < world->spheres.list.pairs.count && good && going; k++) {
     const scree_pair pair = scree_sphere_pair_of(world, k);

@@ -13,11 +13,12 @@ static const struct body_array {
 } body_arrays[] = {
 #define OF(member)                                                                                 \
   { offsetof(scree_world, member), sizeof *((scree_world *)0)->member }
-    OF(bodies.frame),      OF(bodies.orientation), OF(bodies.momentum), OF(bodies.inertia),
-    OF(bodies.force),      OF(bodies.torque),      OF(bodies.mass),     OF(bodies.travel),
-    OF(bodies.path),       OF(bodies.turn),        OF(bodies.particle), OF(bodies.material),
-    OF(bodies.removed),    OF(bodies.balance),     OF(side_begin),      OF(offenders),
-    OF(body_path_at_build)};
+    OF(bodies.frame),        OF(bodies.orientation),     OF(bodies.momentum),
+    OF(bodies.inertia),      OF(bodies.force),           OF(bodies.torque),
+    OF(bodies.mass),         OF(bodies.travel),          OF(bodies.path),
+    OF(bodies.turn),         OF(bodies.particle),        OF(bodies.material),
+    OF(bodies.removed),      OF(bodies.balance),         OF(list.side_begin),
+    OF(workspace.offenders), OF(list.body_path_at_build)};
 #undef OF
 enum { BODY_ARRAYS = sizeof body_arrays / sizeof *body_arrays };
 
@@ -89,7 +90,7 @@ static void place_body(scree_world *world, size_t i, const scree_body *state) {
   frame->velocity_now = frame->velocity;
   frame->spin_now = frame->spin;
   b->force[i] = b->torque[i] = (vec3){0, 0, 0};
-  world->body_path_at_build[i] = -1;
+  world->list.body_path_at_build[i] = -1;
   scree_body_forget(world, i);
 }
 
@@ -123,9 +124,9 @@ static unsigned parts_around(const scree_world *world, size_t body) {
 
 scree_status scree_world_add_body(scree_world *world, scree_particle *particle, size_t material,
                                   const scree_body *state, size_t *index, scree_error *error) {
-  if (material >= world->material_count)
+  if (material >= world->materials.count)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: material %zu of %zu", material,
-                      world->material_count);
+                      world->materials.count);
   scree_body start = state ? *state : scree_default_body();
   scree_bodies *b = &world->bodies;
   SCREE_TRY(check_state(b->count, "added with", &start, error));
@@ -137,11 +138,11 @@ scree_status scree_world_add_body(scree_world *world, scree_particle *particle, 
     SCREE_TRY(grow_bodies(world, error));
   }
   size_t i = b->count++;
-  b->travel[i] = b->path[i] = world->body_path_at_build[i] = 0;
+  b->travel[i] = b->path[i] = world->list.body_path_at_build[i] = 0;
   b->material[i] = (uint8_t)material;
   b->removed[i] = false;
   b->particle[i] = particle;
-  fill_body(b, i, world->materials[material].density);
+  fill_body(b, i, world->materials.items[material].density);
   if (b->applied) b->applied[i] = (scree_applied){0};
   b->balance[i] = (scree_balance){0, 0, 0};
   scree_particle_retain(particle);
@@ -161,7 +162,7 @@ scree_status scree_world_set_body_density(scree_world *world, size_t index, doub
   double before = b->mass[index];
   fill_body(b, index, density);
   b->momentum[index] = vec3_scale(b->momentum[index], b->mass[index] / before);
-  world->body_path_at_build[index] = -1;
+  world->list.body_path_at_build[index] = -1;
   scree_body_forget(world, index);
   world->time_step_stale = true;
   return SCREE_OK;
@@ -250,7 +251,7 @@ double scree_world_body_mass(const scree_world *world, size_t index) {
 void scree_body_remove(scree_world *world, size_t index) {
   world->bodies.removed[index] = true;
   world->bodies.removed_count++;
-  world->pairs_stale = true;
+  world->list.stale = true;
 }
 
 void scree_world_remove_body(scree_world *world, size_t index) {

@@ -178,25 +178,27 @@ void scree_code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) {
   scree_code_bool(c, &p->touching);
   scree_code_bool(c, &p->depenetrating);
   scree_code_bool(c, &p->was_depenetrating);
-  scree_code_bool(c, &p->followed);
+  scree_code_bool(c, &p->substeps.followed);
   CODE_REALS(c, &n->law);
   CODE_REALS(c, &p->list);
-  CODE_EACH(c, double, &n->wake, &n->asleep_since, &p->elastic, &p->tangential_elastic, &p->age,
-            &p->overlap, &p->largest, &p->depth, &p->kick, &p->foreseen, &p->found,
-            &p->later_dashpot, &p->later_tangential);
-  code_floats(c, &p->elastic_since, 1);
-  code_floats(c, &p->belt_power, 1);
-  CODE_EACH(c, vec3, &p->rolled, &p->separation, &p->pushed);
-  CODE_EACH(c, scree_pair_wrench, &p->wrench, &p->owed, &p->ahead);
+  CODE_EACH(c, double, &n->wake, &n->asleep_since, &p->contact.elastic,
+            &p->contact.tangential_elastic, &p->history.age, &p->contact.overlap,
+            &p->history.largest, &p->depth, &p->book.kick, &p->substeps.foreseen, &p->apart.found,
+            &p->book.later_dashpot, &p->book.later_tangential);
+  code_floats(c, &p->substeps.elastic_since, 1);
+  code_floats(c, &p->contact.belt_power, 1);
+  CODE_EACH(c, vec3, &p->history.rolled, &p->apart.direction, &p->apart.place);
+  CODE_EACH(c, scree_pair_wrench, &p->contact.wrench, &p->substeps.owed, &p->substeps.ahead);
   code_watch(c, &p->watch);
-  p->substeps = (uint8_t)coded(c, p->substeps, SCREE_MOST_SUBSTEPS);
-  if (p->substeps < 1) c->failed = true;
-  CODE_REALS(c, &p->spring);
-  scree_kept_wrench *kept[] = {&p->dashpot, &p->tangential, &p->others[0], &p->others[1]};
+  p->substeps.count = (uint8_t)coded(c, p->substeps.count, SCREE_MOST_SUBSTEPS);
+  if (p->substeps.count < 1) c->failed = true;
+  CODE_REALS(c, &p->book.spring);
+  scree_kept_wrench *kept[] = {&p->book.dashpot, &p->book.tangential, &p->substeps.others[0],
+                               &p->substeps.others[1]};
   for (int i = 0; i < 4; i++) code_floats(c, (float *)kept[i], 6);
-  uint64_t contacts = p->contact_count;
+  uint64_t contacts = p->contact.count;
   scree_code_u64(c, &contacts);
-  p->contact_count = (uint32_t)contacts;
+  p->contact.count = (uint32_t)contacts;
   size_t active = p->active.count, sleeping = n->sleeping.count;
   scree_code_count(c, &active, 242);
   scree_code_count(c, &sleeping, 20);
@@ -229,7 +231,7 @@ void scree_code_body(scree_codec *c, const scree_world *world, size_t body) {
   CODE_REALS(c, &b->orientation[body]);
   CODE_EACH(c, vec3, &b->momentum[body], &b->inertia[body], &b->force[body], &b->torque[body]);
   CODE_EACH(c, double, &b->mass[body], &b->travel[body], &b->path[body],
-            &world->body_path_at_build[body]);
+            &world->list.body_path_at_build[body]);
   scree_code_bool(c, &b->removed[body]);
   CODE_REALS(c, &b->balance[body]);
 }

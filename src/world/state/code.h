@@ -40,7 +40,7 @@ typedef struct scree_world_tail {
 } scree_world_tail;
 void scree_code_tail(scree_codec *c, scree_world_tail *t);
 void scree_code_hardening(scree_codec *c, scree_hardening *h);
-/* How many of world->hardened count: those of the materials that there are. */
+/* How many of materials.hardened count: those of the materials that there are. */
 static inline size_t scree_hardening_count(const scree_world *world) {
-  return world->material_count * (world->material_count + 1) / 2;
+  return world->materials.count * (world->materials.count + 1) / 2;
 }

@@ -60,7 +60,7 @@ static void find_fragments(scree_joints *joints) {
 
 void scree_joints_regroup(scree_world *world) {
   find_fragments(&world->joints);
-  world->pairs_stale = true; /* who was held may touch */
+  world->list.stale = true; /* who was held may touch */
 }
 
 scree_status scree_joints_prepare(scree_world *world, scree_error *error) {
@@ -153,7 +153,7 @@ scree_joint_sums scree_joints_sum(const scree_world *world) {
   (void)scree_world_bring(world, SCREE_PART_JOINTS, NULL);
   for (size_t k = 0; k < scree_world_joint_count(world); k++) {
     const scree_world_joint *j = &world->joints.all.items[k];
-    const double of[] = {j->energy, j->fracture, j->rubbed, j->damped};
+    const double of[] = {j->energy, j->spent.fracture, j->spent.rubbed, j->spent.damped};
     for (int i = 0; i < 4; i++) scree_sum_add(&sums[i], of[i]);
     broken += j->mode != SCREE_JOINT_NOT_BROKEN;
   }
@@ -271,10 +271,10 @@ static scree_world_joint joint_from(const scree_world *world, const scree_joint 
                          .moduli = vec3_load(g->moduli),
                          .area = g->area,
                          .reach = {g->reach[0], g->reach[1]},
-                         .tension = g->tension,
-                         .cohesion = g->cohesion,
-                         .friction = g->friction,
-                         .toughness = g->toughness,
+                         .strength.tension = g->tension,
+                         .strength.cohesion = g->cohesion,
+                         .strength.friction = g->friction,
+                         .strength.toughness = g->toughness,
                          .broke_at = NAN};
   if (!(g->area > 0)) return j;
   place(world, g, &j);
@@ -288,7 +288,7 @@ static scree_status push(scree_world *world, const scree_world_joint *joint, scr
   if (joints->all.count > UINT32_MAX / 4)
     return scree_fail(error, SCREE_LIMIT, "world: at most %u joints", UINT32_MAX / 4);
   SCREE_TRY_PUSH(&joints->all, error, *joint);
-  joints->stale = world->pairs_stale = world->time_step_stale = true;
+  joints->stale = world->list.stale = world->time_step_stale = true;
   joints->frequency = 0;
   return SCREE_OK;
 }
@@ -308,9 +308,9 @@ scree_status scree_world_copy_joint(scree_world *to, const scree_world_joint *jo
   scree_world_joint j = *joint;
   j.a += shift;
   if (j.b != scree_none) j.b += shift;
-  j.tension *= strength;
-  j.cohesion *= strength;
-  j.toughness *= strength * strength;
+  j.strength.tension *= strength;
+  j.strength.cohesion *= strength;
+  j.strength.toughness *= strength * strength;
   return push(to, &j, error);
 }
 

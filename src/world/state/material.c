@@ -116,7 +116,7 @@ static scree_material_contact contact_of(const scree_material *a, const scree_ma
 
 scree_status scree_world_add_material(scree_world *world, const scree_material *material,
                                       size_t *index, scree_error *error) {
-  if (world->material_count == SCREE_MATERIALS)
+  if (world->materials.count == SCREE_MATERIALS)
     return scree_fail(error, SCREE_LIMIT, "world: at most %d materials", SCREE_MATERIALS);
   if (!(material->young > 0 && isfinite(material->young)))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: young %g N/m2; above 0", material->young);
@@ -129,11 +129,12 @@ scree_status scree_world_add_material(scree_world *world, const scree_material *
   scree_material_contact own = contact_of(material, material);
   SCREE_TRY(check_contact(&own, error));
   SCREE_TRY(scree_world_change(world, SCREE_ALL_PARTS, error));
-  size_t k = world->material_count++;
-  world->materials[k] = *material;
+  size_t k = world->materials.count++;
+  world->materials.items[k] = *material;
   for (size_t i = 0; i <= k; i++) {
-    scree_material_contact contact = contact_of(material, &world->materials[i]);
-    world->contacts[i][k] = world->contacts[k][i] = make_contact(world, &contact);
+    scree_material_contact contact = contact_of(material, &world->materials.items[i]);
+    world->materials.contacts[i][k] = world->materials.contacts[k][i] =
+        make_contact(world, &contact);
   }
   if (index) *index = k;
   return SCREE_OK;
@@ -141,15 +142,15 @@ scree_status scree_world_add_material(scree_world *world, const scree_material *
 
 static scree_status check_materials(const scree_world *world, size_t a, size_t b,
                                     scree_error *error) {
-  if (a < world->material_count && b < world->material_count) return SCREE_OK;
+  if (a < world->materials.count && b < world->materials.count) return SCREE_OK;
   return scree_fail(error, SCREE_BAD_ARGUMENT, "world: material %zu of %zu", a > b ? a : b,
-                    world->material_count);
+                    world->materials.count);
 }
 
 scree_status scree_world_get_pair(const scree_world *world, size_t a, size_t b,
                                   scree_material_contact *contact, scree_error *error) {
   SCREE_TRY(check_materials(world, a, b, error));
-  *contact = world->contacts[a][b].given;
+  *contact = world->materials.contacts[a][b].given;
   return SCREE_OK;
 }
 
@@ -158,7 +159,7 @@ scree_status scree_world_set_pair(scree_world *world, size_t a, size_t b,
   SCREE_TRY(check_materials(world, a, b, error));
   SCREE_TRY(check_contact(contact, error));
   SCREE_TRY(scree_world_change(world, SCREE_ALL_PARTS, error));
-  world->contacts[a][b] = world->contacts[b][a] = make_contact(world, contact);
+  world->materials.contacts[a][b] = world->materials.contacts[b][a] = make_contact(world, contact);
   scree_neighbours_set_up(world);
   world->time_step_stale = true;
   return SCREE_OK;

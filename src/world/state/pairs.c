@@ -17,7 +17,7 @@ void scree_pair_begin(scree_pair *pair, const scree_neighbours *n, uint32_t inde
                        .neighbours = index,
                        .law = n->law,
                        .depth = -INFINITY,
-                       .substeps = 1};
+                       .substeps.count = 1};
 }
 
 void scree_pair_end(const scree_pair *pair, scree_neighbours *n) {
@@ -90,16 +90,16 @@ static void exchange_pairs(scree_world *world, scree_pair *one, scree_pair *othe
 
 /* Moves the pairs to the first places, in the order of their neighbours. */
 static void sort_pairs(scree_world *world) {
-  uint32_t place = 0, *pair_of = world->pair_of.items;
+  uint32_t place = 0, *pair_of = world->list.pair_of.items;
   scree_pair *pairs = world->pairs.items;
-  for (size_t k = 0; k < world->neighbours.count; k++) {
+  for (size_t k = 0; k < world->list.neighbours.count; k++) {
     uint32_t pair = pair_of[k], at = place;
     if (pair == scree_none) continue;
     place++;
     if (pair == at) continue;
     uint32_t there = pairs[at].neighbours; /* of one that came, or went long ago */
     exchange_pairs(world, &pairs[pair], &pairs[at]);
-    if (there < world->neighbours.count && pair_of[there] == at) pair_of[there] = pair;
+    if (there < world->list.neighbours.count && pair_of[there] == at) pair_of[there] = pair;
     pair_of[k] = at;
   }
   atomic_store(&world->spare_pairs.count, 0);
@@ -109,8 +109,8 @@ static void sort_pairs(scree_world *world) {
 void scree_pairs_tidy(scree_world *world) {
   size_t count = 0, astray = 0;
   uint32_t next = 0;
-  for (size_t k = 0; k < world->neighbours.count; k++) {
-    uint32_t pair = world->pair_of.items[k];
+  for (size_t k = 0; k < world->list.neighbours.count; k++) {
+    uint32_t pair = world->list.pair_of.items[k];
     if (pair == scree_none) continue;
     astray += pair != next;
     next = pair + 1;
@@ -120,7 +120,7 @@ void scree_pairs_tidy(scree_world *world) {
 }
 
 bool scree_body_has_neighbours(const scree_world *world, size_t body) {
-  return body < world->listed_bodies;
+  return body < world->list.body_count;
 }
 
 /* Contacts with other spheres; what they have booked stays. */
@@ -139,14 +139,15 @@ static void forget_spheres(scree_world *world, uint32_t body) {
 
 /* All memory goes, also what is read only while they sleep: a checkpoint holds it. */
 void scree_body_forget(scree_world *world, size_t body) {
-  world->pairs_stale = true;
+  world->list.stale = true;
   if (!scree_body_has_neighbours(world, body)) return;
   forget_spheres(world, (uint32_t)body);
-  for (size_t k = 0; k < world->neighbours.count; k++) {
-    scree_neighbours *n = &world->neighbours.items[k];
+  for (size_t k = 0; k < world->list.neighbours.count; k++) {
+    scree_neighbours *n = &world->list.neighbours.items[k];
     if (n->a != body && (n->wall || n->b != body)) continue;
-    if (world->pair_of.items[k] != scree_none) scree_pair_give_back(world, world->pair_of.items[k]);
-    world->pair_of.items[k] = scree_none;
+    if (world->list.pair_of.items[k] != scree_none)
+      scree_pair_give_back(world, world->list.pair_of.items[k]);
+    world->list.pair_of.items[k] = scree_none;
     scree_range place = {n->sleeping.first, 0, n->sleeping.capacity};
     *n = scree_neighbours_new(world, n->a, n->b, n->wall);
     n->sleeping = place;

@@ -32,8 +32,8 @@ static double stiffness_of_hertz(double hertz, double mass) {
 
 void scree_set_stiffness(const scree_world *world, const scree_contact_sides *sides,
                          scree_pair_law *law) {
-  const scree_material *a = &world->materials[sides->material_a],
-                       *b = &world->materials[sides->material_b];
+  const scree_material *a = &world->materials.items[sides->material_a],
+                       *b = &world->materials.items[sides->material_b];
   double ka = a->young * sides->size, kb = b->young * sides->size,
          factor = world->options.stiffness_factor;
   law->stiffness = factor * ka * kb / (ka + kb);
@@ -114,7 +114,7 @@ static void set_up(const scree_world *world, scree_neighbours *n) {
     mass = mass * bodies->mass[n->b] / (mass + bodies->mass[n->b]);
     thin = scree_min(thin, scree_thin_overlap(b));
   }
-  const scree_material_pair *contact = &world->contacts[material_a][material_b];
+  const scree_material_pair *contact = &world->materials.contacts[material_a][material_b];
   const scree_contact_sides sides = {a, n->wall ? NULL : b, material_a, material_b, size, mass};
   scree_set_stiffness(world, &sides, &n->law);
   if (n->law.hertz > 0)
@@ -159,8 +159,8 @@ void scree_spheres_set_up_laws(scree_world *world) {
 
 void scree_neighbours_set_up(scree_world *world) {
   scree_spheres_set_up_laws(world);
-  for (size_t k = 0; k < world->neighbours.count; k++) {
-    scree_neighbours *n = &world->neighbours.items[k];
+  for (size_t k = 0; k < world->list.neighbours.count; k++) {
+    scree_neighbours *n = &world->list.neighbours.items[k];
     scree_pair *pair = scree_pair_of(world, k);
     set_up(world, n);
     if (pair) pair->law = n->law;

@@ -2,8 +2,8 @@
 #include "world/state/walls.h"
 
 scree_status scree_world_bring(const scree_world *world, unsigned parts, scree_error *error) {
-  struct scree_device_world *there = world->on_device;
-  return there ? world->remote->bring(there, parts, error) : SCREE_OK;
+  struct scree_device_world *there = world->residence.on_device;
+  return there ? world->residence.remote->bring(there, parts, error) : SCREE_OK;
 }
 
 scree_status scree_world_change(scree_world *world, unsigned parts, scree_error *error) {
@@ -11,6 +11,7 @@ scree_status scree_world_change(scree_world *world, unsigned parts, scree_error 
       parts & (SCREE_PART_WALLS | SCREE_PART_LISTS); /* forces on walls follow from them */
   SCREE_TRY(scree_world_bring(world, parts | (settle ? SCREE_PART_WALLS : 0), error));
   if (settle) scree_walls_settle(world);
-  if (world->on_device) world->remote->change(world->on_device, parts);
+  if (world->residence.on_device)
+    world->residence.remote->change(world->residence.on_device, parts);
   return SCREE_OK;
 }

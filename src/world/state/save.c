@@ -77,15 +77,15 @@ done:
 static void save_setup(scree_codec *c, const scree_world *world) {
   scree_world_options options = world->options;
   scree_code_options(c, &options);
-  size_t count = world->material_count;
+  size_t count = world->materials.count;
   scree_code_count(c, &count, 1);
   for (size_t i = 0; i < count; i++) {
-    scree_material material = world->materials[i];
+    scree_material material = world->materials.items[i];
     CODE_REALS(c, &material);
   }
   for (size_t i = 0; i < count; i++)
     for (size_t j = 0; j <= i; j++) {
-      scree_material_pair contact = world->contacts[i][j];
+      scree_material_pair contact = world->materials.contacts[i][j];
       CODE_REALS(c, &contact);
     }
   count = world->walls.count;
@@ -112,15 +112,15 @@ static void save_bodies(scree_codec *c, const scree_world *world) {
 
 static void save_pairs(scree_codec *c, const scree_world *world, bool contacts) {
   const scree_pools *pools = &world->pools;
-  size_t count = contacts ? world->neighbours.count : 0;
+  size_t count = contacts ? world->list.neighbours.count : 0;
   scree_code_count(c, &count, 1);
   for (uint32_t k = 0; k < count; k++) {
-    scree_neighbours *n = &world->neighbours.items[k]; /* only read, and so are its lists */
+    scree_neighbours *n = &world->list.neighbours.items[k]; /* only read, and so are its lists */
     scree_pair asleep = {0}, *pair = scree_pair_of(world, k);
     if (!pair) scree_pair_begin(pair = &asleep, n, k);
     scree_code_pair_name(c, n);
     scree_code_pair_state(c, pair, n);
-    CODE_REALS(c, &world->ledger.items[k]);
+    CODE_REALS(c, &world->list.ledger.items[k]);
     scree_range items = pair->active, sleeping_features = n->sleeping;
     for (uint32_t i = 0; i < items.count; i++)
       scree_code_feature(c, &pools->features[items.first + i], &pools->further[items.first + i]);
@@ -149,17 +149,17 @@ static void save_tail(scree_codec *c, const scree_world *world) {
   scree_world_tail tail = {.time = world->time,
                            .time_step = world->time_step,
                            .largest_overlap = world->largest_overlap,
-                           .margin = world->margin,
+                           .margin = world->list.margin,
                            .step_count = world->step_count,
                            .depenetration_count = world->depenetration_count,
-                           .pairs_stale = world->pairs_stale,
+                           .pairs_stale = world->list.stale,
                            .time_step_stale = world->time_step_stale,
                            .diverged = world->diverged,
                            .failure = world->diverged ? (uint32_t)world->failure.status : 0};
   if (world->diverged) snprintf(tail.message, sizeof tail.message, "%s", world->failure.message);
   scree_code_tail(c, &tail);
   for (size_t i = 0; i < scree_hardening_count(world); i++) {
-    scree_hardening hardening = world->hardened[i];
+    scree_hardening hardening = world->materials.hardened[i];
     scree_code_hardening(c, &hardening);
   }
 }

@@ -38,6 +38,28 @@ typedef struct scree_depth_question {
   double above, claimed;
 } scree_depth_question;
 
+/* How much a worker has done since the start. */
+typedef struct scree_counters {
+  uint64_t feature_evaluations, closest_queries, list_builds, depth_queries;
+  double candidate_seconds;
+} scree_counters;
+
+/* What the visits of the awake feature pairs find. */
+typedef struct scree_findings {
+  double nap;        /* those that cannot touch for longer go to sleep */
+  double least_gap;  /* of them all */
+  uint32_t to_sleep; /* how many do */
+  bool any_inside;
+  scree_depth_question question;
+} scree_findings;
+
+/* The pair as it was when the step began. */
+typedef struct scree_pair_before {
+  scree_list_state list;
+  scree_pair_wrench wrench;
+  bool asleep, depenetrating, was_depenetrating;
+} scree_pair_before;
+
 /* A pair in hand: where its lists and its bodies are, and what is found out about it in a step. A
  * worker has one, a device one for every pair that is awake. */
 struct scree_scratch {
@@ -49,23 +71,14 @@ struct scree_scratch {
   size_t contacts_needed; /* by a pair that found too little room */
   size_t first_contact;   /* of a device: in the pool of contacts */
   size_t first_depth;     /* likewise, among the depths that were found for it */
-  uint64_t feature_evaluations, closest_queries, list_builds;
-  uint64_t depth_queries;
-  double candidate_seconds;
-  double nap;               /* feature pairs that cannot touch for longer go to sleep */
-  double least_gap;         /* of the feature pairs */
+  scree_counters counters;
   const scree_frame *a, *b; /* where the pair's two are */
   scree_frame own[2];       /* these where they are the pair's alone */
   scree_frame relative;     /* a in the frame of b */
   double drift, step;       /* s, of their last drift and of the coming one */
   uint32_t substeps;        /* of the coming step */
-  uint32_t to_sleep;        /* feature pairs that go to sleep */
-  bool any_inside;          /* a feature pair is */
-  bool slept;               /* the pair did, until this step */
-  bool depenetrating, was_depenetrating; /* as it was then */
-  scree_depth_question question;
-  scree_list_state before; /* of the pair, when the step began */
-  scree_pair_wrench last;  /* the pair's of the last step */
+  scree_findings found;
+  scree_pair_before before;
   scree_pair_work work;
   double spring_work;    /* J, of the pair's spring since the last look */
   double overlap_before; /* m, at it */

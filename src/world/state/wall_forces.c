@@ -4,13 +4,14 @@
 
 /* Whether those of world->wall_pairs.items[i] are a body and wall w. */
 static bool is_with(const scree_world *world, size_t i, size_t w) {
-  return scree_key_second(world->keys.items[world->wall_pairs.items[i]]) == w;
+  return scree_key_second(world->list.keys.items[world->list.wall_pairs.items[i]]) == w;
 }
 
 double scree_wall_work(const scree_world *world, size_t w) {
   double work = world->walls.items[w].energy;
-  for (size_t i = 0; i < world->wall_pairs.count; i++)
-    if (is_with(world, i, w)) work += world->ledger.items[world->wall_pairs.items[i]].wall;
+  for (size_t i = 0; i < world->list.wall_pairs.count; i++)
+    if (is_with(world, i, w))
+      work += world->list.ledger.items[world->list.wall_pairs.items[i]].wall;
   return work;
 }
 
@@ -18,13 +19,13 @@ void scree_wall_sum(const scree_world *world, size_t w) {
   scree_world_wall *wall = &world->walls.items[w];
   scree_wrench all = {{0, 0, 0}, {0, 0, 0}};
   double belt_power = 0;
-  for (size_t i = 0; i < world->wall_pairs.count; i++) {
+  for (size_t i = 0; i < world->list.wall_pairs.count; i++) {
     if (!is_with(world, i, w)) continue;
-    const scree_pair *pair = scree_pair_of(world, world->wall_pairs.items[i]);
+    const scree_pair *pair = scree_pair_of(world, world->list.wall_pairs.items[i]);
     if (!pair || !pair->touching) continue;
-    all.force = vec3_add(all.force, pair->wrench.force);
-    all.moment = vec3_sub(all.moment, pair->wrench.torque_b);
-    belt_power += pair->belt_power;
+    all.force = vec3_add(all.force, pair->contact.wrench.force);
+    all.moment = vec3_sub(all.moment, pair->contact.wrench.torque_b);
+    belt_power += pair->contact.belt_power;
   }
   wall->force = vec3_sub((vec3){0, 0, 0}, all.force); /* and never -0 */
   wall->torque = vec3_sub((vec3){0, 0, 0}, all.moment);

@@ -22,9 +22,9 @@ static scree_status check_loop(const scree_wall *wall, size_t number, const doub
 static scree_status check_wall(const scree_world *world, const scree_wall *wall,
                                scree_error *error) {
   size_t number = world->walls.count;
-  if (wall->material >= world->material_count)
+  if (wall->material >= world->materials.count)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: wall %zu has material %zu of %zu", number,
-                      wall->material, world->material_count);
+                      wall->material, world->materials.count);
   double sum = 0, axis2 = 0;
   for (int i = 0; i < 3; i++) {
     sum += wall->position[i] + wall->axis[i] + wall->velocity[i] + wall->angular_velocity[i] +
@@ -119,7 +119,7 @@ scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall, si
     scree_particle_free(made.surface);
     return scree_fail_memory(error, sizeof made, "a wall");
   }
-  world->pairs_stale = world->time_step_stale = true;
+  world->list.stale = world->time_step_stale = true;
   if (index) *index = world->walls.count - 1;
   return SCREE_OK;
 }
@@ -188,7 +188,7 @@ void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, ve
   set_velocity(wall, velocity, spin);
   double travel = (vec3_norm(velocity) + wall->reach * vec3_norm(spin)) * world->time_step;
   wall->travel = scree_max(wall->travel, travel);
-  if (!world->pairs_stale && world->wake_threshold.items)
+  if (!world->list.stale && world->list.wake_threshold.items)
     scree_set_wall_wake_threshold(world, index); /* else later */
 }
 

@@ -204,8 +204,6 @@ typedef struct scree_range {
   uint32_t first, count, capacity;
 } scree_range;
 
-enum { SCREE_MOST_SUBSTEPS = 16 };
-
 /* What watch.c knows of a pair. */
 typedef struct scree_watch {
   double due;      /* on the list's path: the next look */
@@ -218,6 +216,61 @@ typedef struct scree_watch {
   bool taken;                          /* the pair was looked at */
 } scree_watch;
 
+/* What geometry and law found in the last step. */
+typedef struct scree_pair_contact {
+  scree_pair_wrench wrench;           /* the bodies read it */
+  double overlap;                     /* m */
+  double elastic, tangential_elastic; /* U of all springs, and of the tangential ones, J */
+  float belt_power; /* W, of a belt's friction on a, by the belt's motion along itself */
+  uint32_t count;   /* of features that press */
+} scree_pair_contact;
+
+/* What a contact remembers beside its anchors, from when it began. */
+typedef struct scree_contact_history {
+  double age; /* s */
+  union {
+    double largest; /* m, overlap: hysteresis */
+    double worked;  /* J, by the spring: the other laws */
+  };
+  vec3 rolled; /* the spring of rolling resistance: of spheres, rad, in space; else m, on the arm on
+                  which they roll, in the frame of b */
+} scree_contact_history;
+
+/* What the energy book needs of one step in the next. */
+typedef struct scree_work_book {
+  double kick; /* s, for which the last wrench acts; 0: there was none */
+  scree_wrench spring;
+  scree_kept_wrench dashpot, tangential;  /* parts of the wrench */
+  double later_dashpot, later_tangential; /* J of the last step's sub-steps, not yet entered */
+} scree_work_book;
+
+/* Of spheres: the tangential spring, m, in space; on which side they are of a sheet. */
+typedef struct scree_sphere_memory {
+  vec3 slid;
+  double side;
+} scree_sphere_memory;
+
+/* How two that lie in each other are moved apart, in the frame of b. */
+typedef struct scree_separation {
+  vec3 direction; /* of a; 0: not yet */
+  double found;   /* m, how deep they were when it was last looked for */
+  vec3 place;     /* where a is pushed */
+} scree_separation;
+
+enum { SCREE_MOST_SUBSTEPS = 16 };
+
+/* What a pair that moves its bodies in steps of its own carries over (substep.c). */
+typedef struct scree_pair_substeps {
+  uint8_t count; /* of the last step */
+  bool followed; /* the wrench is a mean over those, or holds what is `owed`: `ahead` counts */
+  float elastic_since;         /* J, by which `elastic` has grown since the step began */
+  scree_pair_wrench owed;      /* impulses and their moments of the last step's */
+  scree_pair_wrench ahead;     /* impulses: what the motion at the step's beginning has more than
+                                  the mean */
+  scree_kept_wrench others[2]; /* on a and on b, before the last step's */
+  double foreseen;             /* J, of the spring by them */
+} scree_pair_substeps;
+
 /* A pair that is awake. What every step touches comes first, and of that what spheres need. Pairs
  * lie together, apart from what is kept of those asleep: a step comes to one pair of neighbours in
  * five, and each would lie on a page of its own. */
@@ -229,49 +282,20 @@ typedef struct scree_pair {
   bool asleep; /* no feature pair can touch before the bodies' paths reach the neighbours' `wake` */
   bool touching;
   bool depenetrating, was_depenetrating; /* is moved apart (law.c); was, until the last step */
-  uint8_t substeps;                      /* of the last step (substep.c) */
-  bool followed; /* the wrench is a mean over those, or holds what was owed: `ahead` counts */
-  uint32_t contact_count;
-  uint32_t neighbours;      /* index */
-  scree_pair_wrench wrench; /* here: the bodies read it with what is above */
-  double overlap;           /* m */
-  double age;               /* since the touch began */
+  uint32_t neighbours;                   /* index */
+  scree_range active;                    /* in the pool of feature pairs */
+  scree_pair_contact contact;
   scree_pair_law law;
-  double elastic, tangential_elastic; /* U of all springs, and of the tangential ones */
+  scree_contact_history history;
+  scree_work_book book;
   union {
-    double largest; /* m of this contact: hysteresis */
-    double worked;  /* J, by the spring in this contact: the other laws */
-  };
-  double kick; /* s, for which the last wrench acts; 0: there was none */
-  scree_wrench spring;
-  scree_kept_wrench dashpot, tangential; /* parts of the wrench, for the ledger */
-  vec3 rolled; /* the spring of rolling resistance: of spheres, rad, in space; else m, on the arm on
-                  which they roll, in the frame of b */
-  union {
-    struct { /* of spheres: the tangential spring, in space; on which side they are of a sheet */
-      vec3 slid;
-      double side;
-    };
-    struct { /* of others: in which they part, in the frame of b, 0: not yet; how deep they were
-                when it was last looked for, m */
-      vec3 separation;
-      double found;
-    };
+    scree_sphere_memory sphere; /* of spheres */
+    scree_separation apart;     /* of others */
   };
   scree_list_state list;
-  scree_range active;  /* in the pool of feature pairs */
-  float elastic_since; /* J, by which `elastic` has grown since, where there were sub-steps */
-  float belt_power;    /* W, of a belt's friction on a, by the belt's motion along itself */
-  double depth;        /* no edge lies deeper inside the other body; -INFINITY: not known */
-  double later_dashpot,
-      later_tangential;   /* J of the last step's sub-steps, not yet entered in the balance */
-  vec3 pushed;            /* where, while it parts, in the frame of b */
-  scree_pair_wrench owed; /* impulses and their moments of the last step's sub-steps: substep.c */
+  double depth; /* m: no edge lies deeper inside the other body; -INFINITY: not known */
+  scree_pair_substeps substeps;
   scree_watch watch;
-  scree_pair_wrench
-      ahead; /* impulses: what the motion at the step's beginning has more than the mean */
-  scree_kept_wrench others[2]; /* on a and on b, before the last step's sub-steps: substep.c */
-  double foreseen;             /* J, of the spring by them */
 } scree_pair;
 
 /* Two bodies, or a body and a wall, whose boxes are near each other: what is kept of them while
@@ -324,7 +348,7 @@ typedef struct scree_tally {
   scree_trouble trouble;
   uint64_t largest_overlap; /* the bits of the number, which is not negative, m */
   uint32_t depenetrations;  /* begun */
-  uint32_t hardened;        /* springs that were: what of them stands in world->hardened */
+  uint32_t hardened;        /* springs that were: what of them stands in materials.hardened */
 } scree_tally;
 
 /* How far some blocks of the neighbours have come in a step. */
@@ -337,7 +361,7 @@ typedef struct scree_pair_progress {
 /* What the step reads of all neighbours, in their order. */
 typedef struct scree_slot {
   double wake;   /* while they are asleep; -infinity while they are awake */
-  uint32_t a, b; /* places in world->wake_threshold */
+  uint32_t a, b; /* places in wake_threshold */
 } scree_slot;
 
 typedef struct scree_broad scree_broad;
@@ -348,6 +372,16 @@ typedef scree_status scree_packer(const void *what, unsigned char **bytes, size_
                                   scree_error *error);
 
 /* ---- joints ---- */
+
+/* Of a joint's material, Pa; friction and N/m beside. */
+typedef struct scree_joint_strength {
+  double tension, cohesion, friction, toughness;
+} scree_joint_strength;
+
+/* J since the start. */
+typedef struct scree_joint_spent {
+  double fracture, rubbed, damped;
+} scree_joint_spent;
 
 /* From pa on, numbers alone: a checkpoint takes them as they stand. */
 typedef struct scree_world_joint {
@@ -360,11 +394,11 @@ typedef struct scree_world_joint {
   vec3 damping, turning_damping;
   vec3 moduli;
   double area, reach[2];
-  double tension, cohesion, friction, toughness;
-  double anchor[2];                /* of a cracked one's tangential spring, along y and z */
-  double energy, load;             /* J and share of strength, of the last step */
-  double fracture, rubbed, damped; /* J since the start */
-  double broke_at;                 /* s; NaN: it has not */
+  scree_joint_strength strength;
+  double anchor[2];    /* of a cracked one's tangential spring, along y and z */
+  double energy, load; /* J and share of strength, of the last step */
+  scree_joint_spent spent;
+  double broke_at;          /* s; NaN: it has not */
   vec3 force, moment;       /* of the last step, on b, in the joint's frame, without dashpots */
   scree_wrench dashpot;     /* of the last step, on b, in the joint's frame */
   scree_pair_wrench wrench; /* of the last step, all */
@@ -394,50 +428,33 @@ enum {
   SCREE_ALL_PARTS = 63
 };
 
-struct scree_world {
-  scree_world_options options;
-  scree_material materials[SCREE_MATERIALS];
+/* Materials, what they are to each other, and what springs between them came to. */
+typedef struct scree_materials {
+  scree_material items[SCREE_MATERIALS];
+  size_t count;
   scree_material_pair contacts[SCREE_MATERIALS][SCREE_MATERIALS];
-  size_t material_count;
-  scree_bodies bodies;
-  struct {
-    scree_world_wall *items;
-    size_t count, capacity;
-  } walls;
-  struct {
-    scree_motion_state *items; /* in the walls' order */
-    size_t count, capacity;
-  } motions;
-  struct {
-    scree_motion_row *items; /* in the motions' order */
-    size_t count, capacity;
-  } motion_rows;
+  scree_hardening hardened[SCREE_MATERIALS * (SCREE_MATERIALS + 1) / 2]; /* scree_hardened_at */
+} scree_materials;
+
+/* Who is near whom, but for two spheres: made by the broad phase, and kept until it ends. Arrays
+ * are of the neighbours where nothing else is said. */
+typedef struct scree_neighbour_list {
   struct {
     scree_neighbours *items; /* sorted by a, then bodies before walls, then b */
     size_t count, capacity;
   } neighbours;
   struct {
-    uint32_t *items; /* of the neighbours, indices into pairs; scree_none: asleep, or new */
+    uint32_t *items; /* indices into pairs; scree_none: asleep, or new */
     size_t count, capacity;
   } pair_of;
   struct {
-    scree_balance *items; /* of the neighbours */
+    scree_balance *items;
     size_t count, capacity;
   } ledger;
   struct {
-    scree_pair *items; /* awake, or spare */
-    size_t count, capacity;
-  } pairs;
-  struct {
-    uint32_t *items; /* pairs of no neighbours; the last is taken first */
-    size_t capacity;
-    atomic_int_least64_t count; /* below 0 when a step asked for more than there were */
-  } spare_pairs;
-  scree_pools pools;
-  struct {
     scree_slot *items;
     size_t count, capacity;
-  } slots; /* of the neighbours */
+  } slots;
   struct {
     double *items;
     size_t count, capacity;
@@ -454,15 +471,23 @@ struct scree_world {
   struct {
     uint32_t *items; /* 2 * neighbours + (1 for the b side), grouped by body, ascending */
     size_t count, capacity;
-  } sides, acting; /* acting: scratch, those that touch */
+  } sides, acting;      /* acting: scratch, those that touch */
+  uint32_t *side_begin; /* bodies.capacity + 1 */
   struct {
     uint32_t *items; /* those of the neighbours that are a body and a wall */
     size_t count, capacity;
   } wall_pairs;
-  scree_spheres spheres; /* pairs of two are there, and no neighbours */
-  uint32_t *side_begin;  /* bodies.capacity + 1 */
-  size_t *offenders;     /* scratch of the gathering, by block */
-  scree_broad *broad;
+  double *body_path_at_build; /* path of each body when it was made; below 0: put elsewhere */
+  double margin;              /* by which bodies' boxes were grown, m */
+  size_t body_count;          /* for which it was made */
+  bool stale;
+} scree_neighbour_list;
+
+/* What a step needs room for, and leaves nothing in. */
+typedef struct scree_workspace {
+  scree_scratch *scratch; /* one per worker */
+  int scratch_count;
+  size_t *offenders; /* of the gathering, by block */
   struct {
     uint32_t *items; /* indices of neighbours, from where their blocks begin; behind, pairs given */
     size_t count, capacity;
@@ -471,20 +496,54 @@ struct scree_world {
     scree_pair_progress *items;
     size_t count, capacity;
   } progress;
-  scree_scratch *scratch; /* one per worker */
-  int scratch_count;
-  double
-      *body_path_at_build; /* path of each body when the pairs were made; below 0: put elsewhere */
+} scree_workspace;
+
+/* Where the world is stepped. */
+typedef struct scree_residence {
+  const struct scree_backend *backend; /* NULL: what scree_set_backend chose */
+  int device;
+  double alone_seconds;                 /* of the last steps by one thread (cpu.c) */
+  const struct scree_remote *remote;    /* of who has on_device (remote.h) */
+  struct scree_device_world *on_device; /* cuda_state.h; NULL: it never was on one */
+  struct scree_sums *sums;              /* of a device: what the parts of an observation come to */
+} scree_residence;
+
+struct scree_world {
+  scree_world_options options;
+  scree_materials materials;
+  scree_bodies bodies;
+  struct {
+    scree_world_wall *items;
+    size_t count, capacity;
+  } walls;
+  struct {
+    scree_motion_state *items; /* in the walls' order */
+    size_t count, capacity;
+  } motions;
+  struct {
+    scree_motion_row *items; /* in the motions' order */
+    size_t count, capacity;
+  } motion_rows;
+  scree_neighbour_list list;
+  struct {
+    scree_pair *items; /* awake, or spare */
+    size_t count, capacity;
+  } pairs;
+  struct {
+    uint32_t *items; /* pairs of no neighbours; the last is taken first */
+    size_t capacity;
+    atomic_int_least64_t count; /* below 0 when a step asked for more than there were */
+  } spare_pairs;
+  scree_pools pools;
+  scree_spheres spheres; /* pairs of two are there, and no neighbours */
+  scree_broad *broad;
   scree_joints joints;
-  double margin; /* by which bodies' boxes are grown when the pairs are made, m */
-  bool pairs_stale;
-  size_t listed_bodies; /* for which neighbours were made */
+  scree_workspace workspace;
   double time, time_step;
   double hit_speed; /* m/s, of Hertz's hits, which the automatic step follows; 0: 1 */
   bool time_step_stale;
   uint64_t step_count, depenetration_count;
   double largest_overlap;
-  scree_hardening hardened[SCREE_MATERIALS * (SCREE_MATERIALS + 1) / 2]; /* scree_hardened_at */
   bool diverged;
   scree_error failure;
   size_t failed_wall; /* 1 and the index of the wall that the failure names; 0: none */
@@ -497,41 +556,36 @@ struct scree_world {
     size_t byte_count;
   } kept;
   scree_timings timings;
-  double alone_seconds;                /* of the last steps by one thread (cpu.c) */
-  const struct scree_backend *backend; /* NULL: what scree_set_backend chose */
-  int device;
-  const struct scree_remote *remote;    /* of who has on_device (remote.h) */
-  struct scree_device_world *on_device; /* cuda_state.h; NULL: it never was on one */
-  struct scree_sums *sums;              /* of a device: what the parts of an observation come to */
+  scree_residence residence;
 };
 
-/* The place of two materials in world->hardened. */
+/* The place of two materials in materials.hardened. */
 static inline size_t scree_hardened_at(size_t a, size_t b) {
   const size_t low = a < b ? a : b, high = a < b ? b : a;
   return high * (high + 1) / 2 + low;
 }
 /* The pair of these neighbours; NULL: they are asleep, or new. */
 static inline scree_pair *scree_pair_of(const scree_world *world, size_t neighbours) {
-  uint32_t pair = world->pair_of.items[neighbours];
+  uint32_t pair = world->list.pair_of.items[neighbours];
   return pair == scree_none ? NULL : &world->pairs.items[pair];
 }
 static inline bool scree_pair_touches(const scree_world *world, size_t pair) {
-  return world->touching.items[pair / 64] >> pair % 64 & 1;
+  return world->list.touching.items[pair / 64] >> pair % 64 & 1;
 }
 static inline void scree_mark_touching(scree_world *world, size_t pair, bool touching) {
   uint64_t bit = (uint64_t)1 << pair % 64;
-  atomic_uint_least64_t *word = (atomic_uint_least64_t *)&world->touching.items[pair / 64];
+  atomic_uint_least64_t *word = (atomic_uint_least64_t *)&world->list.touching.items[pair / 64];
   if (touching)
     atomic_fetch_or_explicit(word, bit, memory_order_relaxed);
   else
     atomic_fetch_and_explicit(word, ~bit, memory_order_relaxed);
 }
 static inline void scree_set_body_wake_threshold(scree_world *world, size_t i) {
-  world->wake_threshold.items[i] = world->bodies.path[i] + 2 * world->bodies.travel[i];
+  world->list.wake_threshold.items[i] = world->bodies.path[i] + 2 * world->bodies.travel[i];
 }
 static inline void scree_set_wall_wake_threshold(scree_world *world, size_t w) {
   const scree_world_wall *wall = &world->walls.items[w];
-  world->wake_threshold.items[world->bodies.count + w] = wall->path + 2 * wall->travel;
+  world->list.wake_threshold.items[world->bodies.count + w] = wall->path + 2 * wall->travel;
 }
 static inline const scree_frame *scree_pair_frame_b(const scree_world *w, const scree_pair *p) {
   return p->wall ? &w->walls.items[p->b].frame : &w->bodies.frame[p->b];
@@ -587,7 +641,8 @@ void scree_body_keep_orientation(scree_world *world, size_t index, const double 
 void scree_world_share_walls(scree_world *world, const scree_world *like);
 /* Else it sleeps until the bodies' paths have grown. */
 static inline bool scree_pair_stays_awake(const scree_pair *p) {
-  return p->active.count > 0 || p->depth > 0 || p->depenetrating || p->substeps > 1 || p->touching;
+  return p->active.count > 0 || p->depth > 0 || p->depenetrating || p->substeps.count > 1 ||
+         p->touching;
 }
 
 /* For runs that may leave the model's range: from now on a checkpoint of the state is kept in

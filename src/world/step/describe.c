@@ -20,7 +20,7 @@ static const char *describe_shape(const scree_particle *p, char text[64]) {
 
 /* The two of a trouble, as neighbours; where a pair of them is. */
 static scree_neighbours neighbours_at(const scree_world *world, uint32_t k) {
-  if (!(k & scree_of_spheres)) return world->neighbours.items[k];
+  if (!(k & scree_of_spheres)) return world->list.neighbours.items[k];
   const scree_pair pair = scree_sphere_pair_of(world, k & ~scree_of_spheres);
   return (scree_neighbours){.a = pair.a, .b = pair.b, .spheres = true, .law = pair.law};
 }
@@ -29,7 +29,7 @@ static scree_neighbours neighbours_at(const scree_world *world, uint32_t k) {
 static scree_pair pair_at(const scree_world *world, uint32_t k) {
   if (k & scree_of_spheres) return scree_sphere_pair_of(world, k & ~scree_of_spheres);
   const scree_pair *pair = scree_pair_of(world, k);
-  const scree_neighbours *n = &world->neighbours.items[k];
+  const scree_neighbours *n = &world->list.neighbours.items[k];
   return pair ? *pair : (scree_pair){.a = n->a, .b = n->b, .wall = n->wall, .list = n->list};
 }
 
@@ -77,15 +77,16 @@ static double relative_speed(const scree_world *world, const scree_neighbours *n
 static uint32_t find_counterforce(const scree_world *world, uint32_t k, bool of_b) {
   const scree_pair two = pair_at(world, k);
   const uint32_t body = of_b ? two.b : two.a;
-  const size_t neighbours = world->neighbours.count, pairs = world->spheres.list.pairs.count;
-  double most = 0.5 * vec3_norm2(two.wrench.force);
+  const size_t neighbours = world->list.neighbours.count, pairs = world->spheres.list.pairs.count;
+  double most = 0.5 * vec3_norm2(two.contact.wrench.force);
   uint32_t found = scree_none;
   for (size_t i = 0; i < neighbours + pairs; i++) {
     const uint32_t at = (uint32_t)(i < neighbours ? i : (i - neighbours) | scree_of_spheres);
     const scree_pair other = pair_at(world, at);
     const bool is_b = !other.wall && other.b == body;
     if (at == k || !other.touching || !(other.a == body || is_b)) continue;
-    double against = vec3_dot(two.wrench.force, other.wrench.force) * (is_b == of_b ? -1 : 1);
+    double against =
+        vec3_dot(two.contact.wrench.force, other.contact.wrench.force) * (is_b == of_b ? -1 : 1);
     if (against > most) most = against, found = at;
   }
   return found;
@@ -113,7 +114,7 @@ static bool describe_pinch(const scree_world *world, uint32_t k, char text[256])
            "that moves presses as hard as it takes, leave it more room there or less friction",
            at.x, at.y, at.z, body, n->wall ? "wall" : "body", of_b ? n->a : n->b,
            m->wall ? "wall" : "body", m->a == body ? m->b : m->a,
-           vec3_norm(pair_at(world, k).wrench.force));
+           vec3_norm(pair_at(world, k).contact.wrench.force));
   return true;
 }
 
@@ -125,7 +126,7 @@ static scree_status describe_pressed(scree_world *world, uint32_t k) {
                     "world: step %llu, body %u is pressed through %s %u: by %.3g m, which no "
                     "spring holds%s",
                     (unsigned long long)world->step_count, n->a, n->wall ? "wall" : "body", n->b,
-                    pair_at(world, k).overlap, demand);
+                    pair_at(world, k).contact.overlap, demand);
 }
 
 static scree_status describe_passed(scree_world *world, uint32_t k) {

@@ -18,11 +18,11 @@ enum { BODY_BLOCK = 128 };
 /* Lists the sides of bodies [begin, end) that touch, and where each body's end. Without
  * branches: which of them do is as good as random. */
 static uint32_t *list_acting(scree_world *world, size_t begin, size_t end, size_t *ends) {
-  uint32_t *acting = &world->acting.items[world->side_begin[begin]];
-  size_t count = 0, k = world->side_begin[begin];
+  uint32_t *acting = &world->list.acting.items[world->list.side_begin[begin]];
+  size_t count = 0, k = world->list.side_begin[begin];
   for (size_t i = begin; i < end; i++) {
-    for (const size_t last = world->side_begin[i + 1]; k < last; k++) {
-      uint32_t side = acting[count] = world->sides.items[k];
+    for (const size_t last = world->list.side_begin[i + 1]; k < last; k++) {
+      uint32_t side = acting[count] = world->list.sides.items[k];
       count += scree_pair_touches(world, side >> 1);
     }
     ends[i - begin] = count;
@@ -54,7 +54,7 @@ static void sum_forces(scree_world *world, size_t i, const uint32_t *acting, siz
   for (size_t k = from; k < to; k++) {
     if (k + FORCES_AHEAD < count)
       scree_prefetch(scree_pair_of(world, acting[k + FORCES_AHEAD] >> 1), 128);
-    const scree_pair_wrench *w = &scree_pair_of(world, acting[k] >> 1)->wrench;
+    const scree_pair_wrench *w = &scree_pair_of(world, acting[k] >> 1)->contact.wrench;
     bool of_b = acting[k] & 1;
     force = vec3_mad(force, w->force, of_b ? -1 : 1);
     torque = vec3_add(torque, of_b ? w->torque_b : w->torque_a);
@@ -144,11 +144,11 @@ scree_status scree_describe_offender(scree_world *world, size_t i) {
 }
 
 bool scree_world_gather(scree_world *world) {
-  gathering g = {world, world->offenders};
+  gathering g = {world, world->workspace.offenders};
   scree_parallel_for(world->bodies.count, BODY_BLOCK, gather_block, &g);
   size_t blocks = scree_block_count(world->bodies.count, BODY_BLOCK);
   for (size_t block = 0; block < blocks; block++) {
-    size_t i = world->offenders[block];
+    size_t i = world->workspace.offenders[block];
     if (i == SIZE_MAX) continue;
     scree_describe_offender(world, i);
     return false;

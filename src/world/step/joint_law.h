@@ -86,7 +86,7 @@ static inline double scree_joint_gap(const scree_joint_strain *s, double y, doub
 static inline double scree_joint_slide(scree_world_joint *j, const scree_joint_strain *s,
                                        double pressing) {
   double y = s->d.y - j->anchor[0], z = s->d.z - j->anchor[1], k = j->stiffness.y,
-         force = k * sqrt(y * y + z * z), most = j->friction * pressing;
+         force = k * sqrt(y * y + z * z), most = j->strength.friction * pressing;
   if (!(force > most)) return 0;
   double kept = most / force;
   j->anchor[0] = s->d.y - kept * y;
@@ -139,10 +139,11 @@ static inline double scree_joint_use(const scree_world_joint *j, const scree_joi
          bending = fabs(moment.y) / j->moduli.y + fabs(moment.z) / j->moduli.z,
          shear = sqrt(l->force.y * l->force.y + l->force.z * l->force.z) / j->area +
                  fabs(moment.x) / j->moduli.x,
-         limit = j->cohesion + j->friction * scree_larger(0, -s);
-  double use = 0, uses[3] = {j->tension > 0 ? (s + bending) / j->tension : 0,
-                             j->cohesion > 0 ? shear / limit : 0,
-                             j->toughness > 0 ? l->energy / (j->area * j->toughness) : 0};
+         limit = j->strength.cohesion + j->strength.friction * scree_larger(0, -s);
+  double use = 0,
+         uses[3] = {j->strength.tension > 0 ? (s + bending) / j->strength.tension : 0,
+                    j->strength.cohesion > 0 ? shear / limit : 0,
+                    j->strength.toughness > 0 ? l->energy / (j->area * j->strength.toughness) : 0};
   for (int k = 0; k < 3; k++)
     if (uses[k] > use) use = uses[k], *mode = (uint8_t)(SCREE_JOINT_BY_TENSION + k);
   return use;
@@ -186,9 +187,9 @@ static inline void scree_joint_damp(scree_world_joint *j, const scree_joint_stra
     moment = vec3_neg(scree_by_component(j->turning_damping, spin));
   }
   scree_joint_slip(s, a, b, false, &velocity, &spin);
-  j->damped -= 0.5 * dt *
-               (vec3_dot(vec3_add(force, j->dashpot.force), velocity) +
-                vec3_dot(vec3_add(moment, j->dashpot.moment), spin));
+  j->spent.damped -= 0.5 * dt *
+                     (vec3_dot(vec3_add(force, j->dashpot.force), velocity) +
+                      vec3_dot(vec3_add(moment, j->dashpot.moment), spin));
   j->dashpot = (scree_wrench){force, moment};
   vec3 f = mat3_mul_vec(&s->turned, force), m = mat3_mul_vec(&s->turned, moment);
   vec3 arm_a = vec3_sub(s->middle, a->frame->position),
@@ -212,7 +213,7 @@ static inline scree_joint_load scree_joint_try(scree_world_joint *j, const scree
   scree_joint_load cracked = scree_joint_cracked(j, s);
   (void)scree_joint_slide(j, s, cracked.force.x);
   cracked = scree_joint_cracked(j, s);
-  j->fracture = whole.energy - cracked.energy;
+  j->spent.fracture = whole.energy - cracked.energy;
   return (scree_joint_load){cracked.energy, vec3_scale(vec3_add(whole.force, cracked.force), 0.5),
                             vec3_scale(vec3_add(whole.slope, cracked.slope), 0.5)};
 }
@@ -227,7 +228,7 @@ static inline bool scree_joint_evaluate(scree_world_joint *j, const scree_joint_
   if (before == SCREE_JOINT_WHOLE) {
     l = scree_joint_try(j, &s);
   } else {
-    j->rubbed += scree_joint_slide(j, &s, scree_joint_cracked(j, &s).force.x);
+    j->spent.rubbed += scree_joint_slide(j, &s, scree_joint_cracked(j, &s).force.x);
     l = scree_joint_cracked(j, &s);
   }
   if (before == SCREE_JOINT_WHOLE) {
@@ -239,7 +240,7 @@ static inline bool scree_joint_evaluate(scree_world_joint *j, const scree_joint_
   j->moment = scree_joint_moment(&s, l.slope);
   scree_joint_apply(&s, l.force, j->moment, &j->wrench);
   if (j->state == SCREE_JOINT_CRACKED && scree_joint_is_open(j, &s)) {
-    j->fracture += j->energy; /* of one that slid off its face */
+    j->spent.fracture += j->energy; /* of one that slid off its face */
     j->energy = 0;
     j->state = SCREE_JOINT_OPEN;
   }

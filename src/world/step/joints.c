@@ -56,7 +56,7 @@ void scree_world_observe_joint(const scree_world *world, size_t index, scree_joi
                                  .area = j->area,
                                  .load = j->load,
                                  .energy = j->energy,
-                                 .fracture = j->fracture,
+                                 .fracture = j->spent.fracture,
                                  .broke_at = j->broke_at};
   vec3_store(o->position, scree_joint_strain_of(j, &a, &b).middle);
   vec3_store(o->force, j->force);

@@ -62,8 +62,8 @@ static void load_setup(loader *l) {
   }
   for (size_t i = 0; i < count && good(l); i++)
     for (size_t j = 0; j <= i; j++) {
-      CODE_REALS(c, &l->world->contacts[i][j]);
-      l->world->contacts[j][i] = l->world->contacts[i][j];
+      CODE_REALS(c, &l->world->materials.contacts[i][j]);
+      l->world->materials.contacts[j][i] = l->world->materials.contacts[i][j];
     }
   scree_code_count(c, &count, 64);
   for (size_t w = 0; w < count && good(l); w++) {
@@ -189,24 +189,24 @@ static bool is_feature(const loader *l, const scree_pair *pair, const scree_feat
 /* Room for the lists of the pair in hand. */
 static bool make_room(loader *l, scree_pair *pair, uint32_t active, uint32_t sleeping) {
   scree_world *world = l->world;
-  scree_neighbours *n = &world->neighbours.items[pair->neighbours];
+  scree_neighbours *n = &world->list.neighbours.items[pair->neighbours];
   for (;;) {
     scree_take_in_hand(&l->scratch, &world->pools, pair, n);
     if (scree_reserve_features(&l->scratch, pair, active) &&
         scree_reserve_sleeping(&l->scratch, sleeping))
       return true;
     if (!scree_pools_grow(&world->pools, world->pairs.items, world->pairs.count,
-                          world->neighbours.items, world->neighbours.count))
+                          world->list.neighbours.items, world->list.neighbours.count))
       return false;
   }
 }
 
 static void load_features(loader *l, scree_pair *pair) {
-  scree_range *sleeping_features = &l->world->neighbours.items[pair->neighbours].sleeping;
+  scree_range *sleeping_features = &l->world->list.neighbours.items[pair->neighbours].sleeping;
   uint32_t active = pair->active.count, sleeping = sleeping_features->count;
   pair->active.count = sleeping_features->count = 0;
   bool awake = active > 0 || (pair->spheres && pair->touching) || pair->depth > 0 ||
-               pair->depenetrating || pair->substeps > 1;
+               pair->depenetrating || pair->substeps.count > 1;
   if ((pair->asleep || pair->touching) && pair->asleep == awake) l->codec.failed = true;
   if (!good(l)) return;
   if (!make_room(l, pair, active, sleeping)) l->codec.out_of_memory = true;
@@ -236,15 +236,15 @@ static bool follows(const scree_neighbours *last, const scree_neighbours *next) 
 
 static void load_pair(loader *l, uint32_t k, uint32_t index) {
   scree_world *world = l->world;
-  scree_neighbours *n = &world->neighbours.items[k];
+  scree_neighbours *n = &world->list.neighbours.items[k];
   scree_pair *pair = &world->pairs.items[index];
   scree_pair_begin(pair, n, k);
   scree_code_pair_state(&l->codec, pair, n);
-  CODE_REALS(&l->codec, &world->ledger.items[k]);
+  CODE_REALS(&l->codec, &world->list.ledger.items[k]);
   load_features(l, pair);
   pair->law = n->law;
   if (scree_pair_stays_awake(pair)) {
-    world->pair_of.items[k] = index;
+    world->list.pair_of.items[k] = index;
   } else {
     scree_pair_end(pair, n);
     scree_pair_give_back(world, index);
@@ -256,8 +256,8 @@ static void load_pairs(loader *l) {
   size_t count = 0;
   scree_code_count(&l->codec, &count, 484);
   if (count >= scree_none) l->codec.failed = true;
-  if (!SCREE_RESERVE(&world->neighbours, count) || !SCREE_RESERVE(&world->pair_of, count) ||
-      !SCREE_RESERVE(&world->ledger, count))
+  if (!SCREE_RESERVE(&world->list.neighbours, count) ||
+      !SCREE_RESERVE(&world->list.pair_of, count) || !SCREE_RESERVE(&world->list.ledger, count))
     l->codec.out_of_memory = true;
   for (uint32_t k = 0; k < count && good(l); k++) {
     scree_neighbours name = {0};
@@ -265,16 +265,16 @@ static void load_pairs(loader *l) {
     bool known =
         name.a < world->bodies.count &&
         (name.wall ? name.b < world->walls.count : name.a < name.b && name.b < world->bodies.count);
-    if (!known || !follows(k ? &world->neighbours.items[k - 1] : NULL, &name))
+    if (!known || !follows(k ? &world->list.neighbours.items[k - 1] : NULL, &name))
       l->codec.failed = true;
     if (!good(l)) return;
     if (atomic_load(&world->spare_pairs.count) == 0 && !scree_pairs_grow(world)) {
       l->codec.out_of_memory = true;
       return;
     }
-    world->neighbours.items[k] = scree_neighbours_new(world, name.a, name.b, name.wall);
-    world->pair_of.items[k] = scree_none;
-    world->neighbours.count++;
+    world->list.neighbours.items[k] = scree_neighbours_new(world, name.a, name.b, name.wall);
+    world->list.pair_of.items[k] = scree_none;
+    world->list.neighbours.count++;
     load_pair(l, k, scree_pair_take(world));
   }
 }
@@ -331,7 +331,7 @@ static void load_tail(loader *l) {
   scree_world_tail tail = {0};
   scree_code_tail(&l->codec, &tail);
   for (size_t i = 0; i < scree_hardening_count(world); i++)
-    scree_code_hardening(&l->codec, &world->hardened[i]);
+    scree_code_hardening(&l->codec, &world->materials.hardened[i]);
   if (l->codec.position != l->codec.count) l->codec.failed = true;
   if (!good(l) || scree_broad_restore(world, tail.margin, &l->error)) return;
   world->time = tail.time;
@@ -343,7 +343,7 @@ static void load_tail(loader *l) {
     world->walls.items[w].work = scree_wall_work(world, w);
   }
   world->depenetration_count = tail.depenetration_count;
-  world->pairs_stale = tail.pairs_stale;
+  world->list.stale = tail.pairs_stale;
   world->time_step_stale = tail.time_step_stale;
   world->diverged = tail.diverged;
   world->failure.status = (scree_status)tail.failure;

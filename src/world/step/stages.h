@@ -5,7 +5,7 @@
 
 #include "world/state/scratch.h"
 
-enum { SCREE_PAIR_BLOCK = 128 }; /* neighbours: whole words of world->touching */
+enum { SCREE_PAIR_BLOCK = 128 }; /* neighbours: whole words of list.touching */
 
 /* step.c: whether neighbours k are awake or have come to their threshold. */
 bool scree_is_awake(const scree_world *world, size_t k);

@@ -21,8 +21,9 @@
 enum { MOST_BLOCKS = 8, LEAST_PARTS = 32 };
 
 bool scree_is_awake(const scree_world *world, size_t k) {
-  const scree_slot *slot = &world->slots.items[k];
-  return world->wake_threshold.items[slot->a] + world->wake_threshold.items[slot->b] >= slot->wake;
+  const scree_slot *slot = &world->list.slots.items[k];
+  return world->list.wake_threshold.items[slot->a] + world->list.wake_threshold.items[slot->b] >=
+         slot->wake;
 }
 
 /* Without branches: one in five is. */
@@ -39,10 +40,10 @@ static size_t list_awake(const scree_world *world, size_t begin, size_t end, uin
 SCREE_PREFETCHES void fetch_pair(const scree_world *world, size_t k) {
   const scree_pair *pair = scree_pair_of(world, k);
   if (pair)
-    scree_prefetch(pair, offsetof(scree_pair, separation));
+    scree_prefetch(pair, offsetof(scree_pair, list));
   else
-    scree_prefetch(&world->neighbours.items[k], sizeof(scree_neighbours));
-  size_t b = world->slots.items[k].b;
+    scree_prefetch(&world->list.neighbours.items[k], sizeof(scree_neighbours));
+  size_t b = world->list.slots.items[k].b;
   if (b < world->bodies.count) scree_prefetch(&world->bodies.frame[b], sizeof(scree_frame));
 }
 
@@ -59,7 +60,7 @@ SCREE_PREFETCHES void fetch_features(const scree_world *world, const scree_pair 
   if (pair->active.count > 1)
     scree_prefetch(features + 1, (pair->active.count - 1) * sizeof *features);
   if (may_wake_features(pair))
-    scree_prefetch(&world->neighbours.items[pair->neighbours].sleeping, 1);
+    scree_prefetch(&world->list.neighbours.items[pair->neighbours].sleeping, 1);
 }
 
 SCREE_PREFETCHES void fetch_faces(const scree_particle *surface,
@@ -87,7 +88,8 @@ SCREE_PREFETCHES void fetch_shapes(const scree_world *world, const scree_pair *p
   }
   if (may_wake_features(pair))
     scree_prefetch(
-        &world->pools.sleeping_features[world->neighbours.items[pair->neighbours].sleeping.first],
+        &world->pools
+             .sleeping_features[world->list.neighbours.items[pair->neighbours].sleeping.first],
         256);
 }
 
@@ -108,9 +110,9 @@ static uint64_t bits_of(double number) {
 static void note_hardened(scree_world *world, const scree_pair *pair, const scree_pair_work *work) {
   const uint8_t *materials = world->bodies.material;
   const size_t of_b = pair->wall ? world->walls.items[pair->b].given.material : materials[pair->b];
-  scree_hardening *h = &world->hardened[scree_hardened_at(materials[pair->a], of_b)];
+  scree_hardening *h = &world->materials.hardened[scree_hardened_at(materials[pair->a], of_b)];
   if (work->begins_hardening) scree_atomic_add(&h->count, 1);
-  scree_atomic_raise(&h->deepest, bits_of(pair->overlap / pair->law.limit));
+  scree_atomic_raise(&h->deepest, bits_of(pair->contact.overlap / pair->law.limit));
   scree_atomic_raise(&h->missing, bits_of(work->missing));
 }
 
@@ -130,7 +132,7 @@ void scree_note_pair(scree_world *world, scree_tally *tally, const scree_pair *p
     scree_atomic_add(&tally->hardened, 1);
     note_hardened(world, pair, work);
   }
-  if (pair->touching) scree_note_overlap(tally, pair->overlap);
+  if (pair->touching) scree_note_overlap(tally, pair->contact.overlap);
 }
 
 double scree_largest_overlap(const scree_tally *tally) {
@@ -140,31 +142,31 @@ double scree_largest_overlap(const scree_tally *tally) {
 }
 
 uint32_t scree_pair_at(scree_world *world, uint32_t k) {
-  uint32_t pair = world->pair_of.items[k];
+  uint32_t pair = world->list.pair_of.items[k];
   if (pair != scree_none) return pair;
   pair = scree_pair_take(world);
   if (pair == scree_none) return pair;
-  scree_pair_begin(&world->pairs.items[pair], &world->neighbours.items[k], k);
-  return world->pair_of.items[k] = pair;
+  scree_pair_begin(&world->pairs.items[pair], &world->list.neighbours.items[k], k);
+  return world->list.pair_of.items[k] = pair;
 }
 
 bool scree_settle_pair(scree_world *world, const scree_pair *pair) {
   uint32_t k = pair->neighbours;
-  scree_slot *slot = &world->slots.items[k];
+  scree_slot *slot = &world->list.slots.items[k];
   if (pair->touching != scree_pair_touches(world, k)) scree_mark_touching(world, k, pair->touching);
   if (scree_pair_stays_awake(pair)) {
     slot->wake = -INFINITY;
     return false;
   }
-  scree_neighbours *n = &world->neighbours.items[k];
+  scree_neighbours *n = &world->list.neighbours.items[k];
   scree_pair_end(pair, n);
   slot->wake = pair->asleep ? n->wake : -INFINITY;
-  world->pair_of.items[k] = scree_none;
+  world->list.pair_of.items[k] = scree_none;
   return true;
 }
 
 bool scree_needs_no_pair(scree_world *world, uint32_t k) {
-  return world->pair_of.items[k] == scree_none && world->neighbours.items[k].spheres &&
+  return world->list.pair_of.items[k] == scree_none && world->list.neighbours.items[k].spheres &&
          scree_spheres_stay_apart(world, k);
 }
 
@@ -172,12 +174,12 @@ bool scree_needs_no_pair(scree_world *world, uint32_t k) {
 static bool evaluate_pair(scree_world *world, scree_pair *pair, scree_scratch *scratch,
                           scree_pair_progress *part) {
   uint32_t k = pair->neighbours;
-  scree_take_in_hand(scratch, &world->pools, pair, &world->neighbours.items[k]);
+  scree_take_in_hand(scratch, &world->pools, pair, &world->list.neighbours.items[k]);
   if (pair->spheres)
     scree_spheres_evaluate(world, pair, scratch, NULL);
   else if (!scree_pair_evaluate(world, pair, scratch))
     return false;
-  scree_balance_add(&world->ledger.items[k], &scratch->work);
+  scree_balance_add(&world->list.ledger.items[k], &scratch->work);
   scree_note_pair(world, &part->tally, pair, &scratch->work);
   if (part->tally.trouble.start == k) part->tally.trouble.start_depth = scratch->work.start_depth;
   return true;
@@ -194,7 +196,7 @@ SCREE_PREFETCHES void fetch_ahead(const scree_world *world, const uint32_t *awak
 
 static void begin_blocks(scree_world *world, size_t begin, size_t end,
                          scree_pair_progress *progress) {
-  uint32_t *awake = &world->awake.items[begin];
+  uint32_t *awake = &world->workspace.awake.items[begin];
   *progress = (scree_pair_progress){.awake = (uint32_t)list_awake(world, begin, end, awake),
                                     .tally = {.trouble = scree_no_trouble}};
   for (size_t k = 0; k < PAIRS_AHEAD && k < progress->awake; k++) fetch_pair(world, awake[k]);
@@ -204,8 +206,8 @@ static void begin_blocks(scree_world *world, size_t begin, size_t end,
  */
 static void evaluate_blocks(void *context, scree_block block) {
   scree_world *world = context;
-  scree_pair_progress *progress = &world->progress.items[block.index];
-  uint32_t *awake = &world->awake.items[block.begin];
+  scree_pair_progress *progress = &world->workspace.progress.items[block.index];
+  uint32_t *awake = &world->workspace.awake.items[block.begin];
   if (progress->done == 0) begin_blocks(world, block.begin, block.end, progress);
   const size_t count = progress->awake;
   size_t i = progress->done;
@@ -215,32 +217,33 @@ static void evaluate_blocks(void *context, scree_block block) {
     uint32_t index = scree_pair_at(world, awake[i]);
     if (index == scree_none) break;
     scree_pair *pair = &world->pairs.items[index];
-    if (!evaluate_pair(world, pair, &world->scratch[block.worker], progress)) break;
+    if (!evaluate_pair(world, pair, &world->workspace.scratch[block.worker], progress)) break;
     if (scree_settle_pair(world, pair)) awake[progress->given++] = index;
   }
   progress->done = (uint32_t)i;
 }
 
 static size_t pairs_at_once(const scree_world *world) {
-  size_t blocks = scree_block_count(world->neighbours.count, SCREE_PAIR_BLOCK) / LEAST_PARTS;
+  size_t blocks = scree_block_count(world->list.neighbours.count, SCREE_PAIR_BLOCK) / LEAST_PARTS;
   return SCREE_PAIR_BLOCK * (blocks < 1 ? 1 : blocks > MOST_BLOCKS ? MOST_BLOCKS : blocks);
 }
 
 static bool all_done(const scree_world *world, size_t parts) {
   for (size_t p = 0; p < parts; p++)
-    if (world->progress.items[p].done < world->progress.items[p].awake) return false;
+    if (world->workspace.progress.items[p].done < world->workspace.progress.items[p].awake)
+      return false;
   return true;
 }
 
 /* For what the workers asked for in vain. */
 static bool make_room(scree_world *world) {
   if (atomic_load(&world->spare_pairs.count) < 0 && !scree_pairs_grow(world)) return false;
-  for (int i = 0; i < world->scratch_count; i++) {
-    scree_scratch *scratch = &world->scratch[i];
+  for (int i = 0; i < world->workspace.scratch_count; i++) {
+    scree_scratch *scratch = &world->workspace.scratch[i];
     if (!SCREE_RESERVE(&scratch->contacts, scratch->contacts_needed)) return false;
   }
   return scree_pools_grow(&world->pools, world->pairs.items, world->pairs.count,
-                          world->neighbours.items, world->neighbours.count);
+                          world->list.neighbours.items, world->list.neighbours.count);
 }
 
 /* The first of all. */
@@ -261,9 +264,9 @@ static void add_tally(scree_world *world, scree_trouble *trouble, const scree_ta
 }
 
 static scree_status evaluate_pairs(scree_world *world) {
-  size_t count = world->neighbours.count, size = pairs_at_once(world),
+  size_t count = world->list.neighbours.count, size = pairs_at_once(world),
          parts = scree_block_count(count, size);
-  for (size_t p = 0; p < parts; p++) world->progress.items[p] = (scree_pair_progress){0};
+  for (size_t p = 0; p < parts; p++) world->workspace.progress.items[p] = (scree_pair_progress){0};
   scree_parallel_for(count, size, evaluate_blocks, world);
   while (!all_done(world, parts)) {
     if (!make_room(world))
@@ -273,9 +276,9 @@ static scree_status evaluate_pairs(scree_world *world) {
   scree_trouble trouble = scree_no_trouble;
   world->largest_overlap = 0;
   for (size_t p = 0; p < parts; p++) {
-    const scree_pair_progress *part = &world->progress.items[p];
+    const scree_pair_progress *part = &world->workspace.progress.items[p];
     for (uint32_t i = 0; i < part->given; i++)
-      scree_pair_give_back(world, world->awake.items[p * size + i]);
+      scree_pair_give_back(world, world->workspace.awake.items[p * size + i]);
     add_tally(world, &trouble, &part->tally);
   }
   scree_step_spheres(world);
@@ -285,18 +288,18 @@ static scree_status evaluate_pairs(scree_world *world) {
 }
 
 scree_status scree_reserve_blocks(scree_world *world, scree_error *error) {
-  size_t blocks = scree_block_count(world->neighbours.count, SCREE_PAIR_BLOCK);
-  if (!SCREE_RESERVE(&world->progress, blocks) ||
-      !SCREE_RESERVE(&world->awake, world->neighbours.count))
-    return scree_fail_memory(error, blocks * sizeof *world->progress.items, "pairs");
+  size_t blocks = scree_block_count(world->list.neighbours.count, SCREE_PAIR_BLOCK);
+  if (!SCREE_RESERVE(&world->workspace.progress, blocks) ||
+      !SCREE_RESERVE(&world->workspace.awake, world->list.neighbours.count))
+    return scree_fail_memory(error, blocks * sizeof *world->workspace.progress.items, "pairs");
   int workers = scree_worker_count();
-  if (workers <= world->scratch_count) return SCREE_OK;
-  scree_scratch *scratch = scree_resize(world->scratch, (size_t)workers, sizeof *scratch);
+  if (workers <= world->workspace.scratch_count) return SCREE_OK;
+  scree_scratch *scratch = scree_resize(world->workspace.scratch, (size_t)workers, sizeof *scratch);
   if (!scratch) return scree_fail_memory(error, (size_t)workers * sizeof *scratch, "scratch");
-  memset(scratch + world->scratch_count, 0,
-         (size_t)(workers - world->scratch_count) * sizeof *scratch);
-  world->scratch = scratch;
-  world->scratch_count = workers;
+  memset(scratch + world->workspace.scratch_count, 0,
+         (size_t)(workers - world->workspace.scratch_count) * sizeof *scratch);
+  world->workspace.scratch = scratch;
+  world->workspace.scratch_count = workers;
   return SCREE_OK;
 }
 
@@ -323,6 +326,6 @@ scree_status scree_take_step(scree_world *world) {
   timings->bodies += end - after_contacts;
   timings->total += end - start;
   timings->steps++;
-  timings->pair_evaluations += world->neighbours.count + world->spheres.list.pairs.count;
+  timings->pair_evaluations += world->list.neighbours.count + world->spheres.list.pairs.count;
   return status;
 }

@@ -64,11 +64,10 @@ static void consider(const scree_world *world, const scree_contact_sides *sides,
                      const fastest_contact *between, fastest_contact *fastest) {
   scree_pair_law law;
   scree_set_stiffness(world, sides, &law);
-  const double e = world->contacts[sides->material_a][sides->material_b].given.restitution,
-               steeper = world->options.law == SCREE_LAW_HYSTERETIC
-                             ? scree_min(1, e / least_unloading)
-                             : 1,
-               square = sides->mass / law.stiffness * steeper * steeper;
+  const double
+      e = world->materials.contacts[sides->material_a][sides->material_b].given.restitution,
+      steeper = world->options.law == SCREE_LAW_HYSTERETIC ? scree_min(1, e / least_unloading) : 1,
+      square = sides->mass / law.stiffness * steeper * steeper;
   if (!(square < fastest->square)) return;
   *fastest = *between;
   fastest->square = square;

@@ -78,7 +78,7 @@ scree_status scree_world_create(const scree_world_options *options, scree_world 
   scree_world *made = scree_alloc_zero(1, sizeof *made);
   if (!made) return scree_fail_memory(error, sizeof *made, "a world");
   made->options = o;
-  made->pairs_stale = true;
+  made->list.stale = true;
   made->time_step_stale = true;
   *world = made;
   return SCREE_OK;
@@ -86,31 +86,32 @@ scree_status scree_world_create(const scree_world_options *options, scree_world 
 
 void scree_world_free(scree_world *world) {
   if (!world) return;
-  if (world->on_device) world->remote->release(world);
+  if (world->residence.on_device) world->residence.remote->release(world);
   scree_bodies_free(world);
   for (size_t i = 0; i < world->walls.count; i++)
     scree_particle_free(world->walls.items[i].surface);
   scree_free(world->walls.items);
   scree_joints_free(&world->joints);
-  scree_free(world->wall_pairs.items);
+  scree_free(world->list.wall_pairs.items);
   scree_free(world->motions.items);
   scree_free(world->motion_rows.items);
-  scree_free(world->neighbours.items);
-  scree_free(world->pair_of.items);
+  scree_free(world->list.neighbours.items);
+  scree_free(world->list.pair_of.items);
   scree_free(world->pairs.items);
   scree_free(world->spare_pairs.items);
   scree_pools_free(&world->pools);
-  scree_free(world->slots.items);
-  scree_free(world->wake_threshold.items);
-  scree_free(world->touching.items);
-  scree_free(world->keys.items);
-  scree_free(world->sides.items);
-  scree_free(world->acting.items);
-  scree_free(world->ledger.items);
-  scree_free(world->awake.items);
-  scree_free(world->progress.items);
-  for (int i = 0; i < world->scratch_count; i++) scree_free(world->scratch[i].contacts.items);
-  scree_free(world->scratch);
+  scree_free(world->list.slots.items);
+  scree_free(world->list.wake_threshold.items);
+  scree_free(world->list.touching.items);
+  scree_free(world->list.keys.items);
+  scree_free(world->list.sides.items);
+  scree_free(world->list.acting.items);
+  scree_free(world->list.ledger.items);
+  scree_free(world->workspace.awake.items);
+  scree_free(world->workspace.progress.items);
+  for (int i = 0; i < world->workspace.scratch_count; i++)
+    scree_free(world->workspace.scratch[i].contacts.items);
+  scree_free(world->workspace.scratch);
   scree_spheres_free(world);
   scree_broad_free(world);
   scree_free(world->kept.path);
@@ -132,11 +133,11 @@ uint64_t scree_world_step_count(const scree_world *world) {
 
 void scree_world_timings(const scree_world *world, scree_timings *timings) {
   *timings = world->timings;
-  for (int i = 0; i < world->scratch_count; i++) {
-    const scree_scratch *s = &world->scratch[i];
-    timings->feature_evaluations += s->feature_evaluations;
-    timings->closest_queries += s->closest_queries;
-    timings->list_builds += s->list_builds;
-    timings->candidates += s->candidate_seconds;
+  for (int i = 0; i < world->workspace.scratch_count; i++) {
+    const scree_scratch *s = &world->workspace.scratch[i];
+    timings->feature_evaluations += s->counters.feature_evaluations;
+    timings->closest_queries += s->counters.closest_queries;
+    timings->list_builds += s->counters.list_builds;
+    timings->candidates += s->counters.candidate_seconds;
   }
 }

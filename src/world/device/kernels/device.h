@@ -37,7 +37,7 @@ typedef struct scree_depth_job {
 enum { SCREE_PAIR_NEW, SCREE_PAIR_LISTING, SCREE_PAIR_LISTED, SCREE_PAIR_READY, SCREE_PAIR_ASKS };
 
 typedef struct scree_device_step {
-  scree_scratch *hands; /* by place in world->awake, as is the next */
+  scree_scratch *hands; /* by place in world->workspace.awake, as is the next */
   uint8_t *progress;
   uint8_t
       *contact_counts; /* of feature pairs, by where their contacts begin in the pool of contacts */

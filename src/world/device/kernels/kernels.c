@@ -61,23 +61,23 @@ static bool is_held(const scree_device_step *step) {
 
 static void do_awake(scree_world *world, scree_device_step *step) {
   if (step->stop || step->resume) return;
-  FOR_EACH (k, world->neighbours.count) {
+  FOR_EACH (k, world->list.neighbours.count) {
     if (!scree_is_awake(world, k) || scree_needs_no_pair(world, (uint32_t)k)) continue;
     uint32_t place = scree_atomic_add(&step->awake_count, 1);
-    world->awake.items[place] = (uint32_t)k;
+    world->workspace.awake.items[place] = (uint32_t)k;
     step->progress[place] = SCREE_PAIR_NEW;
   }
 }
 
 static scree_pair *pair_at(const scree_world *world, size_t place) {
-  return scree_pair_of(world, world->awake.items[place]);
+  return scree_pair_of(world, world->workspace.awake.items[place]);
 }
 
 /* The pair at this place, with its lists in hand. */
 static scree_pair *take_pair(scree_world *world, scree_device_step *step, size_t place) {
   scree_scratch *hand = &step->hands[place];
   scree_pair *pair = pair_at(world, place);
-  scree_take_in_hand(hand, &world->pools, pair, &world->neighbours.items[pair->neighbours]);
+  scree_take_in_hand(hand, &world->pools, pair, &world->list.neighbours.items[pair->neighbours]);
   hand->contacts.items = world->pools.contacts + hand->first_contact;
   return pair;
 }
@@ -146,7 +146,7 @@ static void do_relate(scree_world *world, scree_device_step *step) {
       ask_for_visits(step, take_pair(world, step, place), place);
       continue;
     }
-    if (scree_pair_at(world, world->awake.items[place]) == scree_none) {
+    if (scree_pair_at(world, world->workspace.awake.items[place]) == scree_none) {
       raise_flag(&step->too_small);
       continue;
     }
@@ -248,7 +248,7 @@ static void visit(scree_world *world, scree_device_step *step, const scree_visit
   own.features = hand->features;
   own.further = hand->further;
   own.contacts = (scree_contact_list){world->pools.contacts + first, 0, SCREE_ANCHORS};
-  own.feature_evaluations = own.closest_queries = 0;
+  own.counters.feature_evaluations = own.counters.closest_queries = 0;
   scree_feature_pair *feature = &hand->features[v->feature];
   own.drift = hand->drift;
   feature->gap = scree_feature_contact(world, pair, feature, &hand->relative, &own);
@@ -332,7 +332,7 @@ static void do_contact_law(scree_world *world, scree_device_step *step) {
   FOR_EACH (place, step->awake_count) {
     scree_pair *pair = take_pair(world, step, place);
     scree_scratch *hand = &step->hands[place];
-    uint32_t k = pair->neighbours, index = world->pair_of.items[k];
+    uint32_t k = pair->neighbours, index = world->list.pair_of.items[k];
     if (step->progress[place] == SCREE_PAIR_ASKS)
       scree_pair_take_depths(world, pair, step->depths + hand->first_depth, hand, &hand->work);
     if (pair->spheres) {
@@ -341,7 +341,7 @@ static void do_contact_law(scree_world *world, scree_device_step *step) {
       scree_pair_contact_law(world, pair, hand);
       scree_pair_leave(world, pair, hand);
     }
-    scree_balance_add(&world->ledger.items[k], &hand->work);
+    scree_balance_add(&world->list.ledger.items[k], &hand->work);
     scree_note_pair(world, &step->tally, pair, &hand->work);
     if (scree_settle_pair(world, pair)) scree_pair_give_back(world, index);
   }
@@ -417,7 +417,7 @@ static void do_advance(scree_world *world, scree_device_step *step) {
 /* How deep the pair that overlaps from the start does. */
 static void find_start(const scree_world *world, scree_device_step *step) {
   for (uint32_t place = 0; place < step->awake_count; place++)
-    if (world->awake.items[place] == step->tally.trouble.start)
+    if (world->workspace.awake.items[place] == step->tally.trouble.start)
       step->tally.trouble.start_depth = step->hands[place].work.start_depth;
 }
 

@@ -5,7 +5,7 @@
 #include "world/state/walls.h"
 
 static void sum(scree_world *world, size_t part) {
-  world->sums[part] = scree_sum_part(world, part);
+  world->residence.sums[part] = scree_sum_part(world, part);
 }
 
 STAGE(sums, sum, scree_sum_part_count(world))
