@@ -108,7 +108,15 @@
 #define SCREE_ROW_AS(T, none, key, kind, ...) SCREE_ROW_##kind(T, key, __VA_ARGS__)
 #define SCREE_ROW_OWN(...)
 #define SCREE_ROW_OF(T, key, kind, member, least, most, unit, comment, record)                     \
-  {key, SCREE_FIELD_##kind, offsetof(T, member), least, most, unit, comment, record},
+  {key,                                                                                            \
+   SCREE_FIELD_##kind,                                                                             \
+   offsetof(T, member),                                                                            \
+   sizeof(((T *)0)->member),                                                                       \
+   least,                                                                                          \
+   most,                                                                                           \
+   unit,                                                                                           \
+   comment,                                                                                        \
+   record},
 #define SCREE_ROW_REAL(T, key, member, value, least, most, unit, comment)                          \
   SCREE_ROW_OF(T, key, REAL, member, least, most, unit, comment, NULL)
 #define SCREE_ROW_VECTOR(T, key, member, value, least, most, unit, comment)                        \

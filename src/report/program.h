@@ -1,6 +1,7 @@
 /* What the program writes and draws, of what the public interface gives. */
 #pragma once
 
+#include "base/field.h"
 #include "scree.h"
 
 /* Writes a file of a result: of a scree_choice_report, scree_clump_report, scree_study_result or
@@ -118,18 +119,15 @@ typedef struct scree_curve_row {
 
 /* Its numbers beside the triangle count, in the order of the table: as text, CSV and JSON. */
 typedef struct scree_curve_column {
-  const char *csv, *json, *head; /* names; the last in text, with its unit */
-  double scale;                  /* from m into that unit */
+  scree_field of;          /* of a row; its key in CSV */
+  const char *json, *head; /* names in JSON and in text, with its unit */
+  double scale;            /* from m into that unit */
   struct {
     int width, digits;
-  } text[2];     /* without and with distances; width 0: it is not shown */
-  size_t offset; /* of the value in a row */
+  } text[2]; /* without and with distances; width 0: it is not shown */
 } scree_curve_column;
 enum { SCREE_CURVE_COLUMNS = 12, SCREE_CURVE_DISTANCES = 7 }; /* from the second on, distances */
 extern const scree_curve_column scree_curve_columns[SCREE_CURVE_COLUMNS];
-static inline double scree_curve_value(const scree_curve_row *row, int column) {
-  return *(const double *)(const void *)((const char *)row + scree_curve_columns[column].offset);
-}
 
 /* A table of levels of one curve. Texts are borrowed. */
 typedef struct scree_curve_entry {

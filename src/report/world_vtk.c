@@ -66,12 +66,10 @@ typedef struct surface_row {
   float speed, angular_speed;
 } surface_row;
 
-static const scree_vtk_member surface_members[] = {
-    SCREE_VTK_MEMBER(surface_row, body, "body", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(surface_row, shape, "shape", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(surface_row, material, "material", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(surface_row, speed, "speed", SCREE_VTK_FLOAT32, 1),
-    SCREE_VTK_MEMBER(surface_row, angular_speed, "angular_speed", SCREE_VTK_FLOAT32, 1),
+static const scree_field surface_members[] = {
+    SCREE_FIELD_OF(surface_row, body),          SCREE_FIELD_OF(surface_row, shape),
+    SCREE_FIELD_OF(surface_row, material),      SCREE_FIELD_OF(surface_row, speed),
+    SCREE_FIELD_OF(surface_row, angular_speed),
 };
 
 static void fill_surfaces(const scree_world *world, const scree_shapes *shapes, sheet *s,
@@ -128,15 +126,11 @@ typedef struct point_row {
   double orientation[4], velocity[3], angular_velocity[3], mass, size;
 } point_row;
 
-static const scree_vtk_member point_members[] = {
-    SCREE_VTK_MEMBER(point_row, body, "body", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(point_row, shape, "shape", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(point_row, material, "material", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(point_row, orientation, "orientation", SCREE_VTK_FLOAT64, 4),
-    SCREE_VTK_MEMBER(point_row, velocity, "velocity", SCREE_VTK_FLOAT64, 3),
-    SCREE_VTK_MEMBER(point_row, angular_velocity, "angular_velocity", SCREE_VTK_FLOAT64, 3),
-    SCREE_VTK_MEMBER(point_row, mass, "mass", SCREE_VTK_FLOAT64, 1),
-    SCREE_VTK_MEMBER(point_row, size, "size", SCREE_VTK_FLOAT64, 1),
+static const scree_field point_members[] = {
+    SCREE_FIELD_OF(point_row, body),     SCREE_FIELD_OF(point_row, shape),
+    SCREE_FIELD_OF(point_row, material), SCREE_FIELD_OF(point_row, orientation),
+    SCREE_FIELD_OF(point_row, velocity), SCREE_FIELD_OF(point_row, angular_velocity),
+    SCREE_FIELD_OF(point_row, mass),     SCREE_FIELD_OF(point_row, size),
 };
 
 static scree_status write_points(const scree_world *world, const output_name *to,
@@ -179,16 +173,16 @@ typedef struct pair_row {
   double overlap;
 } pair_row;
 
-static const scree_vtk_member pair_members[] = {
-    SCREE_VTK_MEMBER(pair_row, body, "body", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(pair_row, other, "other", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(pair_row, wall, "wall", SCREE_VTK_UINT8, 1),
-    SCREE_VTK_MEMBER(pair_row, feature_count, "feature_count", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(pair_row, force, "force", SCREE_VTK_FLOAT64, 3),
-    SCREE_VTK_MEMBER(pair_row, normal_force, "normal_force", SCREE_VTK_FLOAT64, 3),
-    SCREE_VTK_MEMBER(pair_row, tangential_force, "tangential_force", SCREE_VTK_FLOAT64, 3),
-    SCREE_VTK_MEMBER(pair_row, place, "place", SCREE_VTK_FLOAT64, 3),
-    SCREE_VTK_MEMBER(pair_row, overlap, "overlap", SCREE_VTK_FLOAT64, 1),
+static const scree_field pair_members[] = {
+    SCREE_FIELD_OF(pair_row, body),
+    SCREE_FIELD_OF(pair_row, other),
+    SCREE_FIELD_OF(pair_row, wall),
+    SCREE_FIELD_OF(pair_row, feature_count),
+    SCREE_FIELD_OF(pair_row, force),
+    SCREE_FIELD_OF(pair_row, normal_force),
+    SCREE_FIELD_OF(pair_row, tangential_force),
+    SCREE_FIELD_OF(pair_row, place),
+    SCREE_FIELD_OF(pair_row, overlap),
 };
 
 typedef struct pair_list {
@@ -431,14 +425,12 @@ static scree_status write_walls(const scree_world *world, const scree_scene *sce
     if (scene) SCREE_TRY(fill_maps(scene, i, begin, &s, rows, error));
   }
   char names[SCREE_MAP_COUNT][32];
-  scree_vtk_member members[2 + SCREE_MAP_COUNT] = {
-      SCREE_VTK_MEMBER(wall_row, wall, "wall", SCREE_VTK_INT64, 1),
-      SCREE_VTK_MEMBER(wall_row, kind, "kind", SCREE_VTK_INT64, 1)};
+  scree_field members[2 + SCREE_MAP_COUNT] = {SCREE_FIELD_OF(wall_row, wall),
+                                              SCREE_FIELD_OF(wall_row, kind)};
   for (size_t m = 0; m < SCREE_MAP_COUNT; m++) {
     snprintf(names[m], sizeof names[m], "%s [%s]", scree_wall_map_name((scree_wall_map)m),
              scree_wall_map_unit((scree_wall_map)m));
-    members[2 + m] = (scree_vtk_member){names[m], SCREE_VTK_FLOAT64, 1,
-                                        offsetof(wall_row, maps) + m * sizeof(double)};
+    members[2 + m] = (scree_field)SCREE_FIELD_AS(wall_row, names[m], maps[m]);
   }
   const scree_vtk_rows table = {rows, sizeof *rows, false, members,
                                 scene ? 2 + SCREE_MAP_COUNT : 2};

@@ -351,7 +351,7 @@ static scree_status record_series(const scree_study *study, const scree_scene *s
   SCREE_TRY_ALLOC(record->series, rows, error);
   record->series_count = rows;
   for (size_t c = 0; c < SCREE_RECORD_COLUMNS; c++) {
-    size_t k = column_in(scene, scree_record_columns[c].of_scene);
+    size_t k = column_in(scene, scree_record_of_scene[c]);
     for (size_t i = 0; i < rows; i++)
       *scree_record_number(&record->series[i], c) =
           k < columns ? series[i * columns + k] : (double)NAN;
