@@ -305,7 +305,7 @@ static void add_body(const exporter *e, size_t index, const scree_mesh *mesh, sc
   scree_body b;
   scree_world_get_body(e->world, index, &b);
   const double *q = b.orientation;
-  const mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  const mat3 turn = quat_to_mat3(quat_load(q));
   for (size_t k = 0; k < 3 * mesh->triangle_count; k++)
     to->triangles[3 * to->triangle_count + k] = mesh->triangles[k] + (uint32_t)to->vertex_count;
   for (size_t v = 0; v < mesh->vertex_count; v++)

@@ -20,6 +20,10 @@ void scree_json_repose(scree_json *json, const scree_repose *h) {
                      OF(h, envelope_volume));
 }
 
+const scree_field scree_pile_rows[SCREE_PILE_ROWS] = {
+    SCREE_FIELD_OF(scree_pile, packing_fraction), SCREE_FIELD_OF(scree_pile, body_count),
+    SCREE_FIELD_IN(scree_pile, "particle_size", "m", size)};
+
 static void put_ground(scree_json *json, const scree_ground *g) {
   scree_json_object(json, "ground");
   scree_json_numbers(json, "up", g->up, 3);

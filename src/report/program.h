@@ -278,6 +278,9 @@ int scree_words_decimals(double spread);
 /* Says a scene, or its first heap where it has one. stopped: why it ended early, or NULL. */
 void scree_scene_words(const scree_scene *scene, const scree_pile *pile, const char *stopped,
                        scree_words *words);
+/* What a pile has beside its heap's angles and lengths. */
+enum { SCREE_PILE_ROWS = 3 };
+extern const scree_field scree_pile_rows[SCREE_PILE_ROWS];
 /* What its methods read beside each other; "" without a heap. */
 void scree_pile_finding(const scree_repose *repose, char *to, size_t size);
 

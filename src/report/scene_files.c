@@ -46,10 +46,9 @@ static void json_pile(scree_json *json, const char *name, const scree_pile_setti
   scree_pile_finding(&pile->repose, finding, sizeof finding);
   scree_json_text(json, "finding", finding);
   scree_json_repose(json, &pile->repose);
-  SCREE_JSON_MEMBERS(json, OF(pile, packing_fraction), OF(pile, body_count),
-                     AS("particle_size", pile->size), OF(settings, cell),
-                     AS("sectors_asked", settings->sectors), OF(settings, band_low),
-                     OF(settings, band_high));
+  for (int i = 0; i < SCREE_PILE_ROWS; i++) scree_json_field(json, &scree_pile_rows[i], pile);
+  SCREE_JSON_MEMBERS(json, OF(settings, cell), AS("sectors_asked", settings->sectors),
+                     OF(settings, band_low), OF(settings, band_high));
   scree_json_end(json);
 }
 

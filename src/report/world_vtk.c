@@ -45,10 +45,6 @@ static void add_mesh(sheet *s, const scree_mesh *mesh, const mat3 *turn, vec3 mo
   s->triangle_count += mesh->triangle_count;
 }
 
-static mat3 turn_of(const double orientation[4]) {
-  return quat_to_mat3((quat){orientation[0], orientation[1], orientation[2], orientation[3]});
-}
-
 static double norm_of(const double v[3]) {
   return vec3_norm(vec3_load(v));
 }
@@ -79,7 +75,7 @@ static void fill_surfaces(const scree_world *world, const scree_shapes *shapes, 
     size_t begin = s->triangle_count;
     if (scree_world_body_removed(world, i)) continue;
     scree_world_get_body(world, i, &state);
-    mat3 turn = turn_of(state.orientation);
+    mat3 turn = quat_to_mat3(quat_load(state.orientation));
     add_mesh(s, scree_shape_surface(shapes, shapes->of_body[i]), &turn, vec3_load(state.position));
     for (size_t t = begin; t < s->triangle_count; t++)
       rows[t] = (surface_row){
@@ -342,7 +338,7 @@ static void add_wall(sheet *s, const scree_world *world, size_t index, const ext
   double orientation[4];
   scree_world_get_wall(world, index, &wall);
   scree_world_wall_orientation(world, index, orientation);
-  mat3 turn = turn_of(orientation);
+  mat3 turn = quat_to_mat3(quat_load(orientation));
   vec3 at = vec3_load(wall.position);
   switch (wall.kind) {
   case SCREE_WALL_PLANE:
@@ -372,7 +368,7 @@ scree_status scree_wall_mesh(const scree_world *world, size_t index, scree_mesh 
   SCREE_TRY(make_room(&s, triangles ? wall.mesh->vertex_count : 2 * ROUND_SIDES + 1,
                       triangles ? wall.mesh->triangle_count : 2 * ROUND_SIDES, error));
   add_wall(&s, world, index, &e);
-  mat3 turn = turn_of(orientation);
+  mat3 turn = quat_to_mat3(quat_load(orientation));
   for (size_t v = 0; v < s.point_count; v++) {
     vec3 p = vec3_sub(vec3_load(s.points + 3 * v), vec3_load(wall.position));
     vec3_store(s.points + 3 * v, mat3_tmul_vec(&turn, p));

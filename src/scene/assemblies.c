@@ -112,10 +112,6 @@ static void move(scree_mesh *mesh, const mat3 *turn, vec3 by) {
                vec3_add(mat3_mul_vec(turn, vec3_load(mesh->positions + 3 * v)), by));
 }
 
-static quat turn_of(const scree_particle_measures *m) {
-  return (quat){m->orientation[0], m->orientation[1], m->orientation[2], m->orientation[3]};
-}
-
 /* A name of the file as one that tables and other programs read. */
 static const char *plain_name(scree_scene *scene, const char *name, size_t number) {
   char text[80];
@@ -140,7 +136,7 @@ static scree_status make_part(scree_scene *scene, size_t index, size_t k, const 
   SCREE_TRY(scree_scene_make_unscaled(&one, folder, c ? 0 : k + 1, making->store, making->progress,
                                       &made, error));
   const scree_particle_measures *m = &made.particle->measures;
-  mat3 turn = quat_to_mat3(turn_of(m));
+  mat3 turn = quat_to_mat3(quat_load(m->orientation));
   vec3 at = vec3_add(vec3_load(m->centre), c ? vec3_load(c->at) : (vec3){0, 0, 0});
   const char *name = c ? c->place.name : plain_name(scene, made.part_name, k + 1);
   scree_mesh mesh = {0};
@@ -284,7 +280,7 @@ static scree_status fill_pieces(scree_scene *scene, size_t index, scree_error *e
                         why.message);
     const scree_particle_measures *m = &s->particle->measures;
     s->at = from->radius > 0 ? from->at : vec3_load(m->centre);
-    s->turned = turn_of(m);
+    s->turned = quat_load(m->orientation);
     s->source = scree_strdup("");
     if (!s->source) return scree_fail_memory(error, 0, "a piece's source");
   }
@@ -457,7 +453,7 @@ static scree_status hold_parts(scree_scene *scene, size_t index, const scree_pro
   const scree_particle *whole = scene->shapes[index].particle;
   const scree_particle_measures *m = &whole->measures;
   double gap = isnan(plan->joints->gap) ? usual_gap * m->size : plan->joints->gap;
-  mat3 turn = quat_to_mat3(quat_conjugate(turn_of(m)));
+  mat3 turn = quat_to_mat3(quat_conjugate(quat_load(m->orientation)));
   if (m->kind == SCREE_PARTICLE_CLUMP) {
     for (size_t i = 0; i < whole->point_count; i++) {
       const piece made = {.at = whole->points[i],

@@ -147,7 +147,7 @@ void scree_scene_measure_shape(scree_scene *scene, size_t index) {
   scree_particle_measures m;
   scree_particle_measure(s->particle, &m);
   s->extent = scree_placement_of(s->particle, 0.5 * clearance_share * m.size);
-  s->as_given = (quat){m.orientation[0], m.orientation[1], m.orientation[2], m.orientation[3]};
+  s->as_given = quat_load(m.orientation);
   s->material = plan->material ? SCREE_PLAN_FIND(scene->plan.materials, plan->material) : 0;
   s->density = plan->density > 0             ? plan->density
                : scene->plan.materials.count ? material_at(scene, s->material)->density

@@ -21,7 +21,7 @@ TABLES = (
     ('src/study/record.h', r'X\(\w+, result\.pile\.repose\.(\w+)', 'scree_repose'),
     ('src/report/heap_json.c', r'OF\(h, (\w+)\)|\bh->(\w+)', 'scree_repose'),
     ('src/study/record.h', r'X\(\w+, result\.pile\.(\w+)', 'scree_pile'),
-    ('src/report/scene_files.c', r'OF\(pile, (\w+)\)', 'scree_pile'),
+    ('src/report/heap_json.c', r'scree_pile, (?:"\w+", "\w*", )?(\w+)', 'scree_pile'),
 )
 
 # Members without a row, by struct, and why.

@@ -223,7 +223,7 @@ static void place_frame(const scree_scene *scene, const scree_scene_sensor *sens
   s->at = vec3_load(wall.position);
   s->velocity = vec3_load(wall.velocity);
   s->spin = vec3_load(wall.angular_velocity);
-  s->rotation = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  s->rotation = quat_to_mat3(quat_load(q));
 }
 
 static sampling begin_sample(scree_scene *scene, scree_scene_sensor *sensor) {
