@@ -21,7 +21,7 @@
 static const double longest_strain = 0.005;
 /* Where it gives no gap: of the whole's size. */
 static const double usual_gap = 0.002;
-/* Behind the streams of inlets, of which there are fewer. */
+/* The stream of strengths, behind those of inlets, of which there are fewer. */
 enum { STRENGTHS = 1 << 20 };
 enum { MOST_SPHERES = 10000 }; /* of a cable, as of a table */
 
@@ -69,7 +69,7 @@ static bool is_between(const scree_texts *between, const char *a, const char *b)
   return (is_name(p, a) && is_name(q, b)) || (is_name(p, b) && is_name(q, a));
 }
 
-/* Of two pieces, by their shapes; all but young is given. */
+/* The bond of two pieces, by their shapes; all but young is given. */
 static scree_plan_bond bond_between(const scree_scene *scene, size_t whole, size_t a, size_t b) {
   const scree_scene_shape *x = &scene->shapes[a], *y = &scene->shapes[b];
   const scree_plan_shape *plan = plan_of(scene, whole);
@@ -149,7 +149,7 @@ static scree_status make_part(scree_scene *scene, size_t index, size_t k, const 
   return status;
 }
 
-/* As a particle that stands for them where they enter: their hull. */
+/* The particle that stands for the pieces where they enter: their hull. */
 static scree_status make_hull(const assembly *of, scree_particle **particle, scree_error *error) {
   size_t count = 0, n = 0;
   SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
@@ -345,8 +345,8 @@ static scree_status face_parts(assembly *of, double gap, scree_error *error) {
   return status;
 }
 
-/* Between spheres, those of a wire as thick as the smaller; of a cable only from each to the next.
- */
+/* Faces between spheres are those of a wire as thick as the smaller; a cable has them only from
+ * each to the next. */
 static scree_status face_spheres(assembly *of, double gap, bool cable, scree_error *error) {
   static const double pi = 3.14159265358979323846;
   for (size_t i = 0; i < of->pieces.count; i++)
@@ -373,7 +373,7 @@ static scree_status face_spheres(assembly *of, double gap, bool cable, scree_err
   return SCREE_OK;
 }
 
-/* From corners to corners: what is told of pieces that nothing holds. */
+/* The gap from corners to corners, which is told of pieces that nothing holds. */
 static double gap_between(const piece *p, const piece *q) {
   double least = INFINITY;
   if (p->radius > 0) return vec3_distance(p->at, q->at) - p->radius - q->radius;
@@ -390,7 +390,7 @@ static bool is_named(const scree_texts *names, const char *part) {
   return false;
 }
 
-/* All hang together with the first that is not named as loose. */
+/* Fails unless all pieces hang together with the first that is not named as loose. */
 static scree_status check_held(const assembly *of, const scree_plan_joints *plan, double gap,
                                scree_error *error) {
   SCREE_SCRATCH(uint32_t, root, of->pieces.count, error);

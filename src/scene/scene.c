@@ -418,7 +418,7 @@ static int find_over(const scree_scene *scene) {
   return phases && scene->phase == phases ? END_PHASES : GOES_ON;
 }
 
-/* At ticks also: */
+/* Why the scene ends; looked at with every tick. */
 static int find_end(scree_scene *scene) {
   const scree_plan_stop *stop = scene->plan.stop;
   if (scree_world_time(scene->world) < stop->after) return GOES_ON;
