@@ -10,7 +10,6 @@
 
 #include "base/vec.h"
 
-#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -4,7 +4,6 @@
 
 #include <emscripten.h>
 #include <errno.h>
-#include <string.h>
 
 int scree_processor_count(void) {
   return 1;

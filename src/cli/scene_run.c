@@ -11,7 +11,6 @@
 #include "cli/terminal.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* By the bits of `views`. */

@@ -6,7 +6,6 @@
 #include "report/vtk.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { SPHERE_LEVEL = 2 };
 

@@ -5,7 +5,6 @@
 #include "base/quote.h"
 
 #include <math.h>
-#include <string.h>
 
 scree_json scree_json_start(FILE *stream) {
   return (scree_json){.stream = stream};

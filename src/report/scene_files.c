@@ -8,7 +8,6 @@
 #include "report/shapes.h"
 
 #include <math.h>
-#include <string.h>
 
 static void json_book(scree_json *json, const scree_scene *scene) {
   scree_scene_book b;

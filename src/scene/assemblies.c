@@ -14,7 +14,6 @@
 #include "world/state/joints.h"
 
 #include <ctype.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Where a file gives no stiffness, joints stretch by no more than this when they break. */

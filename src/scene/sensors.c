@@ -8,7 +8,6 @@
 #include "base/quote.h"
 
 #include <stdarg.h>
-#include <string.h>
 
 /* ---- kinds ---- */
 

@@ -13,8 +13,6 @@
 
 #include "base/alloc.h"
 
-#include <string.h>
-
 typedef struct maps {
   double *sums;   /* each scree_wall_map by triangle of its meshes, one number of each other wall: N
                      s,   N s, J, m3 */
