@@ -104,7 +104,8 @@
 
 /* ---- in the table ---- */
 
-#define SCREE_ROW(T, kind, member, ...)           SCREE_ROW_##kind(kind, T, #member, member, __VA_ARGS__)
+#define SCREE_ROW(T, kind, member, ...) SCREE_ROW_##kind(kind, T, #member, member, __VA_ARGS__)
+/* as: the word AS; none: the key as a text of text */
 #define SCREE_ROW_AS(as, T, none, key, kind, ...) SCREE_ROW_##kind(kind, T, key, __VA_ARGS__)
 #define SCREE_ROW_OWN(...)
 #define SCREE_ROW_OF(kind, T, key, member, least, most, unit, comment, record)                     \
