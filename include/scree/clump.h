@@ -50,7 +50,7 @@ typedef struct scree_clump_gap {
 /* A clump, and how well it stands for the body. Shares are of the body's own: volume, size L (the
  * diameter of the sphere of equal volume), principal moment. */
 typedef struct scree_clump {
-  size_t sphere_count;
+  size_t sphere_count;       /* of `spheres` */
   scree_sphere *spheres;     /* in the mesh's coordinates, the largest first */
   double iou;                /* intersection over union of the volumes, 0 to 1 */
   double union_volume;       /* m3, of the spheres' union */

@@ -46,7 +46,7 @@ SCREE_API scree_repose_options scree_default_repose_options(void);
  */
 typedef struct scree_repose {
   bool heap; /* false: no heap to speak of, or too small a one, all angles NaN; `reason` says why */
-  char reason[128];
+  char reason[128];                         /* "" where there is one */
   double sector_deg, sector_sd_deg;         /* 1: mean and SD over the sectors' flank lines */
   size_t sector_count, sector_total;        /*    sectors that gave a line, of how many: fewer than
                                                   asked for where they would be narrower than two

@@ -159,10 +159,10 @@ SCREE_API size_t scree_scene_wall_geometry(const scree_scene *scene, size_t inde
 /* What came in, is in, went out: at every moment in = inside + out. What hangs together by joints
  * is one body; as it comes apart, there are more inside. */
 typedef struct scree_scene_book {
-  size_t entered_count, inside_count, left_count;
-  size_t waiting_count;                        /* due, but there was no room yet */
-  double entered_mass, inside_mass, left_mass; /* kg */
-  double entered_energy, left_energy;          /* J: kinetic and potential, zero at the origin */
+  size_t entered_count, inside_count, left_count; /* bodies, since the start */
+  size_t waiting_count;                           /* due, but there was no room yet */
+  double entered_mass, inside_mass, left_mass;    /* kg */
+  double entered_energy, left_energy;             /* J: kinetic and potential, zero at the origin */
   double ledger; /* energy unaccounted for, as a share of all that was turned over */
 } scree_scene_book;
 SCREE_API void scree_scene_get_book(const scree_scene *scene, scree_scene_book *book);
@@ -289,7 +289,7 @@ typedef struct scree_pile_settings {
 } scree_pile_settings;
 
 typedef struct scree_pile {
-  scree_repose repose;
+  scree_repose repose;     /* angles and lengths */
   size_t body_count;       /* bodies of it: above the floor, and over the disc where there is one */
   double packing_fraction; /* their solid volume over the volume under the height field */
   double size;             /* m, of a body */

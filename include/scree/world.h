@@ -275,9 +275,9 @@ typedef struct scree_observation {
   double largest_overlap;                  /* m, in the last step */
   double highest_speed;                    /* m/s */
   double coordination;                     /* mean number of touching bodies and walls */
-  size_t body_count, removed_count;
-  size_t broken_joints;         /* since the start */
-  size_t pair_count;            /* touching pairs of bodies, and of body and wall */
+  size_t body_count, removed_count;        /* that are in the world; that were taken out */
+  size_t broken_joints;                    /* since the start */
+  size_t pair_count;                       /* touching pairs of bodies, and of body and wall */
   size_t depenetrating_pairs;   /* of them, those that held each other and are being moved apart */
   size_t contact_count;         /* touching features */
   uint64_t depenetration_count; /* how often two bodies that held each other had to be moved apart

@@ -82,7 +82,7 @@ void scree_pages_give_back(void) {
 
 /* ---- files without a name ---- */
 
-#ifdef O_TMPFILE
+#ifdef __linux__
 enum { OWN_LINK = 32 };
 static void own_link(int descriptor, char text[static OWN_LINK]) {
   snprintf(text, OWN_LINK, "/proc/self/fd/%d", descriptor);
@@ -106,19 +106,6 @@ int scree_nameless_read(int descriptor) {
   char text[OWN_LINK];
   own_link(descriptor, text);
   return open(text, O_RDONLY | O_CLOEXEC);
-}
-#else
-int scree_nameless_open(const char *folder) {
-  (void)folder;
-  return -1;
-}
-bool scree_nameless_link(int descriptor, const char *path) {
-  (void)descriptor, (void)path;
-  return false;
-}
-int scree_nameless_read(int descriptor) {
-  (void)descriptor;
-  return -1;
 }
 #endif
 

@@ -4,7 +4,6 @@
 
 #include <emscripten.h>
 #include <errno.h>
-#include <string.h>
 
 int scree_processor_count(void) {
   return 1;
@@ -19,36 +18,9 @@ void scree_machine_identity(char text[SCREE_SYSTEM_TEXT]) {
   snprintf(text, SCREE_SYSTEM_TEXT, "browser");
 }
 
-void scree_pages_large(void *block, size_t size) {
-  (void)block, (void)size;
-}
-void scree_pages_touch(void *block, size_t size) {
-  (void)block, (void)size;
-}
-void scree_pages_drop(void *block, size_t size) {
-  (void)block, (void)size;
-}
-void scree_pages_give_back(void) {}
-
-int scree_nameless_open(const char *folder) {
-  (void)folder;
-  return -1;
-}
-bool scree_nameless_link(int descriptor, const char *path) {
-  (void)descriptor, (void)path;
-  return false;
-}
-int scree_nameless_read(int descriptor) {
-  (void)descriptor;
-  return -1;
-}
-
 bool scree_thread_start(void *(*work)(void *argument), void *argument) {
   (void)work, (void)argument;
   return false;
-}
-void scree_at_fork(void (*child)(void)) {
-  (void)child;
 }
 unsigned long long scree_process_start(long process) {
   return process == scree_process_number();

@@ -121,17 +121,6 @@ void scree_host_name(char text[SCREE_SYSTEM_TEXT]) {
     snprintf(text, SCREE_SYSTEM_TEXT, "unknown");
 }
 
-void scree_pages_large(void *block, size_t size) {
-  (void)block, (void)size;
-}
-void scree_pages_touch(void *block, size_t size) {
-  (void)block, (void)size;
-}
-void scree_pages_drop(void *block, size_t size) {
-  (void)block, (void)size;
-}
-void scree_pages_give_back(void) {}
-
 /* ---- time ---- */
 
 double scree_now(void) {
@@ -344,19 +333,6 @@ bool scree_path_link(const char *from, const char *to) {
   wide_path wide_from, wide_to;
   return widen(from, &wide_from) && widen(to, &wide_to) &&
          done(CreateHardLinkW(wide_to.text, wide_from.text, NULL));
-}
-
-int scree_nameless_open(const char *folder) {
-  (void)folder;
-  return -1;
-}
-bool scree_nameless_link(int descriptor, const char *path) {
-  (void)descriptor, (void)path;
-  return false;
-}
-int scree_nameless_read(int descriptor) {
-  (void)descriptor;
-  return -1;
 }
 
 /* ---- folders ---- */

@@ -470,8 +470,9 @@ scree_status scree_field_read(const scree_reader *r, const scree_yaml *node, con
   case SCREE_FIELD_NODE:
     *(const scree_yaml **)value = node;
     return SCREE_OK;
+  default:
+    return SCREE_OK;
   }
-  return SCREE_OK;
 }
 
 /* `{sphere: 0,01}` has a key 01. */

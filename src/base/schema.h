@@ -1,32 +1,12 @@
-/* Records that are read from YAML by a table of their fields: each has a key, a kind, a range, a
- * unit and a sentence. The same table reads, refuses what is wrong with its place, and prints the
- * record with units and comments. */
+/* Records that are read from YAML by a table of their fields (field.h): each has a key, a kind, a
+ * range, a unit and a sentence. The same table reads, refuses what is wrong with its place, and
+ * prints the record with units and comments. */
 #pragma once
 
 #include "base/arena.h"
 #include "base/error.h"
+#include "base/field.h"
 #include "base/yaml.h"
-
-typedef enum scree_field_kind {
-  SCREE_FIELD_REAL,      /* double; NAN: not given */
-  SCREE_FIELD_COUNT,     /* size_t; 0: not given */
-  SCREE_FIELD_SEED,      /* uint64_t */
-  SCREE_FIELD_FLAG,      /* bool */
-  SCREE_FIELD_WORD,      /* int: which of the words that `unit` lists; -1: not given */
-  SCREE_FIELD_TEXT,      /* const char *; NULL: not given */
-  SCREE_FIELD_TEXTS,     /* scree_texts: one text, or a list of them */
-  SCREE_FIELD_VECTOR,    /* double[3]; first NAN: not given */
-  SCREE_FIELD_DIRECTION, /* the same, not [0, 0, 0] */
-  SCREE_FIELD_TURN,      /* double[4], w x y z; first NAN: not given */
-  SCREE_FIELD_TABLE,     /* scree_table: [[t, value], ...], t rising */
-  SCREE_FIELD_WEIGHTS,   /* scree_weights: {name: number, ...}, a list of names, or one name */
-  SCREE_FIELD_RECORD,    /* struct *; NULL: not given */
-  SCREE_FIELD_NAMED,     /* TYPE_list: {name: record, ...} */
-  SCREE_FIELD_LIST,      /* TYPE_list: [record, ...] */
-  SCREE_FIELD_VALUES,    /* scree_values: {name: any one value, ...} */
-  SCREE_FIELD_NODE, /* const scree_yaml *: as it stands there, for its reader to look at; NULL: not
-                       given; never printed */
-} scree_field_kind;
 
 typedef struct scree_texts {
   const char **items;
@@ -61,18 +41,6 @@ typedef struct scree_place {
   const char *path; /* "inlets.feed" */
   size_t line, column;
 } scree_place;
-
-struct scree_record;
-
-typedef struct scree_field {
-  const char *key;
-  scree_field_kind kind;
-  size_t offset;
-  double minimum, maximum; /* of numbers; both 0: any that is finite */
-  const char *unit;        /* "" for a pure number; the words of a word */
-  const char *comment;
-  const struct scree_record *record;
-} scree_field;
 
 typedef struct scree_reader scree_reader;
 

@@ -104,43 +104,44 @@
 
 /* ---- in the table ---- */
 
-#define SCREE_ROW(T, kind, member, ...)       SCREE_ROW_##kind(T, #member, member, __VA_ARGS__)
-#define SCREE_ROW_AS(T, none, key, kind, ...) SCREE_ROW_##kind(T, key, __VA_ARGS__)
+#define SCREE_ROW(T, kind, member, ...) SCREE_ROW_##kind(kind, T, #member, member, __VA_ARGS__)
+/* as: the word AS; none: the key as a text of text */
+#define SCREE_ROW_AS(as, T, none, key, kind, ...) SCREE_ROW_##kind(kind, T, key, __VA_ARGS__)
 #define SCREE_ROW_OWN(...)
-#define SCREE_ROW_OF(T, key, kind, member, least, most, unit, comment, record)                     \
-  {key, SCREE_FIELD_##kind, offsetof(T, member), least, most, unit, comment, record},
-#define SCREE_ROW_REAL(T, key, member, value, least, most, unit, comment)                          \
-  SCREE_ROW_OF(T, key, REAL, member, least, most, unit, comment, NULL)
-#define SCREE_ROW_VECTOR(T, key, member, value, least, most, unit, comment)                        \
-  SCREE_ROW_OF(T, key, VECTOR, member, least, most, unit, comment, NULL)
-#define SCREE_ROW_DIRECTION(T, key, member, value, comment)                                        \
-  SCREE_ROW_OF(T, key, DIRECTION, member, 0, 0, "", comment, NULL)
-#define SCREE_ROW_TABLE(T, key, member, least, most, units, comment)                               \
-  SCREE_ROW_OF(T, key, TABLE, member, least, most, units, comment, NULL)
-#define SCREE_ROW_WEIGHTS(T, key, member, least, most, unit, comment)                              \
-  SCREE_ROW_OF(T, key, WEIGHTS, member, least, most, unit, comment, NULL)
-#define SCREE_ROW_COUNT(T, key, member, value, least, most, comment)                               \
-  SCREE_ROW_OF(T, key, COUNT, member, least, most, "", comment, NULL)
-#define SCREE_ROW_WORD(T, key, member, value, words, comment)                                      \
-  SCREE_ROW_OF(T, key, WORD, member, 0, 0, words, comment, NULL)
-#define SCREE_ROW_SEED(T, key, member, value, comment)                                             \
-  SCREE_ROW_OF(T, key, SEED, member, 0, 0, "", comment, NULL)
-#define SCREE_ROW_FLAG(T, key, member, value, comment)                                             \
-  SCREE_ROW_OF(T, key, FLAG, member, 0, 0, "", comment, NULL)
-#define SCREE_ROW_TEXT(T, key, member, comment)                                                    \
-  SCREE_ROW_OF(T, key, TEXT, member, 0, 0, "", comment, NULL)
-#define SCREE_ROW_TEXTS(T, key, member, comment)                                                   \
-  SCREE_ROW_OF(T, key, TEXTS, member, 0, 0, "", comment, NULL)
-#define SCREE_ROW_VALUES(T, key, member, comment)                                                  \
-  SCREE_ROW_OF(T, key, VALUES, member, 0, 0, "", comment, NULL)
-#define SCREE_ROW_NODE(T, key, member, comment)                                                    \
-  SCREE_ROW_OF(T, key, NODE, member, 0, 0, "", comment, NULL)
-#define SCREE_ROW_GROUP(T, key, member, type, comment)                                             \
-  SCREE_ROW_OF(T, key, RECORD, member, 0, 0, "", comment, &type##_record)
-#define SCREE_ROW_NAMED(T, key, member, type, comment)                                             \
-  SCREE_ROW_OF(T, key, NAMED, member, 0, 0, "", comment, &type##_record)
-#define SCREE_ROW_LIST(T, key, member, type, comment)                                              \
-  SCREE_ROW_OF(T, key, LIST, member, 0, 0, "", comment, &type##_record)
+#define SCREE_ROW_OF(kind, T, key, member, least, most, unit, comment, record)                     \
+  {key,                                                                                            \
+   SCREE_FIELD_##kind,                                                                             \
+   offsetof(T, member),                                                                            \
+   sizeof(((T *)0)->member),                                                                       \
+   least,                                                                                          \
+   most,                                                                                           \
+   unit,                                                                                           \
+   comment,                                                                                        \
+   record},
+#define SCREE_ROW_REAL(kind, T, key, member, value, least, most, unit, comment)                    \
+  SCREE_ROW_OF(kind, T, key, member, least, most, unit, comment, NULL)
+#define SCREE_ROW_VECTOR SCREE_ROW_REAL
+#define SCREE_ROW_COUNT(kind, T, key, member, value, least, most, comment)                         \
+  SCREE_ROW_OF(kind, T, key, member, least, most, "", comment, NULL)
+#define SCREE_ROW_TABLE(kind, T, key, member, least, most, unit, comment)                          \
+  SCREE_ROW_OF(kind, T, key, member, least, most, unit, comment, NULL)
+#define SCREE_ROW_WEIGHTS SCREE_ROW_TABLE
+#define SCREE_ROW_WORD(kind, T, key, member, value, words, comment)                                \
+  SCREE_ROW_OF(kind, T, key, member, 0, 0, words, comment, NULL)
+#define SCREE_ROW_SEED(kind, T, key, member, value, comment)                                       \
+  SCREE_ROW_OF(kind, T, key, member, 0, 0, "", comment, NULL)
+#define SCREE_ROW_FLAG      SCREE_ROW_SEED
+#define SCREE_ROW_DIRECTION SCREE_ROW_SEED
+#define SCREE_ROW_TEXT(kind, T, key, member, comment)                                              \
+  SCREE_ROW_OF(kind, T, key, member, 0, 0, "", comment, NULL)
+#define SCREE_ROW_TEXTS  SCREE_ROW_TEXT
+#define SCREE_ROW_VALUES SCREE_ROW_TEXT
+#define SCREE_ROW_NODE   SCREE_ROW_TEXT
+#define SCREE_ROW_NAMED(kind, T, key, member, type, comment)                                       \
+  SCREE_ROW_OF(kind, T, key, member, 0, 0, "", comment, &type##_record)
+#define SCREE_ROW_LIST SCREE_ROW_NAMED
+#define SCREE_ROW_GROUP(kind, T, key, member, type, comment)                                       \
+  SCREE_ROW_OF(RECORD, T, key, member, 0, 0, "", comment, &type##_record)
 
 /* ---- of kinds, whose fields each are known in a file of their own: that there is the record ----
  */

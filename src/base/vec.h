@@ -163,6 +163,10 @@ static inline quat quat_from_rotation_vector(vec3 r) {
   double angle = sqrt(angle2), half = 0.5 * angle, s = scree_sin(half) / angle;
   return (quat){scree_cos(half), r.x * s, r.y * s, r.z * s};
 }
+/* w, x, y, z, as in records. */
+static inline quat quat_load(const double q[4]) {
+  return (quat){q[0], q[1], q[2], q[3]};
+}
 static inline mat3 quat_to_mat3(quat q) {
   double xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z, xy = q.x * q.y, xz = q.x * q.z,
          yz = q.y * q.z, wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z;

@@ -118,18 +118,11 @@ static scree_status describe_parameters(analysis *a) {
     scree_parameter_result *out = &a->r->parameters[k];
     *out = (scree_parameter_result){.name = scree_arena_text(&a->arena, p->place.name),
                                     .unit = scree_arena_text(&a->arena, p->unit ? p->unit : ""),
-                                    .nearest = NAN,
-                                    .mean = NAN,
-                                    .sd = NAN,
-                                    .median = NAN,
-                                    .low = NAN,
-                                    .high = NAN,
-                                    .narrowed = NAN,
                                     .logarithmic = p->scale == 1,
                                     .from = scree_parameter_number(p, -1),
-                                    .to = scree_parameter_number(p, 1),
-                                    .at_least = NAN,
-                                    .at_most = NAN};
+                                    .to = scree_parameter_number(p, 1)};
+    out->nearest = out->mean = out->sd = out->median = out->low = out->high = out->narrowed = NAN;
+    out->at_least = out->at_most = NAN;
     if (!out->name || !out->unit) return fail_memory(a);
     if (a->r->is_search) continue;
     out->nearest = scree_parameter_number(p, a->nearest[k]);
@@ -374,23 +367,11 @@ static scree_status describe_answer(analysis *a, size_t quantity, draws *d) {
       .uncertainty = q->uncertainty,
       .scatter = q->scatter > 0 ? q->scatter : NAN,
       .repeat_count = q->repeat_count,
-      .mean = NAN,
-      .low = NAN,
-      .high = NAN,
-      .single_low = NAN,
-      .single_high = NAN,
-      .noise = NAN,
-      .run_count = scree_gp_run_count(r->gp),
-      .lowest = NAN,
-      .highest = NAN,
-      .gap = NAN,
-      .gap_sd = NAN,
-      .counted_low = NAN,
-      .counted_high = NAN,
-      .check_mean = NAN,
-      .check_low = NAN,
-      .check_high = NAN,
-      .unexplained = NAN};
+      .run_count = scree_gp_run_count(r->gp)};
+  out->mean = out->low = out->high = out->single_low = out->single_high = out->noise = out->lowest =
+      out->highest = NAN;
+  out->gap = out->gap_sd = out->counted_low = out->counted_high = out->check_mean = out->check_low =
+      out->check_high = out->unexplained = NAN;
   if (!out->name || !out->experiment || !out->answer || !out->unit) return fail_memory(a);
   out->missing = scree_rounds_until(a->c, q->experiment, scree_rounds_fitted(a->c)) -
                  a->gathered.waiting[q->experiment] - out->run_count;

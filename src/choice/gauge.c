@@ -14,8 +14,6 @@
 #include "mesh/index/bvh.h"
 #include "simplify/flat_fan.h"
 
-#include <string.h>
-
 enum {
   PROBE_STEP = 4,    /* points per probe */
   BACK_STEP = 2,     /* points of the spread per point of the level, at least */

@@ -11,7 +11,6 @@
 #include "cli/terminal.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* By the bits of `views`. */
@@ -300,12 +299,23 @@ void cli_print_repose(FILE *stream, const scree_repose *r) {
     fprintf(stream, "  run-out           %5.4g mm\n", 1e3 * r->run_out);
 }
 
+/* Its pure numbers under their names: each on a line, or behind a comma. */
+static void print_shares(FILE *stream, const scree_pile *pile, bool lines) {
+  for (const scree_field *f = scree_pile_rows; f < scree_pile_rows + SCREE_PILE_ROWS; f++) {
+    char name[40];
+    if (*f->unit || f->kind != SCREE_FIELD_REAL) continue;
+    snprintf(name, sizeof name, "%s", f->key);
+    for (char *c = name; (c = strchr(c, '_'));) *c = ' ';
+    fprintf(stream, lines ? "  %-16s  %5.2f\n" : ", %s %.2f", name, scree_field_real(f, pile));
+  }
+}
+
 void cli_print_pile(FILE *stream, const scree_pile *pile) {
   cli_print_repose(stream, &pile->repose);
   if (pile->body_count == 0) return;
   fprintf(stream, "  particles         %5zu in it, of %.4g mm (sphere of equal volume)\n",
           pile->body_count, 1e3 * pile->size);
-  fprintf(stream, "  packing fraction  %5.2f\n", pile->packing_fraction);
+  print_shares(stream, pile, true);
 }
 
 static void print_piles(FILE *stream, const scree_scene *scene) {
@@ -357,12 +367,12 @@ static void print_brief(FILE *stream, const scree_scene *scene, const char *stop
   else
     print_end(stream, scene, stopped);
   if (*words.but) fprintf(stream, "%s\n", words.but);
-  if (has && words.verdict == SCREE_ANSWERED)
-    fprintf(stream,
-            "sectors %.1f, cone %.1f, silhouettes %.1f deg; height %.4g mm, foot %.4g mm, packing "
-            "fraction %.2f\n",
-            r->sector_deg, r->cone_deg, r->silhouette_deg, 1e3 * r->height, 1e3 * r->base_radius,
-            pile.packing_fraction);
+  if (has && words.verdict == SCREE_ANSWERED) {
+    fprintf(stream, "sectors %.1f, cone %.1f, silhouettes %.1f deg; height %.4g mm, foot %.4g mm",
+            r->sector_deg, r->cone_deg, r->silhouette_deg, 1e3 * r->height, 1e3 * r->base_radius);
+    print_shares(stream, &pile, false);
+    putc('\n', stream);
+  }
   if (*words.next) fprintf(stream, "Next: %s\n", words.next);
   if (has) print_end(stream, scene, stopped);
 }

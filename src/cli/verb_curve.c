@@ -75,7 +75,7 @@ static void print_header(const table *t) {
     if (!t->arguments->csv && c->text[distance].width)
       printf(" %*s", c->text[distance].width, c->head);
     else if (t->arguments->csv && (distance || k < SCREE_CURVE_DISTANCES))
-      printf(",%s", c->csv);
+      printf(",%s", c->of.key);
   }
   putchar('\n');
 }
@@ -86,7 +86,7 @@ static void print_row(const table *t, const scree_curve_row *row) {
   printf("%*zu", csv ? 0 : 9, row->level.triangle_count);
   for (int k = 0; k < SCREE_CURVE_COLUMNS; k++) {
     const scree_curve_column *c = &scree_curve_columns[k];
-    double value = scree_curve_value(row, k);
+    double value = scree_field_real(&c->of, row);
     if (!csv && c->text[distance].width)
       printf(" %*.*g", c->text[distance].width, c->text[distance].digits, value * c->scale);
     else if (csv && (distance || k < SCREE_CURVE_DISTANCES))

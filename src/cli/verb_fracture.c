@@ -6,7 +6,6 @@
 #include "cli/terminal.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { PATH_BYTES = 4096 };

@@ -122,18 +122,15 @@ static void print_spread(const char *label, double *values, size_t count) {
   putchar('\n');
 }
 
-static const struct {
-  const char *label;
-  size_t offset; /* in scree_measure_entry */
-} spreads[] = {
-    {"equivalent diameter/m", offsetof(scree_measure_entry, measures.equivalent_diameter)},
-    {"elongation I/L", offsetof(scree_measure_entry, descriptors.elongation)},
-    {"flatness S/I", offsetof(scree_measure_entry, descriptors.flatness)},
-    {"Wadell sphericity", offsetof(scree_measure_entry, measures.sphericity)},
-    {"Krumbein sphericity", offsetof(scree_measure_entry, descriptors.krumbein_sphericity)},
-    {"convexity", offsetof(scree_measure_entry, measures.convexity)},
-    {"roundness", offsetof(scree_measure_entry, descriptors.roundness)},
-    {"angularity", offsetof(scree_measure_entry, descriptors.angularity)},
+static const scree_field spreads[] = {
+    SCREE_FIELD_AS(scree_measure_entry, "equivalent diameter/m", measures.equivalent_diameter),
+    SCREE_FIELD_AS(scree_measure_entry, "elongation I/L", descriptors.elongation),
+    SCREE_FIELD_AS(scree_measure_entry, "flatness S/I", descriptors.flatness),
+    SCREE_FIELD_AS(scree_measure_entry, "Wadell sphericity", measures.sphericity),
+    SCREE_FIELD_AS(scree_measure_entry, "Krumbein sphericity", descriptors.krumbein_sphericity),
+    SCREE_FIELD_AS(scree_measure_entry, "convexity", measures.convexity),
+    SCREE_FIELD_AS(scree_measure_entry, "roundness", descriptors.roundness),
+    SCREE_FIELD_AS(scree_measure_entry, "angularity", descriptors.angularity),
 };
 
 /* Distributions over all bodies described, and how many are of which class. */
@@ -151,9 +148,8 @@ static scree_status print_set(const scree_measure_entry *entries, size_t count,
   for (size_t k = 0; k < sizeof spreads / sizeof *spreads; k++) {
     size_t used = 0;
     for (size_t i = 0; i < count; i++)
-      if (entries[i].described)
-        values[used++] = *(const double *)((const char *)&entries[i] + spreads[k].offset);
-    print_spread(spreads[k].label, values, used);
+      if (entries[i].described) values[used++] = scree_field_real(&spreads[k], &entries[i]);
+    print_spread(spreads[k].key, values, used);
   }
   for (int c = 0; c < 4; c++)
     printf("%s%zu %s%s", c ? ", " : "  ", classes[c], scree_zingg_name((scree_zingg)c),

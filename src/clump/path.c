@@ -9,8 +9,6 @@
 #include "base/math.h"
 #include "base/rng.h"
 
-#include <string.h>
-
 /* Tuning, each once; lengths where the body's volume is 1. */
 static const double soft_begin =
                         0.3, /* softness of the first and the last step for one sphere; of n, */

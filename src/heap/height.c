@@ -81,7 +81,7 @@ static bool raise_triangle(scree_height_field *field, vec3 a, vec3 b, vec3 c) {
 void scree_height_field_add_mesh(scree_height_field *field, const scree_mesh *mesh,
                                  const double position[3], const double quaternion[4],
                                  double floor_z) {
-  mat3 rotation = quat_to_mat3((quat){quaternion[0], quaternion[1], quaternion[2], quaternion[3]});
+  mat3 rotation = quat_to_mat3(quat_load(quaternion));
   vec3 origin = {position[0], position[1], position[2] - floor_z};
   for (size_t t = 0; t < mesh->triangle_count; t++) {
     vec3 p[3];

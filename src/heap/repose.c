@@ -34,19 +34,11 @@ scree_repose_options scree_default_repose_options(void) {
 }
 
 scree_repose scree_no_repose(void) {
-  return (scree_repose){.sector_deg = NAN,
-                        .sector_sd_deg = NAN,
-                        .cone_deg = NAN,
-                        .cone_rms = NAN,
-                        .silhouette_deg = NAN,
-                        .silhouette_sd_deg = NAN,
-                        .spread_deg = NAN,
-                        .volume_deg = NAN,
-                        .volume_se_deg = NAN,
-                        .height = NAN,
-                        .peak = NAN,
-                        .base_radius = NAN,
-                        .run_out = NAN};
+  scree_repose r = {0};
+  r.sector_deg = r.sector_sd_deg = r.cone_deg = r.cone_rms = NAN;
+  r.silhouette_deg = r.silhouette_sd_deg = r.spread_deg = r.volume_deg = r.volume_se_deg = NAN;
+  r.height = r.peak = r.base_radius = r.run_out = NAN;
+  return r;
 }
 
 /* ---- straight lines ---- */

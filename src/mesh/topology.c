@@ -12,7 +12,6 @@
 #include "mesh/repair/shells.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct counter {
   const scree_mesh *mesh;

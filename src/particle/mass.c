@@ -14,8 +14,6 @@
 #include "base/alloc.h"
 #include "base/sum.h"
 
-#include <string.h>
-
 enum { SPHERE_GRID = 512 };
 
 /* Moments of order 0, 1 and 2 (xx yy zz xy xz yz) about a shifted origin. */

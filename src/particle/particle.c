@@ -78,13 +78,9 @@ static void set_solid(scree_particle_measures *m, const scree_solid *solid) {
   memcpy(m->orientation, orientation, sizeof orientation);
 }
 
-static quat orientation_of(const scree_particle_measures *m) {
-  return (quat){m->orientation[0], m->orientation[1], m->orientation[2], m->orientation[3]};
-}
-
 /* From the coordinates it was made from into its own frame. */
 static vec3 into_frame(const scree_particle_measures *m, const double *position) {
-  mat3 r = quat_to_mat3(orientation_of(m));
+  mat3 r = quat_to_mat3(quat_load(m->orientation));
   return mat3_tmul_vec(&r, vec3_sub(vec3_load(position), vec3_load(m->centre)));
 }
 

@@ -10,7 +10,6 @@
 #include "particle/particle.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_SPHERES = 300, KEY_BYTES = 700 };

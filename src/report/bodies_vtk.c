@@ -6,7 +6,6 @@
 #include "report/vtk.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { SPHERE_LEVEL = 2 };
 
@@ -15,16 +14,16 @@ typedef struct instance {
   int32_t body, shape, fragment;
 } instance;
 
-static const scree_vtk_member members[] = {
-    SCREE_VTK_MEMBER(instance, orientation, "orientation", SCREE_VTK_FLOAT32, 4),
-    SCREE_VTK_MEMBER(instance, velocity, "velocity [m/s]", SCREE_VTK_FLOAT32, 3),
-    SCREE_VTK_MEMBER(instance, spin, "angular velocity [rad/s]", SCREE_VTK_FLOAT32, 3),
-    SCREE_VTK_MEMBER(instance, force, "contact force [N]", SCREE_VTK_FLOAT32, 3),
-    SCREE_VTK_MEMBER(instance, stress, "stress [Pa]", SCREE_VTK_FLOAT32, 6),
-    SCREE_VTK_MEMBER(instance, size, "size [m]", SCREE_VTK_FLOAT32, 1),
-    SCREE_VTK_MEMBER(instance, body, "body", SCREE_VTK_INT32, 1),
-    SCREE_VTK_MEMBER(instance, shape, "shape", SCREE_VTK_INT32, 1),
-    SCREE_VTK_MEMBER(instance, fragment, "fragment", SCREE_VTK_INT32, 1),
+static const scree_field members[] = {
+    SCREE_FIELD_OF(instance, orientation),
+    SCREE_FIELD_AS(instance, "velocity [m/s]", velocity),
+    SCREE_FIELD_AS(instance, "angular velocity [rad/s]", spin),
+    SCREE_FIELD_AS(instance, "contact force [N]", force),
+    SCREE_FIELD_AS(instance, "stress [Pa]", stress),
+    SCREE_FIELD_AS(instance, "size [m]", size),
+    SCREE_FIELD_OF(instance, body),
+    SCREE_FIELD_OF(instance, shape),
+    SCREE_FIELD_OF(instance, fragment),
 };
 
 typedef struct instances {

@@ -255,14 +255,12 @@ static void put_parameters(scree_json *json, const scree_calibration_result *r) 
   SCREE_JSON_LIST (json, "parameters", k, r->parameter_count) {
     const scree_parameter_result *p = &r->parameters[k];
     scree_json_object(json, NULL);
-    scree_json_text(json, "name", p->name);
-    scree_json_text(json, "unit", p->unit);
-    scree_json_text(json, "scale", p->logarithmic ? "log" : "linear");
-    SCREE_JSON_MEMBERS(json, p, from, to);
+    SCREE_JSON_MEMBERS(json, OF(p, name), OF(p, unit),
+                       AS("scale", p->logarithmic ? "log" : "linear"), OF(p, from), OF(p, to));
     if (!r->is_search) scree_json_number(json, "nearest", p->nearest);
     if (!r->is_search && r->agreement != SCREE_AGREEMENT_NO) {
-      SCREE_JSON_MEMBERS(json, p, mean, sd, median, low, high, narrowed, identified, at_least,
-                         at_most);
+      SCREE_JSON_MEMBERS(json, OF(p, mean), OF(p, sd), OF(p, median), OF(p, low), OF(p, high),
+                         OF(p, narrowed), OF(p, identified), OF(p, at_least), OF(p, at_most));
       scree_calibration_parameter_finding(p, finding, sizeof finding);
       scree_json_text(json, "finding", finding);
     }
@@ -274,9 +272,8 @@ static void put_trades(scree_json *json, const scree_calibration_result *r) {
   SCREE_JSON_LIST (json, "trades", i, r->trade_count) {
     const scree_trade *t = &r->trades[i];
     scree_json_object(json, NULL);
-    scree_json_text(json, "a", r->parameters[t->a].name);
-    scree_json_text(json, "b", r->parameters[t->b].name);
-    SCREE_JSON_MEMBERS(json, t, correlation, share);
+    SCREE_JSON_MEMBERS(json, AS("a", r->parameters[t->a].name), AS("b", r->parameters[t->b].name),
+                       OF(t, correlation), OF(t, share));
     scree_json_numbers(json, "one_end", t->ends[0], 2);
     scree_json_numbers(json, "other_end", t->ends[1], 2);
     scree_json_end(json);
@@ -289,21 +286,18 @@ static void put_answer(scree_json *json, const scree_calibration_result *r,
   char finding[200];
   scree_calibration_answer_finding(r, a, finding, sizeof finding);
   scree_json_object(json, NULL);
-  scree_json_text(json, "finding", finding);
-  SCREE_JSON_MEMBERS(json, a, name, experiment, answer, unit, measured, predicted, value,
-                     uncertainty, scatter);
-  scree_json_number(json, "repeats", a->repeat_count);
-  if (fits) SCREE_JSON_MEMBERS(json, a, mean, low, high, single_low, single_high, inside);
-  SCREE_JSON_MEMBERS(json, a, noise, lowest, highest, gap, gap_sd, met);
-  if (!isnan(a->counted_low)) SCREE_JSON_MEMBERS(json, a, counted_low, counted_high);
-  scree_json_count(json, "runs", a->run_count);
-  scree_json_count(json, "missing", a->missing);
-  scree_json_row_object(json, "check");
-  scree_json_count(json, "runs", a->check_count);
-  scree_json_number(json, "mean", a->check_mean);
-  scree_json_number(json, "low", a->check_low);
-  scree_json_number(json, "high", a->check_high);
-  scree_json_end(json);
+  SCREE_JSON_MEMBERS(json, AS("finding", finding), OF(a, name), OF(a, experiment), OF(a, answer),
+                     OF(a, unit), OF(a, measured), OF(a, predicted), OF(a, value),
+                     OF(a, uncertainty), OF(a, scatter), AS("repeats", a->repeat_count));
+  if (fits)
+    SCREE_JSON_MEMBERS(json, OF(a, mean), OF(a, low), OF(a, high), OF(a, single_low),
+                       OF(a, single_high), OF(a, inside));
+  SCREE_JSON_MEMBERS(json, OF(a, noise), OF(a, lowest), OF(a, highest), OF(a, gap), OF(a, gap_sd),
+                     OF(a, met));
+  if (!isnan(a->counted_low)) SCREE_JSON_MEMBERS(json, OF(a, counted_low), OF(a, counted_high));
+  SCREE_JSON_MEMBERS(json, AS("runs", a->run_count), OF(a, missing));
+  SCREE_JSON_ROW(json, "check", AS("runs", a->check_count), AS("mean", a->check_mean),
+                 AS("low", a->check_low), AS("high", a->check_high));
   if (a->point_count && fits) {
     scree_json_numbers(json, "x", a->x, a->point_count);
     scree_json_numbers(json, "y", a->y, a->point_count);
@@ -318,8 +312,8 @@ static void put_answer(scree_json *json, const scree_calibration_result *r,
 static void put_advice(scree_json *json, const scree_calibration_result *r) {
   SCREE_JSON_LIST (json, "advice", i, r->advice_count) {
     scree_json_object(json, NULL);
-    scree_json_text(json, "name", r->advice[i].name);
-    scree_json_count(json, "repeats", r->advice[i].repeat_count);
+    SCREE_JSON_MEMBERS(json, AS("name", r->advice[i].name),
+                       AS("repeats", r->advice[i].repeat_count));
     scree_json_numbers(json, "narrowed", r->advice[i].narrowed, r->parameter_count);
     scree_json_count(json, "identified", r->advice[i].identified);
     scree_json_end(json);
@@ -336,13 +330,13 @@ static void put_samples(scree_json *json, const scree_calibration_result *r) {
 }
 
 static void put_settings(scree_json *json, const scree_calibration_result *r) {
-  SCREE_JSON_MEMBERS(json, r, sought, maximise);
+  SCREE_JSON_MEMBERS(json, OF(r, sought), OF(r, maximise));
   SCREE_JSON_LIST (json, "settings", i, r->setting_count) {
     const scree_setting *c = &r->settings[i];
     scree_json_object(json, NULL);
     scree_json_numbers(json, "values", c->values, r->parameter_count);
-    SCREE_JSON_MEMBERS(json, c, mean, low, high, allowed);
-    scree_json_count(json, "runs", c->run_count);
+    SCREE_JSON_MEMBERS(json, OF(c, mean), OF(c, low), OF(c, high), OF(c, allowed),
+                       AS("runs", c->run_count));
     scree_json_end(json);
   }
 }
@@ -358,7 +352,7 @@ static void put_fit(scree_json *json, const scree_calibration_result *r) {
     scree_json_text(json, "fits", NULL);
   else
     scree_json_bool(json, "fits", r->agreement == SCREE_AGREEMENT_YES);
-  SCREE_JSON_MEMBERS(json, r, misfit, misfit_limit);
+  SCREE_JSON_MEMBERS(json, OF(r, misfit), OF(r, misfit_limit));
   if (r->agreement != SCREE_AGREEMENT_NO) return;
   SCREE_JSON_LIST (json, "hints", i, scree_calibration_hints(r, SIZE_MAX, hint, sizeof hint)) {
     scree_calibration_hints(r, i, hint, sizeof hint);
@@ -367,12 +361,12 @@ static void put_fit(scree_json *json, const scree_calibration_result *r) {
   SCREE_JSON_LIST (json, "refits", i, r->refit_count) {
     const scree_refit *f = &r->refits[i];
     scree_json_object(json, NULL);
-    SCREE_JSON_MEMBERS(json, f, without, fits);
+    SCREE_JSON_MEMBERS(json, OF(f, without), OF(f, fits));
     scree_json_numbers(json, "nearest", f->nearest, r->parameter_count);
     scree_json_numbers(json, "low", f->low, r->parameter_count);
     scree_json_numbers(json, "high", f->high, r->parameter_count);
     scree_json_numbers(json, "answers", f->answers, r->answer_count);
-    SCREE_JSON_MEMBERS(json, f, value_low, value_high);
+    SCREE_JSON_MEMBERS(json, OF(f, value_low), OF(f, value_high));
     scree_json_end(json);
   }
 }
@@ -381,7 +375,7 @@ static void put_runs(scree_json *json, const scree_calibration_result *r) {
   SCREE_JSON_LIST (json, "all_runs", i, r->run_count) {
     const scree_calibration_run *run = &r->runs[i];
     scree_json_row_object(json, NULL);
-    SCREE_JSON_MEMBERS(json, run, experiment, seed, check);
+    SCREE_JSON_MEMBERS(json, OF(run, experiment), OF(run, seed), OF(run, check));
     scree_json_numbers(json, "values", run->values, r->parameter_count);
     scree_json_numbers(json, "answers", run->answers, r->answer_count);
     scree_json_end(json);
@@ -396,12 +390,13 @@ scree_status scree_calibration_json_write(const void *result, const char *path, 
   size_t width = r->is_search ? 2 : 1 + r->parameter_count;
   char finding[200];
   scree_json_object(json, NULL);
-  SCREE_JSON_MEMBERS(json, r, title, version, seed, confidence, stopped);
+  SCREE_JSON_MEMBERS(json, OF(r, title), OF(r, version), OF(r, seed), OF(r, confidence),
+                     OF(r, stopped));
   put_fit(json, r);
   scree_json_origin(json, &r->origin);
-  scree_json_count(json, "rounds", r->progress.rounds);
-  scree_json_count(json, "runs", r->progress.run_count);
-  SCREE_JSON_MEMBERS(json, &r->progress, done, failed, budget, seconds, planning_seconds);
+  SCREE_JSON_MEMBERS(json, OF(&r->progress, rounds), AS("runs", r->progress.run_count),
+                     OF(&r->progress, done), OF(&r->progress, failed), OF(&r->progress, budget),
+                     OF(&r->progress, seconds), OF(&r->progress, planning_seconds));
   put_parameters(json, r);
   if (!r->is_search) put_trades(json, r);
   SCREE_JSON_LIST (json, "answers", i, r->answer_count) put_answer(json, r, &r->answers[i]);

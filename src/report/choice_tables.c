@@ -13,12 +13,9 @@ static const char *reference_name(scree_reference reference) {
 }
 
 static void json_pick(scree_json *json, const char *key, const scree_pick *pick) {
-  scree_json_row_object(json, key);
-  SCREE_JSON_MEMBERS(json, pick, rp, triangle_count, eps_s, ip, worst_eps_s, robust_ip, area,
-                     volume);
-  scree_json_count(json, "similar_fewest", pick->fewest);
-  scree_json_count(json, "similar_most", pick->most);
-  scree_json_end(json);
+  SCREE_JSON_ROW(json, key, OF(pick, rp), OF(pick, triangle_count), OF(pick, eps_s), OF(pick, ip),
+                 OF(pick, worst_eps_s), OF(pick, robust_ip), OF(pick, area), OF(pick, volume),
+                 AS("similar_fewest", pick->fewest), AS("similar_most", pick->most));
 }
 
 /* Those that are known, or bounded. */
@@ -67,21 +64,22 @@ static void json_recommended(scree_json *json, const scree_choice_report *report
   recommended_errors(c, errors);
   scree_fidelity_farthest(f, c->recommended_row, at);
   scree_json_object(json, "recommended");
-  SCREE_JSON_MEMBERS(json, &c->recommended, rp, triangle_count, area, volume, eps_s, ip);
+  SCREE_JSON_MEMBERS(json, OF(&c->recommended, rp), OF(&c->recommended, triangle_count),
+                     OF(&c->recommended, area), OF(&c->recommended, volume),
+                     OF(&c->recommended, eps_s), OF(&c->recommended, ip));
   json_errors(json, "errors", errors);
   json_changes(json, f, c->recommended_row);
   scree_json_numbers(json, "farthest", at, 3);
-  scree_json_text(json, "limited_by", scree_shape_error_name(c->limited_by));
-  scree_json_number(json, "limit_beyond", c->limit_beyond);
-  scree_json_number(json, "largest_over_tolerance", c->largest_over_tolerance);
+  SCREE_JSON_MEMBERS(json, AS("limited_by", scree_shape_error_name(c->limited_by)),
+                     OF(c, limit_beyond), OF(c, largest_over_tolerance));
   json_sentences(json, "warnings", report, entry, scree_choice_warnings);
   scree_json_end(json);
   scree_json_row_object(json, "scan");
-  scree_json_number(json, "size", scree_fidelity_scan(f, SCREE_SCAN_LENGTH));
-  scree_json_number(json, "noise", scree_fidelity_scan(f, SCREE_SCAN_NOISE));
-  scree_json_number(json, "clean_area", scree_fidelity_scan(f, SCREE_SCAN_CLEAN_AREA));
-  scree_json_number(json, "thickness", scree_fidelity_scan(f, SCREE_SCAN_THICKNESS));
-  scree_json_number(json, "thinnest", scree_fidelity_scan(f, SCREE_SCAN_THINNEST));
+  SCREE_JSON_MEMBERS(json, AS("size", scree_fidelity_scan(f, SCREE_SCAN_LENGTH)),
+                     AS("noise", scree_fidelity_scan(f, SCREE_SCAN_NOISE)),
+                     AS("clean_area", scree_fidelity_scan(f, SCREE_SCAN_CLEAN_AREA)),
+                     AS("thickness", scree_fidelity_scan(f, SCREE_SCAN_THICKNESS)),
+                     AS("thinnest", scree_fidelity_scan(f, SCREE_SCAN_THINNEST)));
   SCREE_JSON_ROW_LIST (json, "dimensions", i, 3)
     scree_json_number(json, NULL,
                       scree_fidelity_scan(f, (scree_scan_fact)(SCREE_SCAN_BOX_LENGTH + i)));
@@ -93,8 +91,9 @@ static void json_levels(scree_json *json, const scree_choice *choice) {
   SCREE_JSON_LIST (json, "levels", i, choice->level_count) {
     const scree_choice_level *level = &choice->levels[i];
     scree_json_row_object(json, NULL);
-    SCREE_JSON_MEMBERS(json, level, rp, triangle_count, area, volume, eps_s, ip, worst_eps_s,
-                       robust_ip, reached);
+    SCREE_JSON_MEMBERS(json, OF(level, rp), OF(level, triangle_count), OF(level, area),
+                       OF(level, volume), OF(level, eps_s), OF(level, ip), OF(level, worst_eps_s),
+                       OF(level, robust_ip), OF(level, reached));
     json_errors(json, "errors", level->errors);
     scree_json_end(json);
   }
@@ -107,20 +106,18 @@ static void json_best(scree_json *json, const scree_choice *choice, double weigh
     if (choice->best[e] >= choice->level_count) continue;
     const scree_choice_level *level = &choice->levels[choice->best[e]];
     scree_json_row_object(json, scree_shape_error_name((scree_shape_error)e));
-    SCREE_JSON_MEMBERS(json, level, rp, triangle_count);
-    scree_json_number(json, "error", level->errors[e]);
-    scree_json_number(json, "sum", level->errors[e] + weight * level->rp_reached);
+    SCREE_JSON_MEMBERS(json, OF(level, rp), OF(level, triangle_count),
+                       AS("error", level->errors[e]),
+                       AS("sum", level->errors[e] + weight * level->rp_reached));
     scree_json_end(json);
   }
   scree_json_end(json);
 }
 
 static void json_noise(scree_json *json, const scree_choice *choice) {
-  scree_json_row_object(json, "noise");
-  SCREE_JSON_MEMBERS(json, &choice->noise, found, fraction);
-  scree_json_number(json, "smooth_area", choice->noise.area);
-  scree_json_count(json, "plateau_triangle_count", choice->noise.triangle_count);
-  scree_json_end(json);
+  SCREE_JSON_ROW(json, "noise", OF(&choice->noise, found), OF(&choice->noise, fraction),
+                 AS("smooth_area", choice->noise.area),
+                 AS("plateau_triangle_count", choice->noise.triangle_count));
 }
 
 static void json_options(scree_json *json, const scree_choice_report *report) {
@@ -128,10 +125,9 @@ static void json_options(scree_json *json, const scree_choice_report *report) {
   scree_json_row_object(json, "options");
   scree_json_text(json, "method", scree_method_name(report->method));
   scree_json_bool(json, "paper", report->rule == SCREE_RULE_PAPER);
-  scree_json_text(json, "rule", scree_choice_rule_name(report->rule));
-  SCREE_JSON_MEMBERS(json, o, weight, rp_min, rp_max);
-  scree_json_count(json, "per_decade", (uint64_t)o->per_decade);
-  scree_json_text(json, "reference", reference_name(o->reference));
+  SCREE_JSON_MEMBERS(json, AS("rule", scree_choice_rule_name(report->rule)), OF(o, weight),
+                     OF(o, rp_min), OF(o, rp_max), AS("per_decade", (uint64_t)o->per_decade),
+                     AS("reference", reference_name(o->reference)));
   json_errors(json, "tolerances", o->tolerances);
   json_errors(json, "tolerance_lengths", o->tolerance_lengths);
   scree_json_end(json);
@@ -141,11 +137,8 @@ static void json_source(scree_json *json, const scree_choice_entry *entry) {
   scree_json_text(json, "name", entry->name);
   scree_json_source(json, entry->format, entry->checksum, entry->unit_m);
   if (entry->is_sample) {
-    scree_json_row_object(json, "sample");
-    scree_json_number(json, "resolution_m", entry->sample_resolution);
-    scree_json_number(json, "noise_m", entry->sample_noise);
-    scree_json_count(json, "seed", entry->sample_seed);
-    scree_json_end(json);
+    SCREE_JSON_ROW(json, "sample", AS("resolution_m", entry->sample_resolution),
+                   AS("noise_m", entry->sample_noise), AS("seed", entry->sample_seed));
   }
   scree_json_text(json, "mesh_file", entry->mesh_file);
 }
@@ -154,21 +147,21 @@ static void json_entry(scree_json *json, const scree_choice_report *report, size
   const scree_choice_entry *entry = &report->entries[index];
   const scree_choice *choice = entry->choice;
   scree_json_object(json, NULL);
-  scree_json_text(json, "file", entry->file);
-  SCREE_JSON_MEMBERS(json, choice, triangle_count, area, volume);
+  SCREE_JSON_MEMBERS(json, OF(entry, file), OF(choice, triangle_count), OF(choice, area),
+                     OF(choice, volume));
   json_levels(json, choice);
   json_recommended(json, report, index);
   json_sentences(json, "answer", report, index, scree_choice_answer);
   json_sentences(json, "warnings", report, index, scree_choice_warnings);
   json_pick(json, "paper", &choice->paper);
   json_pick(json, "robust", &choice->robust);
-  scree_json_bool(json, "paper_is_accident", choice->paper_is_accident);
-  scree_json_text(json, "default", scree_choice_rule_name(report->rule));
+  SCREE_JSON_MEMBERS(json, OF(choice, paper_is_accident),
+                     AS("default", scree_choice_rule_name(report->rule)));
   json_noise(json, choice);
   json_best(json, choice, report->options->weight);
-  scree_json_number(json, "reference_area", choice->reference_area);
-  scree_json_count(json, "floor_triangle_count", choice->floor_count);
-  scree_json_count(json, "triangle_count_if_scanned_twice_as_fine", choice->paper_finer_count);
+  SCREE_JSON_MEMBERS(json, OF(choice, reference_area),
+                     AS("floor_triangle_count", choice->floor_count),
+                     AS("triangle_count_if_scanned_twice_as_fine", choice->paper_finer_count));
   json_source(json, entry);
   scree_json_maker(json, report->command_line);
   json_options(json, report);
@@ -176,11 +169,8 @@ static void json_entry(scree_json *json, const scree_choice_report *report, size
 }
 
 static void json_set_pick(scree_json *json, const char *key, const scree_set_pick *pick) {
-  scree_json_row_object(json, key);
-  SCREE_JSON_MEMBERS(json, pick, rp, ip);
-  scree_json_number(json, "similar_rp_low", pick->rp_low);
-  scree_json_number(json, "similar_rp_high", pick->rp_high);
-  scree_json_end(json);
+  SCREE_JSON_ROW(json, key, OF(pick, rp), OF(pick, ip), AS("similar_rp_low", pick->rp_low),
+                 AS("similar_rp_high", pick->rp_high));
 }
 
 static void json_set(scree_json *json, const scree_choice_report *report) {
@@ -189,12 +179,8 @@ static void json_set(scree_json *json, const scree_choice_report *report) {
   scree_json_bool(json, "set", true);
   scree_json_count(json, "object_count", set->object_count);
   SCREE_JSON_LIST (json, "levels", i, set->level_count) {
-    scree_json_row_object(json, NULL);
-    scree_json_number(json, "rp", scree_choice_grid_rp(report->options, i));
-    scree_json_number(json, "ip", set->ip[i]);
-    scree_json_number(json, "ip_low", set->low[i]);
-    scree_json_number(json, "ip_high", set->high[i]);
-    scree_json_end(json);
+    SCREE_JSON_ROW(json, NULL, AS("rp", scree_choice_grid_rp(report->options, i)),
+                   AS("ip", set->ip[i]), AS("ip_low", set->low[i]), AS("ip_high", set->high[i]));
   }
   json_sentences(json, "answer", report, report->entry_count, scree_choice_answer);
   json_sentences(json, "warnings", report, report->entry_count, scree_choice_warnings);
@@ -202,8 +188,8 @@ static void json_set(scree_json *json, const scree_choice_report *report) {
     if (report->entries[i].choice->fidelity)
       scree_json_count(json, NULL, report->entries[i].choice->recommended.triangle_count);
   json_set_pick(json, "paper", &set->paper);
-  scree_json_number(json, "paper_spread", set->paper_spread);
-  scree_json_number(json, "triangle_ratio_if_scanned_twice_as_fine", set->paper_growth);
+  SCREE_JSON_MEMBERS(json, OF(set, paper_spread),
+                     AS("triangle_ratio_if_scanned_twice_as_fine", set->paper_growth));
   scree_json_maker(json, report->command_line);
   json_options(json, report);
   scree_json_end(json);

@@ -1,6 +1,5 @@
 /* What a choice says in sentences. The text for people, the JSON and the page all have them from
  * here, so that none tells what another keeps silent about. */
-#include "base/error.h"
 #include "base/number.h"
 #include "report/choice.h"
 #include "report/program.h"

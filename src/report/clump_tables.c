@@ -8,31 +8,22 @@
 #include <math.h>
 
 /* A number of each clump, in the order of the tables. */
-#define COLUMN(name, member)                                                                       \
-  { name, offsetof(scree_clump, member) }
-static const struct {
-  const char *name;
-  size_t offset;
-} columns[] = {COLUMN("iou", iou),
-               COLUMN("union_volume", union_volume),
-               COLUMN("volume_error", volume_error),
-               COLUMN("centroid_error", centroid_error),
-               COLUMN("inertia_error", inertia_error),
-               COLUMN("to_mesh_mean", to_mesh.mean),
-               COLUMN("to_mesh_max", to_mesh.maximum),
-               COLUMN("from_mesh_mean", from_mesh.mean),
-               COLUMN("from_mesh_max", from_mesh.maximum),
-               COLUMN("roughness", roughness),
-               COLUMN("slope_deg", slope_deg),
-               COLUMN("outside", outside),
-               COLUMN("volume_criterion", volume_criterion),
-               COLUMN("distance_criterion", distance_criterion)};
-#undef COLUMN
+static const scree_field columns[] = {
+    SCREE_FIELD_OF(scree_clump, iou),
+    SCREE_FIELD_OF(scree_clump, union_volume),
+    SCREE_FIELD_OF(scree_clump, volume_error),
+    SCREE_FIELD_OF(scree_clump, centroid_error),
+    SCREE_FIELD_OF(scree_clump, inertia_error),
+    SCREE_FIELD_AS(scree_clump, "to_mesh_mean", to_mesh.mean),
+    SCREE_FIELD_AS(scree_clump, "to_mesh_max", to_mesh.maximum),
+    SCREE_FIELD_AS(scree_clump, "from_mesh_mean", from_mesh.mean),
+    SCREE_FIELD_AS(scree_clump, "from_mesh_max", from_mesh.maximum),
+    SCREE_FIELD_OF(scree_clump, roughness),
+    SCREE_FIELD_OF(scree_clump, slope_deg),
+    SCREE_FIELD_OF(scree_clump, outside),
+    SCREE_FIELD_OF(scree_clump, volume_criterion),
+    SCREE_FIELD_OF(scree_clump, distance_criterion)};
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
-
-static const double *value_of(const scree_clump *clump, int column) {
-  return (const void *)((const char *)clump + columns[column].offset);
-}
 
 /* To a millionth of the size: shorter, and finer than any scan. */
 static double shortened(double value, double size) {
@@ -55,8 +46,7 @@ static void json_clumps(scree_json *json, const scree_clumps *clumps) {
     const scree_clump *c = &clumps->clumps[i];
     scree_json_row_object(json, NULL);
     scree_json_count(json, "sphere_count", c->sphere_count);
-    for (int k = 0; k < COLUMN_COUNT; k++)
-      scree_json_number(json, columns[k].name, *value_of(c, k));
+    for (int k = 0; k < COLUMN_COUNT; k++) scree_json_field(json, &columns[k], c);
     scree_json_count(json, "useless_count", c->useless_count);
     json_spheres(json, c, clumps->size);
     scree_json_end(json);
@@ -66,12 +56,11 @@ static void json_clumps(scree_json *json, const scree_clumps *clumps) {
 /* The mass properties that go with every clump. */
 static void json_body(scree_json *json, const scree_clumps *clumps) {
   const scree_measures *m = &clumps->measures;
-  scree_json_number(json, "volume", m->volume);
-  scree_json_number(json, "size", clumps->size);
+  SCREE_JSON_MEMBERS(json, OF(m, volume), OF(clumps, size));
   scree_json_numbers(json, "centroid", m->centroid, 3);
   scree_json_numbers(json, "principal_moments", m->principal_moments, 3);
   scree_json_matrix(json, "principal_axes", m->principal_axes);
-  SCREE_JSON_MEMBERS(json, clumps, thickness, wall_cells);
+  SCREE_JSON_MEMBERS(json, OF(clumps, thickness), OF(clumps, wall_cells));
 }
 
 /* The surface that the spheres stand for. */
@@ -88,16 +77,14 @@ static void json_entry(scree_json *json, const scree_clump_report *report,
                        const scree_clump_entry *e) {
   const scree_clumps *c = e->clumps;
   scree_json_object(json, NULL);
-  SCREE_JSON_MEMBERS(json, e, file, name);
+  SCREE_JSON_MEMBERS(json, OF(e, file), OF(e, name));
   scree_json_source(json, e->format, e->checksum, e->unit_m);
-  SCREE_JSON_MEMBERS(json, e, note, scan_triangle_count);
-  scree_json_count(json, "triangle_count", e->mesh->triangle_count);
-  scree_json_text(json, "method", scree_clump_method_name(c->method));
+  SCREE_JSON_MEMBERS(json, OF(e, note), OF(e, scan_triangle_count), OF(e->mesh, triangle_count),
+                     AS("method", scree_clump_method_name(c->method)));
   json_body(json, c);
-  scree_json_count(json, "recommended", c->clumps[c->recommended].sphere_count);
-  scree_json_count(json, "recommended_by_distance", c->clumps[c->by_distance].sphere_count);
-  scree_json_count(json, "chosen", e->chosen->sphere_count);
-  scree_json_text(json, "clump_file", e->clump_file);
+  SCREE_JSON_MEMBERS(json, AS("recommended", c->clumps[c->recommended].sphere_count),
+                     AS("recommended_by_distance", c->clumps[c->by_distance].sphere_count),
+                     AS("chosen", e->chosen->sphere_count), OF(e, clump_file));
   json_clumps(json, c);
   json_surface(json, e->mesh, c->size);
   scree_json_maker(json, report->command_line);
@@ -121,7 +108,7 @@ scree_status scree_clump_csv_write(const void *what, const char *path, bool over
   SCREE_TRY(scree_output_open(path, overwrite, &output, error));
   FILE *f = output.stream;
   fputs("name,sphere_count", f);
-  for (int k = 0; k < COLUMN_COUNT; k++) fprintf(f, ",%s", columns[k].name);
+  for (int k = 0; k < COLUMN_COUNT; k++) fprintf(f, ",%s", columns[k].key);
   fputs(",useless_count,recommended,chosen\n", f);
   for (size_t e = 0; e < report->entry_count; e++) {
     const scree_clump_entry *entry = &report->entries[e];
@@ -130,7 +117,8 @@ scree_status scree_clump_csv_write(const void *what, const char *path, bool over
       const scree_clump *c = &clumps->clumps[i];
       scree_quote(f, SCREE_QUOTE_CSV, entry->name);
       fprintf(f, ",%zu", c->sphere_count);
-      for (int k = 0; k < COLUMN_COUNT; k++) scree_csv_numbers(f, value_of(c, k), 1);
+      for (int k = 0; k < COLUMN_COUNT; k++)
+        scree_csv_numbers(f, scree_field_at(&columns[k], c), 1);
       fprintf(f, ",%zu,%d,%d\n", c->useless_count, i == clumps->recommended, c == entry->chosen);
     }
   }

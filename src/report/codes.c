@@ -13,11 +13,9 @@
 
 #include "base/codec.h"
 #include "base/file.h"
-#include "base/owned.h"
 #include "base/path.h"
 #include "base/quote.h"
 #include "base/vec.h"
-#include "report/program.h"
 
 #include <ctype.h>
 #include <stdlib.h>

@@ -62,8 +62,8 @@ static void weigh(const scree_mesh *mesh, double density, scree_exported *p) {
 /* file, checksum, version, command */
 static void export_json_provenance(scree_json *json, const scree_export_options *options) {
   char checksum[SCREE_CHECKSUM_TEXT];
-  scree_json_text(json, "file", options->source);
-  scree_json_text(json, "checksum", scree_checksum_text(options->checksum, checksum));
+  SCREE_JSON_MEMBERS(json, AS("file", options->source),
+                     AS("checksum", scree_checksum_text(options->checksum, checksum)));
   scree_json_maker(json, options->command_line);
 }
 
@@ -77,18 +77,14 @@ static scree_status write_json(const scree_export_options *options, const scree_
   scree_json json;
   SCREE_TRY(scree_json_open(&json, path, options->overwrite, error));
   scree_json_object(&json, NULL);
-  scree_json_text(&json, "mesh_file", slash ? slash + 1 : mesh_path);
-  scree_json_number(&json, "unit_m", options->unit_m);
-  SCREE_JSON_MEMBERS(&json, mesh, triangle_count, vertex_count);
-  scree_json_number(&json, "density", options->density);
-  scree_json_number(&json, "mass", p->mass);
-  SCREE_JSON_MEMBERS(&json, m, volume, area);
+  SCREE_JSON_MEMBERS(&json, AS("mesh_file", slash ? slash + 1 : mesh_path), OF(options, unit_m),
+                     OF(mesh, triangle_count), OF(mesh, vertex_count), OF(options, density),
+                     OF(p, mass), OF(m, volume), OF(m, area));
   scree_json_numbers(&json, "centre_of_mass", m->centroid, 3);
   scree_json_matrix(&json, "inertia", p->inertia);
   scree_json_numbers(&json, "principal_moments", moments, 3);
   scree_json_matrix(&json, "principal_axes", m->principal_axes);
-  scree_json_number(&json, "equivalent_diameter", m->equivalent_diameter);
-  scree_json_number(&json, "bounding_radius", p->bounding_radius);
+  SCREE_JSON_MEMBERS(&json, OF(m, equivalent_diameter), OF(p, bounding_radius));
   scree_json_numbers(&json, "box_min", m->box_min, 3);
   scree_json_numbers(&json, "box_max", m->box_max, 3);
   scree_json_object(&json, "placement");
@@ -194,12 +190,10 @@ static void json_shape(scree_json *json, const exporter *e, size_t index) {
   bool mesh = m.kind == SCREE_PARTICLE_MESH;
   shape_name(index, name);
   scree_json_object(json, NULL);
-  scree_json_count(json, "shape", index);
-  scree_json_text(json, "kind", kinds[m.kind]);
-  scree_json_text(json, "mesh_file", mesh ? name : NULL);
-  SCREE_JSON_MEMBERS(json, &m, triangle_count, volume);
+  SCREE_JSON_MEMBERS(json, AS("shape", index), AS("kind", kinds[m.kind]),
+                     AS("mesh_file", mesh ? name : NULL), OF(&m, triangle_count), OF(&m, volume));
   scree_json_numbers(json, "inertia_per_density", m.inertia, 3);
-  SCREE_JSON_MEMBERS(json, &m, size, bounding_radius);
+  SCREE_JSON_MEMBERS(json, OF(&m, size), OF(&m, bounding_radius));
   json_spheres(json, particle, mesh ? 0 : m.point_count);
   scree_json_end(json);
 }
@@ -208,10 +202,9 @@ static void json_body(scree_json *json, const exporter *e, size_t index) {
   scree_body b;
   scree_world_get_body(e->world, index, &b);
   scree_json_row_object(json, NULL);
-  scree_json_count(json, "body", index);
-  scree_json_count(json, "shape", e->shapes->of_body[index]);
-  scree_json_count(json, "material", scree_world_body_material(e->world, index));
-  scree_json_number(json, "mass", scree_world_body_mass(e->world, index));
+  SCREE_JSON_MEMBERS(json, AS("body", index), AS("shape", e->shapes->of_body[index]),
+                     AS("material", scree_world_body_material(e->world, index)),
+                     AS("mass", scree_world_body_mass(e->world, index)));
   scree_json_numbers(json, "position", b.position, 3);
   scree_json_numbers(json, "orientation", b.orientation, 4);
   scree_json_numbers(json, "velocity", b.velocity, 3);
@@ -228,14 +221,13 @@ static void json_wall(scree_json *json, const exporter *e, size_t index) {
   scree_world_wall_orientation(e->world, index, orientation);
   wall_name(index, name);
   scree_json_row_object(json, NULL);
-  scree_json_count(json, "wall", index);
-  scree_json_text(json, "kind", kinds[wall.kind]);
-  scree_json_text(json, "mesh_file", wall.kind == SCREE_WALL_MESH ? name : NULL);
-  scree_json_count(json, "material", wall.material);
+  SCREE_JSON_MEMBERS(json, AS("wall", index), AS("kind", kinds[wall.kind]),
+                     AS("mesh_file", wall.kind == SCREE_WALL_MESH ? name : NULL),
+                     OF(&wall, material));
   scree_json_numbers(json, "position", wall.position, 3);
   scree_json_numbers(json, "orientation", orientation, 4);
   scree_json_numbers(json, "axis", wall.axis, 3);
-  SCREE_JSON_MEMBERS(json, &wall, radius, length);
+  SCREE_JSON_MEMBERS(json, OF(&wall, radius), OF(&wall, length));
   scree_json_numbers(json, "velocity", wall.velocity, 3);
   scree_json_numbers(json, "angular_velocity", wall.angular_velocity, 3);
   scree_json_end(json);
@@ -313,7 +305,7 @@ static void add_body(const exporter *e, size_t index, const scree_mesh *mesh, sc
   scree_body b;
   scree_world_get_body(e->world, index, &b);
   const double *q = b.orientation;
-  const mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  const mat3 turn = quat_to_mat3(quat_load(q));
   for (size_t k = 0; k < 3 * mesh->triangle_count; k++)
     to->triangles[3 * to->triangle_count + k] = mesh->triangles[k] + (uint32_t)to->vertex_count;
   for (size_t v = 0; v < mesh->vertex_count; v++)

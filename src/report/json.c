@@ -5,7 +5,6 @@
 #include "base/quote.h"
 
 #include <math.h>
-#include <string.h>
 
 scree_json scree_json_start(FILE *stream) {
   return (scree_json){.stream = stream};
@@ -86,12 +85,61 @@ void scree_json_bool(scree_json *json, const char *key, bool value) {
   fputs(value ? "true" : "false", json->stream);
 }
 
+scree_json_value scree_json_of_number(const char *key, double value) {
+  return (scree_json_value){.key = key, .kind = SCREE_JSON_NUMBER, .number = value};
+}
+scree_json_value scree_json_of_count(const char *key, uint64_t value) {
+  return (scree_json_value){.key = key, .kind = SCREE_JSON_COUNT, .count = value};
+}
+scree_json_value scree_json_of_bool(const char *key, bool value) {
+  return (scree_json_value){.key = key, .kind = SCREE_JSON_BOOL, .count = value};
+}
+scree_json_value scree_json_of_text(const char *key, const char *value) {
+  return (scree_json_value){.key = key, .kind = SCREE_JSON_TEXT, .text = value};
+}
+
+void scree_json_values(scree_json *json, const scree_json_value *values, size_t count) {
+  for (const scree_json_value *v = values; v < values + count; v++) {
+    if (v->kind == SCREE_JSON_NUMBER) scree_json_number(json, v->key, v->number);
+    if (v->kind == SCREE_JSON_COUNT) scree_json_count(json, v->key, v->count);
+    if (v->kind == SCREE_JSON_BOOL) scree_json_bool(json, v->key, v->count);
+    if (v->kind == SCREE_JSON_TEXT) scree_json_text(json, v->key, v->text);
+  }
+}
+
 void scree_json_numbers(scree_json *json, const char *key, const double *values, size_t count) {
   SCREE_JSON_ROW_LIST (json, key, i, count) scree_json_number(json, NULL, values[i]);
 }
 
 void scree_json_matrix(scree_json *json, const char *key, const double values[3][3]) {
   SCREE_JSON_ROW_LIST (json, key, i, 3) scree_json_numbers(json, NULL, values[i], 3);
+}
+
+static void put_reals(scree_json *json, const char *key, const double *values, size_t count) {
+  if (count == 1)
+    scree_json_number(json, key, *values);
+  else if (count == 9)
+    scree_json_matrix(json, key, (const void *)values);
+  else
+    scree_json_numbers(json, key, values, count);
+}
+
+void scree_json_field(scree_json *json, const scree_field *f, const void *record) {
+  const void *at = scree_field_at(f, record);
+  switch (f->kind) {
+  case SCREE_FIELD_COUNT:
+  case SCREE_FIELD_SEED:
+    scree_json_count(json, f->key, scree_field_whole(f, record));
+    break;
+  case SCREE_FIELD_WHOLE:
+    scree_json_number(json, f->key, (double)*(const long long *)at);
+    break;
+  case SCREE_FIELD_FLAG:
+    scree_json_bool(json, f->key, *(const bool *)at);
+    break;
+  default:
+    put_reals(json, f->key, at, f->size / sizeof(double));
+  }
 }
 
 scree_status scree_json_open(scree_json *json, const char *path, bool overwrite,

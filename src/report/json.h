@@ -12,6 +12,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "base/field.h"
 #include "base/file.h"
 
 enum { SCREE_JSON_DEPTH = 32 };
@@ -59,33 +60,40 @@ void scree_json_matrix(scree_json *json, const char *key, const double values[3]
   for (size_t index = (open((json), (key)), 0); index < (count) || (scree_json_end(json), false);  \
        index++)
 
-/* Members of *object under their own names, up to ten, each as its type is written. */
-#define SCREE_JSON_MEMBERS(json, object, ...)                                                      \
-  SCREE_JSON_CHOSEN(__VA_ARGS__, SCREE_JSON_10, SCREE_JSON_9, SCREE_JSON_8, SCREE_JSON_7,          \
-                    SCREE_JSON_6, SCREE_JSON_5, SCREE_JSON_4, SCREE_JSON_3, SCREE_JSON_2,          \
-                    SCREE_JSON_1, )                                                                \
-  (json, object, __VA_ARGS__)
-#define SCREE_JSON_CHOSEN(a, b, c, d, e, f, g, h, i, j, name, ...) name
-#define SCREE_JSON_1(json, object, member)                                                         \
-  _Generic((object)->member, double                                                                \
-           : scree_json_number, bool                                                               \
-           : scree_json_bool, const char *                                                         \
-           : scree_json_text, char *                                                               \
-           : scree_json_text, default                                                              \
-           : scree_json_count)(json, #member, (object)->member)
-#define SCREE_JSON_2(j, o, m, ...)  (SCREE_JSON_1(j, o, m), SCREE_JSON_1(j, o, __VA_ARGS__))
-#define SCREE_JSON_3(j, o, m, ...)  (SCREE_JSON_1(j, o, m), SCREE_JSON_2(j, o, __VA_ARGS__))
-#define SCREE_JSON_4(j, o, m, ...)  (SCREE_JSON_1(j, o, m), SCREE_JSON_3(j, o, __VA_ARGS__))
-#define SCREE_JSON_5(j, o, m, ...)  (SCREE_JSON_1(j, o, m), SCREE_JSON_4(j, o, __VA_ARGS__))
-#define SCREE_JSON_6(j, o, m, ...)  (SCREE_JSON_1(j, o, m), SCREE_JSON_5(j, o, __VA_ARGS__))
-#define SCREE_JSON_7(j, o, m, ...)  (SCREE_JSON_1(j, o, m), SCREE_JSON_6(j, o, __VA_ARGS__))
-#define SCREE_JSON_8(j, o, m, ...)  (SCREE_JSON_1(j, o, m), SCREE_JSON_7(j, o, __VA_ARGS__))
-#define SCREE_JSON_9(j, o, m, ...)  (SCREE_JSON_1(j, o, m), SCREE_JSON_8(j, o, __VA_ARGS__))
-#define SCREE_JSON_10(j, o, m, ...) (SCREE_JSON_1(j, o, m), SCREE_JSON_9(j, o, __VA_ARGS__))
-/* An object on one line of such members alone. */
-#define SCREE_JSON_ROW(json, key, object, ...)                                                     \
-  (scree_json_row_object(json, key), SCREE_JSON_MEMBERS(json, object, __VA_ARGS__),                \
-   scree_json_end(json))
+/* A value with its key, as its type is written: OF a member under its own name, AS another. */
+typedef struct scree_json_value {
+  const char *key;
+  enum { SCREE_JSON_NUMBER, SCREE_JSON_COUNT, SCREE_JSON_BOOL, SCREE_JSON_TEXT } kind;
+  double number;
+  uint64_t count; /* of a bool: 1 or 0 */
+  const char *text;
+} scree_json_value;
+#define AS(name, value)                                                                            \
+  _Generic((value), double                                                                         \
+           : scree_json_of_number, float                                                           \
+           : scree_json_of_number, bool                                                            \
+           : scree_json_of_bool, const char *                                                      \
+           : scree_json_of_text, char *                                                            \
+           : scree_json_of_text, default                                                           \
+           : scree_json_of_count)(name, value)
+#define OF(object, member) AS(#member, (object)->member)
+scree_json_value scree_json_of_number(const char *key, double value);
+scree_json_value scree_json_of_count(const char *key, uint64_t value);
+scree_json_value scree_json_of_bool(const char *key, bool value);
+scree_json_value scree_json_of_text(const char *key, const char *value);
+void scree_json_values(scree_json *json, const scree_json_value *values, size_t count);
+/* Some of them, one after the other:
+ *
+ *   SCREE_JSON_MEMBERS(json, OF(mesh, vertex_count), AS("unit", unit)); */
+#define SCREE_JSON_MEMBERS(json, ...)                                                              \
+  scree_json_values(json, (const scree_json_value[]){__VA_ARGS__},                                 \
+                    sizeof((const scree_json_value[]){__VA_ARGS__}) / sizeof(scree_json_value))
+/* An object on one line of them alone. */
+#define SCREE_JSON_ROW(json, key, ...)                                                             \
+  (scree_json_row_object(json, key), SCREE_JSON_MEMBERS(json, __VA_ARGS__), scree_json_end(json))
+
+/* A member under its row's key; NaN of a REAL is null, 3 x 3 of them are rows. */
+void scree_json_field(scree_json *json, const scree_field *field, const void *record);
 
 /* Fields that many files have. Of what: a file's format, checksum, and unit of length in metres. */
 void scree_json_source(scree_json *json, const char *format, scree_checksum checksum,

@@ -1,6 +1,7 @@
 /* What the program writes and draws, of what the public interface gives. */
 #pragma once
 
+#include "base/field.h"
 #include "scree.h"
 
 /* Writes a file of a result: of a scree_choice_report, scree_clump_report, scree_study_result or
@@ -118,18 +119,15 @@ typedef struct scree_curve_row {
 
 /* Its numbers beside the triangle count, in the order of the table: as text, CSV and JSON. */
 typedef struct scree_curve_column {
-  const char *csv, *json, *head; /* names; the last in text, with its unit */
-  double scale;                  /* from m into that unit */
+  scree_field of;          /* of a row; its key in CSV */
+  const char *json, *head; /* names in JSON and in text, with its unit */
+  double scale;            /* from m into that unit */
   struct {
     int width, digits;
-  } text[2];     /* without and with distances; width 0: it is not shown */
-  size_t offset; /* of the value in a row */
+  } text[2]; /* without and with distances; width 0: it is not shown */
 } scree_curve_column;
 enum { SCREE_CURVE_COLUMNS = 12, SCREE_CURVE_DISTANCES = 7 }; /* from the second on, distances */
 extern const scree_curve_column scree_curve_columns[SCREE_CURVE_COLUMNS];
-static inline double scree_curve_value(const scree_curve_row *row, int column) {
-  return *(const double *)(const void *)((const char *)row + scree_curve_columns[column].offset);
-}
 
 /* A table of levels of one curve. Texts are borrowed. */
 typedef struct scree_curve_entry {
@@ -280,6 +278,9 @@ int scree_words_decimals(double spread);
 /* Says a scene, or its first heap where it has one. stopped: why it ended early, or NULL. */
 void scree_scene_words(const scree_scene *scene, const scree_pile *pile, const char *stopped,
                        scree_words *words);
+/* What a pile has beside its heap's angles and lengths. */
+enum { SCREE_PILE_ROWS = 3 };
+extern const scree_field scree_pile_rows[SCREE_PILE_ROWS];
 /* What its methods read beside each other; "" without a heap. */
 void scree_pile_finding(const scree_repose *repose, char *to, size_t size);
 

@@ -17,13 +17,11 @@ scree_status scree_provenance_write(const scree_work_start *start, const char *c
   scree_processor_name(processor);
   scree_json_object(&json, NULL);
   scree_json_maker(&json, command_line);
-  scree_json_text(&json, "started", started);
-  scree_json_number(&json, "elapsed_s", scree_now() - start->elapsed);
-  scree_json_number(&json, "processor_s", scree_processor_time() - start->processor);
-  scree_json_count(&json, "threads", (uint64_t)scree_threads());
-  scree_json_text(&json, "system", system);
-  scree_json_text(&json, "processor", processor);
-  scree_json_count(&json, "processors", (uint64_t)scree_processor_count());
+  SCREE_JSON_MEMBERS(&json, AS("started", started), AS("elapsed_s", scree_now() - start->elapsed),
+                     AS("processor_s", scree_processor_time() - start->processor),
+                     AS("threads", (uint64_t)scree_threads()), AS("system", system),
+                     AS("processor", processor),
+                     AS("processors", (uint64_t)scree_processor_count()));
   scree_json_end(&json);
   return scree_json_commit(&json, error);
 }
@@ -41,9 +39,7 @@ void scree_json_origin(scree_json *json, const scree_origin *origin) {
   json_time(json, "ended", origin->ended);
   scree_json_text(json, "machine", origin->machine);
   SCREE_JSON_LIST (json, "inputs", i, origin->input_count) {
-    scree_json_row_object(json, NULL);
-    scree_json_text(json, "path", origin->inputs[i].path);
-    scree_json_text(json, "checksum", scree_checksum_text(origin->inputs[i].checksum, text));
-    scree_json_end(json);
+    SCREE_JSON_ROW(json, NULL, AS("path", origin->inputs[i].path),
+                   AS("checksum", scree_checksum_text(origin->inputs[i].checksum, text)));
   }
 }

@@ -8,14 +8,15 @@
 #include "report/shapes.h"
 
 #include <math.h>
-#include <string.h>
 
 static void json_book(scree_json *json, const scree_scene *scene) {
   scree_scene_book b;
   scree_scene_get_book(scene, &b);
   scree_json_object(json, "book");
-  SCREE_JSON_MEMBERS(json, &b, entered_count, inside_count, left_count, waiting_count, entered_mass,
-                     inside_mass, left_mass, entered_energy, left_energy, ledger);
+  SCREE_JSON_MEMBERS(json, OF(&b, entered_count), OF(&b, inside_count), OF(&b, left_count),
+                     OF(&b, waiting_count), OF(&b, entered_mass), OF(&b, inside_mass),
+                     OF(&b, left_mass), OF(&b, entered_energy), OF(&b, left_energy),
+                     OF(&b, ledger));
   scree_json_end(json);
 }
 
@@ -23,7 +24,8 @@ static void json_hardened(scree_json *json, const scree_scene *scene) {
   scree_scene_hardening h;
   scree_json_array(json, "hardened");
   for (size_t i = 0; scree_scene_get_hardening(scene, i, &h); i++)
-    SCREE_JSON_ROW(json, NULL, &h, material, other, count, deepest, stiffness_missing);
+    SCREE_JSON_ROW(json, NULL, OF(&h, material), OF(&h, other), OF(&h, count), OF(&h, deepest),
+                   OF(&h, stiffness_missing));
   scree_json_end(json);
 }
 
@@ -31,7 +33,7 @@ static void json_changes(scree_json *json, const scree_scene *scene) {
   size_t count = scree_scene_change_count(scene);
   SCREE_JSON_LIST (json, "changes", i, count) {
     scree_scene_change_entry c = scree_scene_change_at(scene, i);
-    SCREE_JSON_ROW(json, NULL, &c, time, field, was, is);
+    SCREE_JSON_ROW(json, NULL, OF(&c, time), OF(&c, field), OF(&c, was), OF(&c, is));
   }
 }
 
@@ -43,11 +45,9 @@ static void json_pile(scree_json *json, const char *name, const scree_pile_setti
   scree_pile_finding(&pile->repose, finding, sizeof finding);
   scree_json_text(json, "finding", finding);
   scree_json_repose(json, &pile->repose);
-  SCREE_JSON_MEMBERS(json, pile, packing_fraction, body_count);
-  scree_json_number(json, "particle_size", pile->size);
-  scree_json_number(json, "cell", settings->cell);
-  scree_json_count(json, "sectors_asked", settings->sectors);
-  SCREE_JSON_MEMBERS(json, settings, band_low, band_high);
+  for (int i = 0; i < SCREE_PILE_ROWS; i++) scree_json_field(json, &scree_pile_rows[i], pile);
+  SCREE_JSON_MEMBERS(json, OF(settings, cell), AS("sectors_asked", settings->sectors),
+                     OF(settings, band_low), OF(settings, band_high));
   scree_json_end(json);
 }
 
@@ -73,8 +73,7 @@ static scree_status json_tables(scree_json *json, const scree_scene *scene, scre
     scree_json_text(json, "name", name);
     SCREE_JSON_LIST (json, "columns", k, t.column_count) {
       scree_json_row_object(json, NULL);
-      scree_json_text(json, "name", t.names[k]);
-      scree_json_text(json, "unit", t.units[k]);
+      SCREE_JSON_MEMBERS(json, AS("name", t.names[k]), AS("unit", t.units[k]));
       SCREE_JSON_ROW_LIST (json, "values", row, t.row_count) {
         const size_t at = row * t.column_count + k;
         if (t.texts[at])
@@ -93,8 +92,8 @@ static scree_status json_tables(scree_json *json, const scree_scene *scene, scre
 static void json_costs(scree_json *json, const scree_scene *scene) {
   scree_scene_costs c = scree_scene_get_costs(scene);
   scree_json_object(json, "costs");
-  scree_json_count(json, "particle_steps", c.body_steps);
-  SCREE_JSON_MEMBERS(json, &c, wall_seconds, processor_seconds, piece_count);
+  SCREE_JSON_MEMBERS(json, AS("particle_steps", c.body_steps), OF(&c, wall_seconds),
+                     OF(&c, processor_seconds), OF(&c, piece_count));
   scree_json_end(json);
 }
 
@@ -102,9 +101,9 @@ static void json_parts(scree_json *json, const scree_scene *scene) {
   scree_json_array(json, "shapes");
   for (size_t i = 0; scree_scene_shape_name(scene, i); i++) {
     scree_json_object(json, NULL);
-    scree_json_text(json, "name", scree_scene_shape_name(scene, i));
-    scree_json_text(json, "family", scree_scene_shape_family(scene, i));
-    scree_json_text(json, "source", scree_scene_shape_source(scene, i));
+    SCREE_JSON_MEMBERS(json, AS("name", scree_scene_shape_name(scene, i)),
+                       AS("family", scree_scene_shape_family(scene, i)),
+                       AS("source", scree_scene_shape_source(scene, i)));
     scree_shape_json(json, scree_scene_shape_particle(scene, i));
     scree_json_end(json);
   }
@@ -121,12 +120,8 @@ static void json_parts(scree_json *json, const scree_scene *scene) {
   for (size_t i = 0; scree_scene_inlet_name(scene, i); i++) {
     double mass;
     size_t waiting, count = scree_scene_inlet_count(scene, i, &mass, &waiting);
-    scree_json_row_object(json, NULL);
-    scree_json_text(json, "name", scree_scene_inlet_name(scene, i));
-    scree_json_count(json, "count", count);
-    scree_json_number(json, "mass", mass);
-    scree_json_count(json, "waiting", waiting);
-    scree_json_end(json);
+    SCREE_JSON_ROW(json, NULL, AS("name", scree_scene_inlet_name(scene, i)), AS("count", count),
+                   AS("mass", mass), AS("waiting", waiting));
   }
   scree_json_end(json);
   scree_json_array(json, "outlets"); /* the last is the domain's rim */
@@ -134,11 +129,7 @@ static void json_parts(scree_json *json, const scree_scene *scene) {
     const char *name = scree_scene_outlet_name(scene, i);
     double mass;
     size_t count = scree_scene_outlet_count(scene, i, &mass);
-    scree_json_row_object(json, NULL);
-    scree_json_text(json, "name", name);
-    scree_json_count(json, "count", count);
-    scree_json_number(json, "mass", mass);
-    scree_json_end(json);
+    SCREE_JSON_ROW(json, NULL, AS("name", name), AS("count", count), AS("mass", mass));
     if (!name) break;
   }
   scree_json_end(json);
@@ -150,10 +141,10 @@ static void json_columns(scree_json *json, const scree_scene *scene, const doubl
   SCREE_JSON_LIST (json, "columns", k, columns) {
     scree_scene_summary s = scree_scene_summarise(scene, k, NAN, NAN);
     scree_json_object(json, NULL);
-    scree_json_text(json, "name", scree_scene_column_name(scene, k));
-    scree_json_text(json, "unit", scree_scene_column_unit(scene, k));
-    scree_json_number(json, "last", rows ? s.last : last[k]);
-    SCREE_JSON_MEMBERS(json, &s, mean, sd, least, greatest, from, until);
+    SCREE_JSON_MEMBERS(json, AS("name", scree_scene_column_name(scene, k)),
+                       AS("unit", scree_scene_column_unit(scene, k)),
+                       AS("last", rows ? s.last : last[k]), OF(&s, mean), OF(&s, sd), OF(&s, least),
+                       OF(&s, greatest), OF(&s, from), OF(&s, until));
     SCREE_JSON_ROW_LIST (json, "values", i, rows)
       scree_json_number(json, NULL, series[i * columns + k]);
     scree_json_end(json);
@@ -167,19 +158,18 @@ static scree_status write_scene(FILE *stream, const scree_scene_entry *entry, co
   scree_json json = scree_json_start(stream);
   scree_json_object(&json, NULL);
   scree_json_maker(&json, entry->command_line);
-  scree_json_text(&json, "title", scree_scene_title(scene));
-  scree_json_text(&json, "file", entry->file);
-  scree_json_text(&json, "ended_because",
-                  entry->stopped_because ? entry->stopped_because : scree_scene_end(scene));
+  SCREE_JSON_MEMBERS(&json, AS("title", scree_scene_title(scene)), OF(entry, file),
+                     AS("ended_because",
+                        entry->stopped_because ? entry->stopped_because : scree_scene_end(scene)));
   scree_json_bool(&json, "whole", !entry->stopped_because);
   scree_words words;
   scree_scene_words(scene, scree_scene_pile_name(scene, 0) ? piles : NULL, entry->stopped_because,
                     &words);
   scree_json_words(&json, &words);
-  scree_json_number(&json, "time", scree_world_time(world));
-  scree_json_number(&json, "time_step", scree_world_time_step(world, NULL));
-  scree_json_count(&json, "step_count", scree_world_step_count(world));
-  scree_json_number(&json, "wall_seconds", entry->seconds);
+  SCREE_JSON_MEMBERS(&json, AS("time", scree_world_time(world)),
+                     AS("time_step", scree_world_time_step(world, NULL)),
+                     AS("step_count", scree_world_step_count(world)),
+                     AS("wall_seconds", entry->seconds));
   json_costs(&json, scene);
   json_book(&json, scene);
   json_hardened(&json, scene);

@@ -39,9 +39,9 @@ void scree_shape_json(scree_json *json, const scree_particle *particle) {
   static const char *const kinds[] = {"mesh", "sphere", "clump"};
   scree_particle_measures m;
   scree_particle_measure(particle, &m);
-  scree_json_text(json, "kind", kinds[m.kind]);
-  SCREE_JSON_MEMBERS(json, &m, triangle_count, point_count, edge_count, volume, size, thickness,
-                     rounding);
+  SCREE_JSON_MEMBERS(json, AS("kind", kinds[m.kind]), OF(&m, triangle_count), OF(&m, point_count),
+                     OF(&m, edge_count), OF(&m, volume), OF(&m, size), OF(&m, thickness),
+                     OF(&m, rounding));
 }
 
 /* ---- finding them ---- */

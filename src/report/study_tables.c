@@ -11,11 +11,13 @@
 #include <string.h>
 
 static void put_summary(scree_json *json, const char *key, const scree_summary *s) {
-  SCREE_JSON_ROW(json, key, s, count, mean, mean_low, mean_high, sd, sd_low, sd_high, cv);
+  SCREE_JSON_ROW(json, key, OF(s, count), OF(s, mean), OF(s, mean_low), OF(s, mean_high), OF(s, sd),
+                 OF(s, sd_low), OF(s, sd_high), OF(s, cv));
 }
 
 static void put_counts(scree_json *json, const scree_study_counts *c) {
-  SCREE_JSON_ROW(json, "runs", c, done, failed, running, leased, waiting);
+  SCREE_JSON_ROW(json, "runs", OF(c, done), OF(c, failed), OF(c, running), OF(c, leased),
+                 OF(c, waiting));
 }
 
 /* What is summarised of a point's runs: the angle, the time, and the numbers of heaps. */
@@ -43,21 +45,21 @@ static void put_words(scree_json *json, const scree_study_result *r) {
     scree_study_finding(r, k, finding, sizeof finding);
     scree_study_scatter(r, k, &sd, &half);
     scree_json_object(json, NULL);
-    scree_json_text(json, "name", r->answer_count ? r->answers[k] : "angle_deg");
-    scree_json_text(json, "unit", r->answer_count ? r->units[k] : "deg");
-    scree_json_text(json, "sentence", words.answer);
-    scree_json_text(json, "finding", finding);
-    scree_json_number(json, "scatter", sd);
-    scree_json_number(json, "half", half);
+    SCREE_JSON_MEMBERS(json, AS("name", r->answer_count ? r->answers[k] : "angle_deg"),
+                       AS("unit", r->answer_count ? r->units[k] : "deg"),
+                       AS("sentence", words.answer), AS("finding", finding), AS("scatter", sd),
+                       AS("half", half));
     SCREE_JSON_LIST (json, "effects", i, count)
-      SCREE_JSON_ROW(json, NULL, &effects[i], factor, other, from, to, size, half);
+      SCREE_JSON_ROW(json, NULL, OF(&effects[i], factor), OF(&effects[i], other),
+                     OF(&effects[i], from), OF(&effects[i], to), OF(&effects[i], size),
+                     OF(&effects[i], half));
     scree_json_end(json);
   }
 }
 
 static void put_point(scree_json *json, const scree_study_result *r, const scree_point_result *p) {
   scree_json_object(json, NULL);
-  SCREE_JSON_MEMBERS(json, p, label, rp, shapes, pile);
+  SCREE_JSON_MEMBERS(json, OF(p, label), OF(p, rp), OF(p, shapes), OF(p, pile));
   scree_json_row_object(json, "factors");
   for (size_t k = 0; k < r->factor_count; k++) {
     double number;
@@ -68,7 +70,7 @@ static void put_point(scree_json *json, const scree_study_result *r, const scree
   }
   scree_json_end(json);
   put_counts(json, &p->counts);
-  SCREE_JSON_MEMBERS(json, p, heap_count, triangle_count);
+  SCREE_JSON_MEMBERS(json, OF(p, heap_count), OF(p, triangle_count));
   for (size_t k = 0; k < summary_count(r); k++)
     put_summary(json, summary_name(r, k), summary_of(p, k));
   scree_json_object(json, "answers");
@@ -85,31 +87,25 @@ static void put_point(scree_json *json, const scree_study_result *r, const scree
 
 static void put_comparison(scree_json *json, const scree_study_result *r, size_t point,
                            const scree_comparison *c) {
-  scree_json_row_object(json, NULL);
-  scree_json_text(json, "rp", r->points[point].rp);
-  SCREE_JSON_MEMBERS(json, c, difference, low, high, degrees, p_equivalence, p_difference,
-                     equivalent, different, count_needed);
-  scree_json_end(json);
+  SCREE_JSON_ROW(json, NULL, AS("rp", r->points[point].rp), OF(c, difference), OF(c, low),
+                 OF(c, high), OF(c, degrees), OF(c, p_equivalence), OF(c, p_difference),
+                 OF(c, equivalent), OF(c, different), OF(c, count_needed));
 }
 
 static void put_pick(scree_json *json, const char *key, const scree_rp_pick *pick) {
-  scree_json_row_object(json, key);
-  SCREE_JSON_MEMBERS(json, pick, low, mean, high);
-  scree_json_text(json, "in_converged_range",
-                  pick->in_range == SCREE_IN_RANGE_YES  ? "yes"
-                  : pick->in_range == SCREE_IN_RANGE_NO ? "no"
-                                                        : "unknown");
-  scree_json_end(json);
+  SCREE_JSON_ROW(json, key, OF(pick, low), OF(pick, mean), OF(pick, high),
+                 AS("in_converged_range", pick->in_range == SCREE_IN_RANGE_YES  ? "yes"
+                                          : pick->in_range == SCREE_IN_RANGE_NO ? "no"
+                                                                                : "unknown"));
 }
 
 static void put_family(scree_json *json, const scree_study_result *r,
                        const scree_family_result *f) {
   scree_json_object(json, NULL);
-  scree_json_text(json, "label", f->label);
-  scree_json_text(json, "finest", r->points[f->levels[f->level_count - 1]].rp);
-  scree_json_bool(json, "converged", f->converged);
-  scree_json_text(json, "converged_from",
-                  f->converged ? r->points[f->levels[f->converged_from]].rp : NULL);
+  SCREE_JSON_MEMBERS(
+      json, OF(f, label), AS("finest", r->points[f->levels[f->level_count - 1]].rp),
+      OF(f, converged),
+      AS("converged_from", f->converged ? r->points[f->levels[f->converged_from]].rp : NULL));
   put_pick(json, "chosen_by_ip", &f->by_ip);
   put_pick(json, "chosen_by_robust", &f->by_robust);
   put_pick(json, "recommended", &f->recommended);
@@ -119,13 +115,14 @@ static void put_family(scree_json *json, const scree_study_result *r,
   scree_json_end(json);
   const scree_power_law none = {0, NAN, NAN, NAN, NAN, NAN},
                         *law = f->time_law.count ? &f->time_law : &none;
-  SCREE_JSON_ROW(json, "time_law", law, count, factor, exponent, exponent_low, exponent_high, r2);
+  SCREE_JSON_ROW(json, "time_law", OF(law, count), OF(law, factor), OF(law, exponent),
+                 OF(law, exponent_low), OF(law, exponent_high), OF(law, r2));
   scree_json_object(json, "time_polynomial");
   scree_json_count(json, "count", f->time_curve.count);
   scree_json_numbers(json, "coefficients", f->time_curve.coefficient,
                      f->time_curve.count ? (size_t)f->time_curve.degree + 1 : 0);
-  scree_json_number(json, "rms", f->time_curve.count ? f->time_curve.rms : NAN);
-  scree_json_number(json, "r2", f->time_curve.count ? f->time_curve.r2 : NAN);
+  SCREE_JSON_MEMBERS(json, AS("rms", f->time_curve.count ? f->time_curve.rms : NAN),
+                     AS("r2", f->time_curve.count ? f->time_curve.r2 : NAN));
   scree_json_end(json);
   scree_json_end(json);
 }
@@ -136,21 +133,23 @@ scree_status scree_study_json_write(const void *result, const char *path, bool o
   scree_json file, *json = &file;
   SCREE_TRY(scree_json_open(json, path, overwrite, error));
   scree_json_object(json, NULL);
-  SCREE_JSON_MEMBERS(json, r, version, name, design, method, angle, seed);
+  SCREE_JSON_MEMBERS(json, OF(r, version), OF(r, name), OF(r, design), OF(r, method), OF(r, angle),
+                     OF(r, seed));
   scree_json_origin(json, &r->origin);
-  scree_json_count(json, "replicates", r->replicate_count);
-  SCREE_JSON_MEMBERS(json, r, margin_deg, confidence);
+  SCREE_JSON_MEMBERS(json, AS("replicates", r->replicate_count), OF(r, margin_deg),
+                     OF(r, confidence));
   put_words(json, r);
   put_counts(json, &r->counts);
-  scree_json_count(json, "workers", r->worker_count);
-  SCREE_JSON_MEMBERS(json, r, seconds_spent, seconds_left, mixed_versions);
+  SCREE_JSON_MEMBERS(json, AS("workers", r->worker_count), OF(r, seconds_spent),
+                     OF(r, seconds_left), OF(r, mixed_versions));
   scree_json_object(json, "units");
   for (size_t k = 0; k < r->answer_count; k++) scree_json_text(json, r->answers[k], r->units[k]);
   scree_json_end(json);
   SCREE_JSON_LIST (json, "points", i, r->point_count) put_point(json, r, &r->points[i]);
   SCREE_JSON_LIST (json, "families", i, r->family_count) put_family(json, r, &r->families[i]);
   SCREE_JSON_LIST (json, "failures", i, r->failure_count) {
-    SCREE_JSON_ROW(json, NULL, &r->failures[i], label, replicate, reason);
+    SCREE_JSON_ROW(json, NULL, OF(&r->failures[i], label), OF(&r->failures[i], replicate),
+                   OF(&r->failures[i], reason));
   }
   scree_json_end(json);
   return scree_json_commit(json, error);

@@ -22,6 +22,16 @@ typedef struct writer {
   uint64_t offset; /* of the next array in the appended data */
 } writer;
 
+/* Of a row's member; arrays and vec3 have several components. */
+static scree_vtk_type type_of(const scree_field *f) {
+  static const scree_vtk_type by_kind[] = {[SCREE_FIELD_REAL] = SCREE_VTK_FLOAT64,
+                                           [SCREE_FIELD_SINGLE] = SCREE_VTK_FLOAT32,
+                                           [SCREE_FIELD_WHOLE] = SCREE_VTK_INT64,
+                                           [SCREE_FIELD_WORD] = SCREE_VTK_INT32,
+                                           [SCREE_FIELD_BYTE] = SCREE_VTK_UINT8};
+  return by_kind[f->kind];
+}
+
 static void declare(writer *w, const char *name, scree_vtk_type type, size_t components,
                     size_t count) {
   fprintf(w->stream, "        <DataArray type=\"%s\" Name=\"", types[type].name);
@@ -44,8 +54,8 @@ static void declare_all(writer *w, const fields *f) {
   for (size_t i = 0; i < f->array_count; i++)
     declare(w, f->arrays[i].name, f->arrays[i].type, f->arrays[i].component_count, f->count);
   for (size_t i = 0; f->rows && i < f->rows->member_count; i++) {
-    const scree_vtk_member *m = &f->rows->members[i];
-    declare(w, m->name, m->type, m->component_count, f->count);
+    const scree_field *m = &f->rows->members[i];
+    declare(w, m->key, type_of(m), m->size / types[type_of(m)].size, f->count);
   }
   fprintf(w->stream, "      </%s>\n", f->element);
 }
@@ -60,12 +70,12 @@ static void append_all(writer *w, const fields *f) {
     append(w, f->arrays[i].values,
            (uint64_t)types[f->arrays[i].type].size * f->arrays[i].component_count * f->count);
   for (size_t i = 0; f->rows && i < f->rows->member_count; i++) {
-    const scree_vtk_member *m = &f->rows->members[i];
-    const char *at = (const char *)f->rows->rows + m->offset;
-    size_t size = types[m->type].size * m->component_count;
-    uint64_t byte_count = (uint64_t)size * f->count;
+    const scree_field *m = &f->rows->members[i];
+    const char *at = scree_field_at(m, f->rows->rows);
+    uint64_t byte_count = (uint64_t)m->size * f->count;
     fwrite(&byte_count, sizeof byte_count, 1, w->stream);
-    for (size_t k = 0; k < f->count; k++, at += f->rows->row_bytes) fwrite(at, size, 1, w->stream);
+    for (size_t k = 0; k < f->count; k++, at += f->rows->row_bytes)
+      fwrite(at, m->size, 1, w->stream);
   }
 }
 
@@ -166,10 +176,7 @@ static void write_series(FILE *stream, const char *const *files, const double *t
   scree_json_object(&json, NULL);
   scree_json_text(&json, "file-series-version", "1.0");
   SCREE_JSON_LIST (&json, "files", i, file_count) {
-    scree_json_row_object(&json, NULL);
-    scree_json_text(&json, "name", files[i]);
-    scree_json_number(&json, "time", times[i]);
-    scree_json_end(&json);
+    SCREE_JSON_ROW(&json, NULL, AS("name", files[i]), AS("time", times[i]));
   }
   scree_json_end(&json);
 }

@@ -2,20 +2,13 @@
 #pragma once
 
 #include "base/error.h"
-
-typedef struct scree_vtk_member {
-  const char *name;
-  scree_vtk_type type;
-  size_t component_count, offset; /* in a row */
-} scree_vtk_member;
-#define SCREE_VTK_MEMBER(row, member, name, type, count)                                           \
-  { name, type, count, offsetof(row, member) }
+#include "base/field.h"
 
 typedef struct scree_vtk_rows {
   const void *rows; /* one a point, or one a cell */
   size_t row_bytes;
   bool of_points;
-  const scree_vtk_member *members;
+  const scree_field *members;
   size_t member_count;
 } scree_vtk_rows;
 #define SCREE_VTK_ROWS(rows, of_points, members)                                                   \

@@ -17,9 +17,6 @@ int scree_words_decimals(double spread) {
 
 void scree_json_words(scree_json *json, const scree_words *w) {
   static const char *const names[] = {"answered", "not reached", "not enough"};
-  scree_json_text(json, "verdict", names[w->verdict]);
-  scree_json_text(json, "state", w->state);
-  scree_json_text(json, "sentence", w->answer);
-  scree_json_text(json, "but", w->but);
-  scree_json_text(json, "next", *w->next ? w->next : NULL);
+  SCREE_JSON_MEMBERS(json, AS("verdict", names[w->verdict]), OF(w, state),
+                     AS("sentence", w->answer), OF(w, but), AS("next", *w->next ? w->next : NULL));
 }

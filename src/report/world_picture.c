@@ -132,8 +132,7 @@ static scree_status find_hiding(const scree_mesh *mesh, const scree_render_item 
                                 bool *hides, scree_error *error) {
   enum { ASKED = 200 };
   static const double few = 0.25;
-  const double *q = item->quaternion;
-  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  mat3 turn = quat_to_mat3(quat_load(item->quaternion));
   vec3 along = mat3_tmul_vec(&turn, scree_to_camera(o->azimuth_deg, o->elevation_deg));
   const float direction[3] = {(float)along.x, (float)along.y, (float)along.z};
   size_t bodies = scree_world_body_count(world), stride = bodies / ASKED + 1;
@@ -159,8 +158,7 @@ static scree_status cut_open(scree_mesh *mesh, const scree_render_item *item, co
                              const scree_render_options *o, scree_error *error) {
   enum { MOST_PIECES = 2 + 3 }; /* triangles of what lies behind, and of what lies below before */
   vec3 viewer = scree_to_camera(o->azimuth_deg, 0), position = vec3_load(item->position);
-  const double *q = item->quaternion;
-  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  mat3 turn = quat_to_mat3(quat_load(item->quaternion));
   half before = {mat3_tmul_vec(&turn, viewer),
                  vec3_dot(vec3_sub(vec3_load(all->middle), position), viewer)};
   half above = {mat3_tmul_vec(&turn, (vec3){0, 0, 1}), all->low - position.z};

@@ -45,10 +45,6 @@ static void add_mesh(sheet *s, const scree_mesh *mesh, const mat3 *turn, vec3 mo
   s->triangle_count += mesh->triangle_count;
 }
 
-static mat3 turn_of(const double orientation[4]) {
-  return quat_to_mat3((quat){orientation[0], orientation[1], orientation[2], orientation[3]});
-}
-
 static double norm_of(const double v[3]) {
   return vec3_norm(vec3_load(v));
 }
@@ -66,12 +62,10 @@ typedef struct surface_row {
   float speed, angular_speed;
 } surface_row;
 
-static const scree_vtk_member surface_members[] = {
-    SCREE_VTK_MEMBER(surface_row, body, "body", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(surface_row, shape, "shape", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(surface_row, material, "material", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(surface_row, speed, "speed", SCREE_VTK_FLOAT32, 1),
-    SCREE_VTK_MEMBER(surface_row, angular_speed, "angular_speed", SCREE_VTK_FLOAT32, 1),
+static const scree_field surface_members[] = {
+    SCREE_FIELD_OF(surface_row, body),          SCREE_FIELD_OF(surface_row, shape),
+    SCREE_FIELD_OF(surface_row, material),      SCREE_FIELD_OF(surface_row, speed),
+    SCREE_FIELD_OF(surface_row, angular_speed),
 };
 
 static void fill_surfaces(const scree_world *world, const scree_shapes *shapes, sheet *s,
@@ -81,7 +75,7 @@ static void fill_surfaces(const scree_world *world, const scree_shapes *shapes, 
     size_t begin = s->triangle_count;
     if (scree_world_body_removed(world, i)) continue;
     scree_world_get_body(world, i, &state);
-    mat3 turn = turn_of(state.orientation);
+    mat3 turn = quat_to_mat3(quat_load(state.orientation));
     add_mesh(s, scree_shape_surface(shapes, shapes->of_body[i]), &turn, vec3_load(state.position));
     for (size_t t = begin; t < s->triangle_count; t++)
       rows[t] = (surface_row){
@@ -128,15 +122,11 @@ typedef struct point_row {
   double orientation[4], velocity[3], angular_velocity[3], mass, size;
 } point_row;
 
-static const scree_vtk_member point_members[] = {
-    SCREE_VTK_MEMBER(point_row, body, "body", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(point_row, shape, "shape", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(point_row, material, "material", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(point_row, orientation, "orientation", SCREE_VTK_FLOAT64, 4),
-    SCREE_VTK_MEMBER(point_row, velocity, "velocity", SCREE_VTK_FLOAT64, 3),
-    SCREE_VTK_MEMBER(point_row, angular_velocity, "angular_velocity", SCREE_VTK_FLOAT64, 3),
-    SCREE_VTK_MEMBER(point_row, mass, "mass", SCREE_VTK_FLOAT64, 1),
-    SCREE_VTK_MEMBER(point_row, size, "size", SCREE_VTK_FLOAT64, 1),
+static const scree_field point_members[] = {
+    SCREE_FIELD_OF(point_row, body),     SCREE_FIELD_OF(point_row, shape),
+    SCREE_FIELD_OF(point_row, material), SCREE_FIELD_OF(point_row, orientation),
+    SCREE_FIELD_OF(point_row, velocity), SCREE_FIELD_OF(point_row, angular_velocity),
+    SCREE_FIELD_OF(point_row, mass),     SCREE_FIELD_OF(point_row, size),
 };
 
 static scree_status write_points(const scree_world *world, const output_name *to,
@@ -179,16 +169,16 @@ typedef struct pair_row {
   double overlap;
 } pair_row;
 
-static const scree_vtk_member pair_members[] = {
-    SCREE_VTK_MEMBER(pair_row, body, "body", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(pair_row, other, "other", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(pair_row, wall, "wall", SCREE_VTK_UINT8, 1),
-    SCREE_VTK_MEMBER(pair_row, feature_count, "feature_count", SCREE_VTK_INT64, 1),
-    SCREE_VTK_MEMBER(pair_row, force, "force", SCREE_VTK_FLOAT64, 3),
-    SCREE_VTK_MEMBER(pair_row, normal_force, "normal_force", SCREE_VTK_FLOAT64, 3),
-    SCREE_VTK_MEMBER(pair_row, tangential_force, "tangential_force", SCREE_VTK_FLOAT64, 3),
-    SCREE_VTK_MEMBER(pair_row, place, "place", SCREE_VTK_FLOAT64, 3),
-    SCREE_VTK_MEMBER(pair_row, overlap, "overlap", SCREE_VTK_FLOAT64, 1),
+static const scree_field pair_members[] = {
+    SCREE_FIELD_OF(pair_row, body),
+    SCREE_FIELD_OF(pair_row, other),
+    SCREE_FIELD_OF(pair_row, wall),
+    SCREE_FIELD_OF(pair_row, feature_count),
+    SCREE_FIELD_OF(pair_row, force),
+    SCREE_FIELD_OF(pair_row, normal_force),
+    SCREE_FIELD_OF(pair_row, tangential_force),
+    SCREE_FIELD_OF(pair_row, place),
+    SCREE_FIELD_OF(pair_row, overlap),
 };
 
 typedef struct pair_list {
@@ -348,7 +338,7 @@ static void add_wall(sheet *s, const scree_world *world, size_t index, const ext
   double orientation[4];
   scree_world_get_wall(world, index, &wall);
   scree_world_wall_orientation(world, index, orientation);
-  mat3 turn = turn_of(orientation);
+  mat3 turn = quat_to_mat3(quat_load(orientation));
   vec3 at = vec3_load(wall.position);
   switch (wall.kind) {
   case SCREE_WALL_PLANE:
@@ -378,7 +368,7 @@ scree_status scree_wall_mesh(const scree_world *world, size_t index, scree_mesh 
   SCREE_TRY(make_room(&s, triangles ? wall.mesh->vertex_count : 2 * ROUND_SIDES + 1,
                       triangles ? wall.mesh->triangle_count : 2 * ROUND_SIDES, error));
   add_wall(&s, world, index, &e);
-  mat3 turn = turn_of(orientation);
+  mat3 turn = quat_to_mat3(quat_load(orientation));
   for (size_t v = 0; v < s.point_count; v++) {
     vec3 p = vec3_sub(vec3_load(s.points + 3 * v), vec3_load(wall.position));
     vec3_store(s.points + 3 * v, mat3_tmul_vec(&turn, p));
@@ -431,14 +421,12 @@ static scree_status write_walls(const scree_world *world, const scree_scene *sce
     if (scene) SCREE_TRY(fill_maps(scene, i, begin, &s, rows, error));
   }
   char names[SCREE_MAP_COUNT][32];
-  scree_vtk_member members[2 + SCREE_MAP_COUNT] = {
-      SCREE_VTK_MEMBER(wall_row, wall, "wall", SCREE_VTK_INT64, 1),
-      SCREE_VTK_MEMBER(wall_row, kind, "kind", SCREE_VTK_INT64, 1)};
+  scree_field members[2 + SCREE_MAP_COUNT] = {SCREE_FIELD_OF(wall_row, wall),
+                                              SCREE_FIELD_OF(wall_row, kind)};
   for (size_t m = 0; m < SCREE_MAP_COUNT; m++) {
     snprintf(names[m], sizeof names[m], "%s [%s]", scree_wall_map_name((scree_wall_map)m),
              scree_wall_map_unit((scree_wall_map)m));
-    members[2 + m] = (scree_vtk_member){names[m], SCREE_VTK_FLOAT64, 1,
-                                        offsetof(wall_row, maps) + m * sizeof(double)};
+    members[2 + m] = (scree_field)SCREE_FIELD_AS(wall_row, names[m], maps[m]);
   }
   const scree_vtk_rows table = {rows, sizeof *rows, false, members,
                                 scene ? 2 + SCREE_MAP_COUNT : 2};

@@ -12,8 +12,6 @@
 #include "base/alloc.h"
 #include "base/parallel.h"
 
-#include <string.h>
-
 #define BLOCK_LIMIT ((size_t)1 << 26) /* blocks of the whole lattice: 256 MiB of slots */
 
 enum { SITES_PER_TASK = SCREE_SHAPE_BATCH, BLOCKS_PER_TASK = 16 };

@@ -14,14 +14,13 @@
 #include "world/state/joints.h"
 
 #include <ctype.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Where a file gives no stiffness, joints stretch by no more than this when they break. */
 static const double longest_strain = 0.005;
 /* Where it gives no gap: of the whole's size. */
 static const double usual_gap = 0.002;
-/* Behind the streams of inlets, of which there are fewer. */
+/* The stream of strengths, behind those of inlets, of which there are fewer. */
 enum { STRENGTHS = 1 << 20 };
 enum { MOST_SPHERES = 10000 }; /* of a cable, as of a table */
 
@@ -69,7 +68,7 @@ static bool is_between(const scree_texts *between, const char *a, const char *b)
   return (is_name(p, a) && is_name(q, b)) || (is_name(p, b) && is_name(q, a));
 }
 
-/* Of two pieces, by their shapes; all but young is given. */
+/* The bond of two pieces, by their shapes; all but young is given. */
 static scree_plan_bond bond_between(const scree_scene *scene, size_t whole, size_t a, size_t b) {
   const scree_scene_shape *x = &scene->shapes[a], *y = &scene->shapes[b];
   const scree_plan_shape *plan = plan_of(scene, whole);
@@ -112,10 +111,6 @@ static void move(scree_mesh *mesh, const mat3 *turn, vec3 by) {
                vec3_add(mat3_mul_vec(turn, vec3_load(mesh->positions + 3 * v)), by));
 }
 
-static quat turn_of(const scree_particle_measures *m) {
-  return (quat){m->orientation[0], m->orientation[1], m->orientation[2], m->orientation[3]};
-}
-
 /* A name of the file as one that tables and other programs read. */
 static const char *plain_name(scree_scene *scene, const char *name, size_t number) {
   char text[80];
@@ -140,7 +135,7 @@ static scree_status make_part(scree_scene *scene, size_t index, size_t k, const 
   SCREE_TRY(scree_scene_make_unscaled(&one, folder, c ? 0 : k + 1, making->store, making->progress,
                                       &made, error));
   const scree_particle_measures *m = &made.particle->measures;
-  mat3 turn = quat_to_mat3(turn_of(m));
+  mat3 turn = quat_to_mat3(quat_load(m->orientation));
   vec3 at = vec3_add(vec3_load(m->centre), c ? vec3_load(c->at) : (vec3){0, 0, 0});
   const char *name = c ? c->place.name : plain_name(scene, made.part_name, k + 1);
   scree_mesh mesh = {0};
@@ -153,7 +148,7 @@ static scree_status make_part(scree_scene *scene, size_t index, size_t k, const 
   return status;
 }
 
-/* As a particle that stands for them where they enter: their hull. */
+/* The particle that stands for the pieces where they enter: their hull. */
 static scree_status make_hull(const assembly *of, scree_particle **particle, scree_error *error) {
   size_t count = 0, n = 0;
   SCREE_CLEANUP(scree_mesh_free) scree_mesh mesh = {0};
@@ -284,7 +279,7 @@ static scree_status fill_pieces(scree_scene *scene, size_t index, scree_error *e
                         why.message);
     const scree_particle_measures *m = &s->particle->measures;
     s->at = from->radius > 0 ? from->at : vec3_load(m->centre);
-    s->turned = turn_of(m);
+    s->turned = quat_load(m->orientation);
     s->source = scree_strdup("");
     if (!s->source) return scree_fail_memory(error, 0, "a piece's source");
   }
@@ -349,8 +344,8 @@ static scree_status face_parts(assembly *of, double gap, scree_error *error) {
   return status;
 }
 
-/* Between spheres, those of a wire as thick as the smaller; of a cable only from each to the next.
- */
+/* Faces between spheres are those of a wire as thick as the smaller; a cable has them only from
+ * each to the next. */
 static scree_status face_spheres(assembly *of, double gap, bool cable, scree_error *error) {
   static const double pi = 3.14159265358979323846;
   for (size_t i = 0; i < of->pieces.count; i++)
@@ -377,7 +372,7 @@ static scree_status face_spheres(assembly *of, double gap, bool cable, scree_err
   return SCREE_OK;
 }
 
-/* From corners to corners: what is told of pieces that nothing holds. */
+/* The gap from corners to corners, which is told of pieces that nothing holds. */
 static double gap_between(const piece *p, const piece *q) {
   double least = INFINITY;
   if (p->radius > 0) return vec3_distance(p->at, q->at) - p->radius - q->radius;
@@ -394,7 +389,7 @@ static bool is_named(const scree_texts *names, const char *part) {
   return false;
 }
 
-/* All hang together with the first that is not named as loose. */
+/* Fails unless all pieces hang together with the first that is not named as loose. */
 static scree_status check_held(const assembly *of, const scree_plan_joints *plan, double gap,
                                scree_error *error) {
   SCREE_SCRATCH(uint32_t, root, of->pieces.count, error);
@@ -457,7 +452,7 @@ static scree_status hold_parts(scree_scene *scene, size_t index, const scree_pro
   const scree_particle *whole = scene->shapes[index].particle;
   const scree_particle_measures *m = &whole->measures;
   double gap = isnan(plan->joints->gap) ? usual_gap * m->size : plan->joints->gap;
-  mat3 turn = quat_to_mat3(quat_conjugate(turn_of(m)));
+  mat3 turn = quat_to_mat3(quat_conjugate(quat_load(m->orientation)));
   if (m->kind == SCREE_PARTICLE_CLUMP) {
     for (size_t i = 0; i < whole->point_count; i++) {
       const piece made = {.at = whole->points[i],

@@ -138,8 +138,8 @@ static void measure_speed(work *w, double now) {
   w->speed_steps = steps;
 }
 
-/* On the clock, by what the steps so far have cost; NAN: these are too few to say. What a full
- * machine makes it wait for in its first seconds says little of the rest. */
+/* Time left on the clock, by what the steps so far have cost; NAN: these are too few to say. What a
+ * full machine makes it wait for in its first seconds says little of the rest. */
 static double seconds_left(const work *w) {
   const double doubted = 5; /* s */
   scree_scene_costs c = scree_scene_get_costs(w->scene);

@@ -99,8 +99,8 @@ static double count_for(double radius) {
   return radius * radius * radius / 1.44;
 }
 
-/* Of a cylinder that is filled and lifted, whose heap is to be measured: narrow ones jam, few
- * particles make no heap. What would do, and what it costs. */
+/* Whether a cylinder that is filled and lifted, whose heap is to be measured, is too small: narrow
+ * ones jam, few particles make no heap. What would do, and what it costs. */
 static bool falls_short(const scree_scene *scene, const scree_scene_inlet *inlet,
                         char why[SCREE_REMARK], double *seconds) {
   double size = inlet->layers.size, across = 2 * inlet->layers.radius / size,

@@ -29,7 +29,8 @@ static place place_of(const scree_scene *scene, size_t wall, double time) {
   return p;
 }
 
-/* From p to the nearest point of the wall, and the way out of the wall there, unit; 0: a sheet. */
+/* The way from p to the nearest point of the wall, and the way out of the wall there, unit; 0: a
+ * sheet. */
 static vec3 way_to(const place *to, vec3 p, vec3 *out) {
   const uint32_t root = 0;
   const scree_particle *surface = to->wall->surface;

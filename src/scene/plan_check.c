@@ -108,7 +108,7 @@ static scree_status check_outlets(const scree_reader *r, const scree_plan *plan)
   return SCREE_OK;
 }
 
-/* Each acts on shapes or materials that there are. */
+/* Fails unless each force acts on shapes or materials that there are. */
 static scree_status check_forces(const scree_reader *r, const scree_plan *plan) {
   for (size_t i = 0; i < plan->forces.count; i++) {
     const scree_plan_force *f = &plan->forces.items[i];

@@ -20,7 +20,7 @@ scree_status scree_plan_check_corners(const scree_reader *r, const scree_place *
 scree_status scree_plan_check_window(const scree_reader *r, const scree_place *place, double from,
                                      double until);
 
-/* That another record of the scene has that name. */
+/* Fails unless another record of the scene has that name. */
 scree_status scree_plan_need_name(const scree_reader *reader, const scree_place *place,
                                   const void *items, size_t item_count, size_t size,
                                   const char *what, const char *name);

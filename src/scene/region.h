@@ -13,7 +13,7 @@ typedef struct scree_region {
 /* The region of a record that has both fields. */
 #define SCREE_REGION_OF(plan) ((scree_region){(plan)->box, (plan)->cylinder})
 
-/* That it has all that it needs; ends: a cylinder must have a length. */
+/* Fails unless the region has all that it needs; ends: a cylinder must have a length. */
 scree_status scree_region_check(const scree_reader *reader, const scree_region *region, bool ends);
 /* The box around it. */
 void scree_region_bounds(const scree_region *region, double low[3], double high[3]);

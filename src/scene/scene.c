@@ -147,7 +147,7 @@ void scree_scene_measure_shape(scree_scene *scene, size_t index) {
   scree_particle_measures m;
   scree_particle_measure(s->particle, &m);
   s->extent = scree_placement_of(s->particle, 0.5 * clearance_share * m.size);
-  s->as_given = (quat){m.orientation[0], m.orientation[1], m.orientation[2], m.orientation[3]};
+  s->as_given = quat_load(m.orientation);
   s->material = plan->material ? SCREE_PLAN_FIND(scene->plan.materials, plan->material) : 0;
   s->density = plan->density > 0             ? plan->density
                : scene->plan.materials.count ? material_at(scene, s->material)->density
@@ -418,7 +418,7 @@ static int find_over(const scree_scene *scene) {
   return phases && scene->phase == phases ? END_PHASES : GOES_ON;
 }
 
-/* At ticks also: */
+/* Why the scene ends; looked at with every tick. */
 static int find_end(scree_scene *scene) {
   const scree_plan_stop *stop = scene->plan.stop;
   if (scree_world_time(scene->world) < stop->after) return GOES_ON;

@@ -438,8 +438,7 @@ static inline bool scree_scene_next_body(const scree_scene *scene, size_t *index
 }
 
 static inline quat scree_body_turn(const scree_body *body) {
-  return (quat){body->orientation[0], body->orientation[1], body->orientation[2],
-                body->orientation[3]};
+  return quat_load(body->orientation);
 }
 
 /* Writes a frame: the same without the contacts, a fraction of the size; it can be measured and

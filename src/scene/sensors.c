@@ -8,7 +8,6 @@
 #include "base/quote.h"
 
 #include <stdarg.h>
-#include <string.h>
 
 /* ---- kinds ---- */
 
@@ -58,34 +57,38 @@ scree_status scree_sensors_complete(const scree_scene *scene, scree_error *error
 
 /* ---- columns ---- */
 
-/* What is always there: a number or count of the observation or of the book, or the phase. */
-static const struct {
-  const char *name, *unit;
-  enum { SEEN_REAL, SEEN_COUNT, BOOK_REAL, BOOK_COUNT, PHASE } of;
-  size_t offset;
-} base_columns[] = {
-    {"time", "s", SEEN_REAL, offsetof(scree_observation, time)},
-    {"entered", "", BOOK_COUNT, offsetof(scree_scene_book, entered_count)},
-    {"inside", "", BOOK_COUNT, offsetof(scree_scene_book, inside_count)},
-    {"left", "", BOOK_COUNT, offsetof(scree_scene_book, left_count)},
-    {"waiting", "", BOOK_COUNT, offsetof(scree_scene_book, waiting_count)},
-    {"mass_inside", "kg", BOOK_REAL, offsetof(scree_scene_book, inside_mass)},
-    {"kinetic", "J", SEEN_REAL, offsetof(scree_observation, kinetic)},
-    {"rotational", "J", SEEN_REAL, offsetof(scree_observation, rotational)},
-    {"potential", "J", SEEN_REAL, offsetof(scree_observation, potential)},
-    {"elastic", "J", SEEN_REAL, offsetof(scree_observation, elastic)},
-    {"dissipated_dashpot", "J", SEEN_REAL, offsetof(scree_observation, dissipated_dashpot)},
-    {"dissipated_friction", "J", SEEN_REAL, offsetof(scree_observation, dissipated_friction)},
-    {"wall_work", "J", SEEN_REAL, offsetof(scree_observation, wall_work)},
-    {"entered_energy", "J", BOOK_REAL, offsetof(scree_scene_book, entered_energy)},
-    {"ledger", "", BOOK_REAL, offsetof(scree_scene_book, ledger)},
-    {"pairs", "", SEEN_COUNT, offsetof(scree_observation, pair_count)},
-    {"contacts", "", SEEN_COUNT, offsetof(scree_observation, contact_count)},
-    {"coordination", "", SEEN_REAL, offsetof(scree_observation, coordination)},
-    {"largest_overlap", "m", SEEN_REAL, offsetof(scree_observation, largest_overlap)},
-    {"highest_speed", "m/s", SEEN_REAL, offsetof(scree_observation, highest_speed)},
-    {"mean_rotation", "rad/s", SEEN_REAL, offsetof(scree_observation, mean_rotation)},
-    {"phase", "", PHASE, 0}};
+/* What is always there. */
+typedef struct base {
+  scree_observation seen;
+  scree_scene_book book;
+  size_t phase;
+} base;
+
+#define COLUMN(name, unit, member) SCREE_FIELD_IN(base, name, unit, member)
+static const scree_field base_columns[] = {
+    COLUMN("time", "s", seen.time),
+    COLUMN("entered", "", book.entered_count),
+    COLUMN("inside", "", book.inside_count),
+    COLUMN("left", "", book.left_count),
+    COLUMN("waiting", "", book.waiting_count),
+    COLUMN("mass_inside", "kg", book.inside_mass),
+    COLUMN("kinetic", "J", seen.kinetic),
+    COLUMN("rotational", "J", seen.rotational),
+    COLUMN("potential", "J", seen.potential),
+    COLUMN("elastic", "J", seen.elastic),
+    COLUMN("dissipated_dashpot", "J", seen.dissipated_dashpot),
+    COLUMN("dissipated_friction", "J", seen.dissipated_friction),
+    COLUMN("wall_work", "J", seen.wall_work),
+    COLUMN("entered_energy", "J", book.entered_energy),
+    COLUMN("ledger", "", book.ledger),
+    COLUMN("pairs", "", seen.pair_count),
+    COLUMN("contacts", "", seen.contact_count),
+    COLUMN("coordination", "", seen.coordination),
+    COLUMN("largest_overlap", "m", seen.largest_overlap),
+    COLUMN("highest_speed", "m/s", seen.highest_speed),
+    COLUMN("mean_rotation", "rad/s", seen.mean_rotation),
+    COLUMN("phase", "", phase)};
+#undef COLUMN
 enum { BASE_COLUMNS = sizeof base_columns / sizeof *base_columns };
 
 SCREE_PRINTF(3, 4)
@@ -156,7 +159,7 @@ static scree_status plan_sensor(scree_scene *scene, scree_scene_sensor *sensor,
 
 scree_status scree_sensors_plan(scree_scene *scene, scree_error *error) {
   for (size_t i = 0; i < BASE_COLUMNS; i++)
-    if (!add_column(scene, base_columns[i].unit, "%s", base_columns[i].name))
+    if (!add_column(scene, base_columns[i].unit, "%s", base_columns[i].key))
       return scree_fail_memory(error, 0, "sensors");
   for (size_t i = 0; i < scene->plan.sensors.count; i++) {
     scene->sensors[i].plan = &scene->plan.sensors.items[i];
@@ -223,18 +226,10 @@ scree_status scree_sensors_watch(scree_scene *scene, bool ticks, scree_error *er
 /* all: also what the series has at some of its rows only. */
 static scree_status measure(const scree_scene *scene, bool all, double *values,
                             scree_error *error) {
-  scree_observation o;
-  scree_scene_book b;
-  scree_world_observe(scene->world, &o);
-  scree_scene_get_book(scene, &b);
-  for (size_t i = 0; i < BASE_COLUMNS; i++) {
-    bool seen = base_columns[i].of <= SEEN_COUNT;
-    const char *at = (seen ? (const char *)&o : (const char *)&b) + base_columns[i].offset;
-    bool real = base_columns[i].of == SEEN_REAL || base_columns[i].of == BOOK_REAL;
-    values[i] = base_columns[i].of == PHASE ? (double)scene->phase
-                : real                      ? *(const double *)(const void *)at
-                                            : (double)*(const size_t *)(const void *)at;
-  }
+  base b = {.phase = scene->phase};
+  scree_world_observe(scene->world, &b.seen);
+  scree_scene_get_book(scene, &b.book);
+  for (size_t i = 0; i < BASE_COLUMNS; i++) values[i] = scree_field_number(&base_columns[i], &b);
   const double *last = NULL; /* row */
   if (scene->row_count) last = scene->series.items + (scene->row_count - 1) * scene->columns.count;
   for (size_t i = 0; i < scene->plan.sensors.count; i++) {

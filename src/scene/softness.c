@@ -131,7 +131,7 @@ static double fastest_wall(const scree_scene *scene) {
   return fastest;
 }
 
-/* All that such a body may hit, at its speed and beside that at the walls' own. */
+/* Everything that such a body may hit, at its speed and beside that at the walls' own. */
 static void look_at_hits(search *s, const origin *from) {
   const scree_scene *scene = s->scene;
   touching t = {.shape = from->shape, .is_wall = true};
@@ -142,7 +142,7 @@ static void look_at_hits(search *s, const origin *from) {
   for (t.other = 0; t.other < SCREE_SCENE_SHAPES(scene); t.other++) look(s, from, &t, speed);
 }
 
-/* All lighter bodies that it may press against walls. */
+/* The lighter bodies that such a body may press against walls. */
 static void look_at_squeezes(search *s, const origin *from) {
   const scree_scene *scene = s->scene;
   const double mass = scene->shapes[from->shape].mass;

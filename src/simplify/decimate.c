@@ -31,7 +31,6 @@
 #include "simplify/tuning.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum { SUM_BLOCK = 1024 };
 /* A tenth of the edges are cheaper than what is usual. */

@@ -16,8 +16,6 @@
 #include "simplify/guard/apart.h"
 #include "simplify/tuning.h"
 
-#include <string.h>
-
 /* A step must make the sum less by this. */
 #define WORTH 1e-3
 /* In the unit box: samples that are no farther in the mean lie on the surface. */

@@ -91,7 +91,7 @@ static scree_status read_rows(analysis *a) {
            "triangle_count, wall_seconds, fraction",
            a->study->analysis_angle);
   for (size_t i = 0; i < SCREE_RECORD_FIELDS; i++)
-    if (scree_record_fields[i].is_told) SCREE_ADD_TEXT(sql, ", %s", scree_record_fields[i].key);
+    if (scree_record_is_told[i]) SCREE_ADD_TEXT(sql, ", %s", scree_record_fields[i].key);
   SCREE_ADD_TEXT(sql, ", started, ended, machine FROM run WHERE planned = 1 ORDER BY run");
   SCREE_TRY(scree_database_prepare(&a->database, sql, &s, a->error));
   for (bool more; a->row_count < most;) {
@@ -192,7 +192,7 @@ static scree_status name_numbers(const analysis *a) {
   scree_study_result *r = a->result;
   SCREE_TRY_TAKE(r->numbers, a->arena, SCREE_RECORD_TOLD + 2, a->error);
   for (size_t i = 0; i < SCREE_RECORD_FIELDS; i++)
-    if (scree_record_fields[i].is_told) r->numbers[r->number_count++] = scree_record_fields[i].key;
+    if (scree_record_is_told[i]) r->numbers[r->number_count++] = scree_record_fields[i].key;
   r->numbers[r->number_count++] = "left";
   r->numbers[r->number_count++] = "peak_rotation";
   return SCREE_OK;

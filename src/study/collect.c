@@ -153,12 +153,12 @@ static value count_value(uint64_t count) {
   return count == SCREE_UNKNOWN_COUNT ? real_value(NAN) : whole_value(count);
 }
 
-static value field_value(const scree_record_field *f, const scree_study_record *r) {
-  const void *at = (const char *)r + f->offset;
-  return f->kind == SCREE_RECORD_REAL    ? real_value(*(const double *)at)
-         : f->kind == SCREE_RECORD_WHOLE ? count_value(*(const uint64_t *)at)
-         : f->kind == SCREE_RECORD_FLAG  ? whole_value(*(const bool *)at)
-                                         : text_value(at);
+static value field_value(const scree_field *f, const scree_study_record *r) {
+  const void *at = scree_field_at(f, r);
+  return f->kind == SCREE_FIELD_REAL    ? real_value(*(const double *)at)
+         : f->kind == SCREE_FIELD_FLAG  ? whole_value(*(const bool *)at)
+         : f->kind == SCREE_FIELD_CHARS ? text_value(at)
+                                        : count_value(scree_field_whole(f, r));
 }
 
 static scree_status put_result(writer *w, const char *key, const scree_study_record *r) {

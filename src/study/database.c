@@ -27,13 +27,16 @@ static const char runs[] =
 enum { OF_RUNS = 3 }; /* fields that stand there already, or are no column */
 static const char series[] = "CREATE TABLE series(key TEXT, time REAL, phase TEXT, bodies INTEGER";
 
+static const char *type_of(scree_field_kind kind) {
+  return kind == SCREE_FIELD_REAL ? "REAL" : kind == SCREE_FIELD_CHARS ? "TEXT" : "INTEGER";
+}
+
 /* The tables; their version is the checksum of this text, for their columns are rows elsewhere. */
 static void write_schema(char sql[4096]) {
-  static const char *const types[] = {"REAL", "INTEGER", "INTEGER", "TEXT"};
   snprintf(sql, 4096, "%s%s", tables, runs);
   for (size_t i = OF_RUNS; i + 1 < SCREE_RECORD_FIELDS; i++)
     scree_add_text(sql, 4096, ", %s %s", scree_record_fields[i].key,
-                   types[scree_record_fields[i].kind]);
+                   type_of(scree_record_fields[i].kind));
   scree_add_text(sql, 4096, ");%s", series);
   for (size_t i = 1; i < SCREE_RECORD_COLUMNS; i++)
     scree_add_text(sql, 4096, ", %s REAL", scree_record_columns[i].key);

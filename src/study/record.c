@@ -11,13 +11,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FIELD(key, kind, member, is_told)                                                          \
-  {#key, SCREE_RECORD_##kind, offsetof(scree_study_record, member),                                \
-   sizeof(((scree_study_record *)0)->member), is_told},
-const scree_record_field scree_record_fields[SCREE_RECORD_FIELDS] = {SCREE_RUN_ROWS(FIELD)};
+#define FIELD(key, member, is_told) SCREE_FIELD_AS(scree_study_record, #key, member),
+#define TOLD(key, member, is_told)  is_told,
+const scree_field scree_record_fields[SCREE_RECORD_FIELDS] = {SCREE_RUN_ROWS(FIELD)};
+const bool scree_record_is_told[SCREE_RECORD_FIELDS] = {SCREE_RUN_ROWS(TOLD)};
 
-#define COLUMN(key, of_scene) {#key, of_scene, offsetof(scree_record_point, key)},
-const scree_record_column scree_record_columns[SCREE_RECORD_COLUMNS] = {SCREE_SERIES_ROWS(COLUMN)};
+#define COLUMN(key, of_scene) SCREE_FIELD_OF(scree_record_point, key),
+#define SOURCE(key, of_scene) of_scene,
+const scree_field scree_record_columns[SCREE_RECORD_COLUMNS] = {SCREE_SERIES_ROWS(COLUMN)};
+const char *const scree_record_of_scene[SCREE_RECORD_COLUMNS] = {SCREE_SERIES_ROWS(SOURCE)};
 
 void scree_study_record_free(scree_study_record *record) {
   scree_free(record->series);
@@ -43,27 +45,19 @@ static void write_real(FILE *stream, double value) {
   fputs(text, stream);
 }
 
-static void write_field(FILE *stream, const scree_record_field *f,
-                        const scree_study_record *record) {
-  const void *value = (const char *)record + f->offset;
+static void write_field(FILE *stream, const scree_field *f, const scree_study_record *record) {
+  const void *value = scree_field_at(f, record);
   fprintf(stream, "\"%s\": ", f->key);
-  switch (f->kind) {
-  case SCREE_RECORD_REAL:
+  if (f->kind == SCREE_FIELD_REAL)
     write_real(stream, *(const double *)value);
-    break;
-  case SCREE_RECORD_WHOLE:
-    if (*(const uint64_t *)value == SCREE_UNKNOWN_COUNT)
-      fputs("null", stream);
-    else
-      fprintf(stream, "%llu", (unsigned long long)*(const uint64_t *)value);
-    break;
-  case SCREE_RECORD_FLAG:
+  else if (f->kind == SCREE_FIELD_FLAG)
     fputs(*(const bool *)value ? "true" : "false", stream);
-    break;
-  case SCREE_RECORD_TEXT:
+  else if (f->kind == SCREE_FIELD_CHARS)
     scree_quote(stream, SCREE_QUOTE_JSON, value);
-    break;
-  }
+  else if (scree_field_whole(f, record) == SCREE_UNKNOWN_COUNT)
+    fputs("null", stream);
+  else
+    fprintf(stream, "%llu", (unsigned long long)scree_field_whole(f, record));
 }
 
 static void write_series(FILE *stream, const scree_study_record *record) {
@@ -122,34 +116,30 @@ static bool parse_whole(const char *text, uint64_t *value) {
   return *text >= '0' && *text <= '9' && !*end;
 }
 
-static bool parse_field(const scree_record_field *f, const char *text, scree_study_record *record) {
+static bool parse_field(const scree_field *f, const char *text, scree_study_record *record) {
   void *value = (char *)record + f->offset;
-  switch (f->kind) {
-  case SCREE_RECORD_REAL:
-    return parse_real(text, value);
-  case SCREE_RECORD_WHOLE:
-    return parse_whole(text, value);
-  case SCREE_RECORD_FLAG:
+  if (f->kind == SCREE_FIELD_REAL) return parse_real(text, value);
+  if (f->kind == SCREE_FIELD_FLAG) {
     *(bool *)value = !strcmp(text, "true");
     return *(bool *)value || !strcmp(text, "false");
-  case SCREE_RECORD_TEXT:
-    snprintf(value, f->size, "%s", text);
-    return true;
   }
-  return false;
+  if (f->kind != SCREE_FIELD_CHARS) return parse_whole(text, value);
+  snprintf(value, f->size, "%s", text);
+  return true;
 }
 
 /* What a record made by another version has no row of is not known. */
-static void set_unknown(const scree_record_field *f, scree_study_record *record) {
+static void set_unknown(const scree_field *f, scree_study_record *record) {
   void *value = (char *)record + f->offset;
-  if (f->kind == SCREE_RECORD_REAL) *(double *)value = NAN;
-  if (f->kind == SCREE_RECORD_WHOLE) *(uint64_t *)value = SCREE_UNKNOWN_COUNT;
+  if (f->kind == SCREE_FIELD_REAL) *(double *)value = NAN;
+  if (f->kind == SCREE_FIELD_COUNT || f->kind == SCREE_FIELD_SEED)
+    *(uint64_t *)value = SCREE_UNKNOWN_COUNT;
 }
 
 static scree_status read_fields(const char *path, const scree_yaml *root,
                                 scree_study_record *record, scree_error *error) {
   for (int i = 0; i < SCREE_RECORD_FIELDS; i++) {
-    const scree_record_field *f = &scree_record_fields[i];
+    const scree_field *f = &scree_record_fields[i];
     const scree_yaml *node = scree_yaml_find(root, f->key);
     if (i > 0 && !node) {
       set_unknown(f, record);

@@ -1,6 +1,7 @@
 /* The result of one run as a file: what the database is made from. */
 #pragma once
 
+#include "base/field.h"
 #include "study/study.h"
 
 typedef struct scree_record_costs {
@@ -44,67 +45,58 @@ typedef struct scree_study_record {
   char answered[SCREE_CHECKSUM_TEXT]; /* scree_study_answers_mark */
 } scree_study_record;
 
-/* Its fields, which file and database have alike. */
-typedef struct scree_record_field {
-  const char *key;
-  enum { SCREE_RECORD_REAL, SCREE_RECORD_WHOLE, SCREE_RECORD_FLAG, SCREE_RECORD_TEXT } kind;
-  size_t offset, size;
-  bool is_told; /* of every point's runs a study tells its mean and limits */
-} scree_record_field;
-/* The rows, as X(key, kind, member of scree_study_record, is_told): a new one is unknown in records
- * that were made before. The database has those between the first and the last. A run that failed
- * has the first SCREE_RECORD_OF_FAILED. */
+/* Its fields, which file and database have alike, as X(key, member of scree_study_record, whether
+ * a study tells its mean and limits for each point): a new one is unknown in records that were made
+ * before. The database has those between the first and the last. A run that failed has the first
+ * SCREE_RECORD_OF_FAILED. */
 #define SCREE_RUN_ROWS(X)                                                                          \
-  X(failed, FLAG, failed, 0)                                                                       \
-  X(reason, TEXT, reason, 0)                                                                       \
-  X(worker, TEXT, worker, 0)                                                                       \
-  X(machine, TEXT, machine, 0)                                                                     \
-  X(version, TEXT, version, 0)                                                                     \
-  X(started, REAL, started, 0)                                                                     \
-  X(ended, REAL, ended, 0)                                                                         \
-  X(triangle_count, REAL, triangle_count, 0)                                                       \
-  X(time_step, REAL, costs.time_step, 0)                                                           \
-  X(step_count, WHOLE, costs.step_count, 0)                                                        \
-  X(particle_steps, WHOLE, costs.particle_steps, 0)                                                \
-  X(wall_seconds, REAL, costs.wall_seconds, 0)                                                     \
-  X(processor_seconds, REAL, costs.processor_seconds, 0)                                           \
-  X(piece_count, WHOLE, costs.piece_count, 0)                                                      \
-  X(largest_overlap, REAL, costs.largest_overlap, 0)                                               \
-  X(heap, FLAG, result.pile.repose.heap, 0)                                                        \
-  X(heap_reason, TEXT, result.pile.repose.reason, 0)                                               \
-  X(sector_deg, REAL, result.pile.repose.sector_deg, 0)                                            \
-  X(sector_sd_deg, REAL, result.pile.repose.sector_sd_deg, 0)                                      \
-  X(cone_deg, REAL, result.pile.repose.cone_deg, 0)                                                \
-  X(silhouette_deg, REAL, result.pile.repose.silhouette_deg, 0)                                    \
-  X(silhouette_sd_deg, REAL, result.pile.repose.silhouette_sd_deg, 0)                              \
-  X(height, REAL, result.pile.repose.height, 1)                                                    \
-  X(base_radius, REAL, result.pile.repose.base_radius, 0)                                          \
-  X(run_out, REAL, result.pile.repose.run_out, 1)                                                  \
-  X(body_count, WHOLE, result.body_count, 0)                                                       \
-  X(left_count, WHOLE, result.left_count, 0)                                                       \
-  X(coordination, REAL, result.coordination, 1)                                                    \
-  X(packing_fraction, REAL, result.pile.packing_fraction, 1)                                       \
-  X(particle_size, REAL, result.pile.size, 0)                                                      \
-  X(kinetic, REAL, result.kinetic, 0)                                                              \
-  X(time, REAL, result.time, 0)                                                                    \
-  X(still, FLAG, result.still, 0)                                                                  \
-  X(hash, TEXT, hash, 0)                                                                           \
-  X(answered, TEXT, answered, 0)
-#define SCREE_RECORD_ONE(...)                          +1
-#define SCREE_RECORD_TELLS(key, kind, member, is_told) +is_told
+  X(failed, failed, 0)                                                                             \
+  X(reason, reason, 0)                                                                             \
+  X(worker, worker, 0)                                                                             \
+  X(machine, machine, 0)                                                                           \
+  X(version, version, 0)                                                                           \
+  X(started, started, 0)                                                                           \
+  X(ended, ended, 0)                                                                               \
+  X(triangle_count, triangle_count, 0)                                                             \
+  X(time_step, costs.time_step, 0)                                                                 \
+  X(step_count, costs.step_count, 0)                                                               \
+  X(particle_steps, costs.particle_steps, 0)                                                       \
+  X(wall_seconds, costs.wall_seconds, 0)                                                           \
+  X(processor_seconds, costs.processor_seconds, 0)                                                 \
+  X(piece_count, costs.piece_count, 0)                                                             \
+  X(largest_overlap, costs.largest_overlap, 0)                                                     \
+  X(heap, result.pile.repose.heap, 0)                                                              \
+  X(heap_reason, result.pile.repose.reason, 0)                                                     \
+  X(sector_deg, result.pile.repose.sector_deg, 0)                                                  \
+  X(sector_sd_deg, result.pile.repose.sector_sd_deg, 0)                                            \
+  X(cone_deg, result.pile.repose.cone_deg, 0)                                                      \
+  X(silhouette_deg, result.pile.repose.silhouette_deg, 0)                                          \
+  X(silhouette_sd_deg, result.pile.repose.silhouette_sd_deg, 0)                                    \
+  X(height, result.pile.repose.height, 1)                                                          \
+  X(base_radius, result.pile.repose.base_radius, 0)                                                \
+  X(run_out, result.pile.repose.run_out, 1)                                                        \
+  X(body_count, result.body_count, 0)                                                              \
+  X(left_count, result.left_count, 0)                                                              \
+  X(coordination, result.coordination, 1)                                                          \
+  X(packing_fraction, result.pile.packing_fraction, 1)                                             \
+  X(particle_size, result.pile.size, 0)                                                            \
+  X(kinetic, result.kinetic, 0)                                                                    \
+  X(time, result.time, 0)                                                                          \
+  X(still, result.still, 0)                                                                        \
+  X(hash, hash, 0)                                                                                 \
+  X(answered, answered, 0)
+#define SCREE_RECORD_ONE(...)                    +1
+#define SCREE_RECORD_TELLS(key, member, is_told) +is_told
 enum {
   SCREE_RECORD_FIELDS = SCREE_RUN_ROWS(SCREE_RECORD_ONE),
   SCREE_RECORD_TOLD = SCREE_RUN_ROWS(SCREE_RECORD_TELLS),
   SCREE_RECORD_OF_FAILED = 8
 };
-extern const scree_record_field scree_record_fields[SCREE_RECORD_FIELDS];
+extern const scree_field scree_record_fields[SCREE_RECORD_FIELDS];
+extern const bool scree_record_is_told[SCREE_RECORD_FIELDS];
 /* A whole number that is not known; a real one is NaN. */
 #define SCREE_UNKNOWN_COUNT UINT64_MAX
-/* Numbers of a row of the series; the column of the scene that each is, * being its pile. */
-typedef struct scree_record_column {
-  const char *key, *of_scene;
-  size_t offset;
-} scree_record_column;
+/* Numbers of a row of the series, and the column of the scene that each is, * being its pile. */
 #define SCREE_SERIES_ROWS(X)                                                                       \
   X(time, "time")                                                                                  \
   X(mean_rotation, "mean_rotation")                                                                \
@@ -118,7 +110,8 @@ typedef struct scree_record_column {
   X(silhouette_deg, "*.silhouette_deg")                                                            \
   X(height, "*.height")
 enum { SCREE_RECORD_COLUMNS = SCREE_SERIES_ROWS(SCREE_RECORD_ONE) };
-extern const scree_record_column scree_record_columns[SCREE_RECORD_COLUMNS];
+extern const scree_field scree_record_columns[SCREE_RECORD_COLUMNS];
+extern const char *const scree_record_of_scene[SCREE_RECORD_COLUMNS];
 static inline double *scree_record_number(scree_record_point *point, size_t column) {
   return (double *)(void *)((char *)point + scree_record_columns[column].offset);
 }

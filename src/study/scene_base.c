@@ -18,8 +18,7 @@
 /* The highest point of a triangle at x lies on one of its edges: edges that cross x are enough. */
 
 static double mesh_height(const scree_mesh *mesh, const scree_body *body, double x) {
-  const double *q = body->orientation;
-  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  mat3 turn = quat_to_mat3(scree_body_turn(body));
   double best = -INFINITY;
   for (size_t t = 0; t < mesh->triangle_count; t++) {
     vec3 p[3];
@@ -39,8 +38,7 @@ static double mesh_height(const scree_mesh *mesh, const scree_body *body, double
 
 static double spheres_height(scree_particle *particle, size_t count, const scree_body *body,
                              double x) {
-  const double *q = body->orientation;
-  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  mat3 turn = quat_to_mat3(scree_body_turn(body));
   double best = -INFINITY;
   for (size_t i = 0; i < count; i++) {
     double local[3], radius;
@@ -351,7 +349,7 @@ static scree_status record_series(const scree_study *study, const scree_scene *s
   SCREE_TRY_ALLOC(record->series, rows, error);
   record->series_count = rows;
   for (size_t c = 0; c < SCREE_RECORD_COLUMNS; c++) {
-    size_t k = column_in(scene, scree_record_columns[c].of_scene);
+    size_t k = column_in(scene, scree_record_of_scene[c]);
     for (size_t i = 0; i < rows; i++)
       *scree_record_number(&record->series[i], c) =
           k < columns ? series[i * columns + k] : (double)NAN;

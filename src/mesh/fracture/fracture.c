@@ -1,7 +1,6 @@
 /* The driver: places of the cells, their cutting, their faces as triangles, pieces. All is done in
  * a space in which the body's middle is the origin and the grain is as short as what lies across.
  */
-#include "base/array.h"
 #include "base/progress.h"
 #include "base/rng.h"
 #include "mesh/fracture/halve.h"

@@ -3,8 +3,6 @@
 #include "base/array.h"
 #include "mesh/io/read_ply.h"
 
-#include <string.h>
-
 static const struct {
   const char *name, *other_name;
   size_t size;

@@ -6,8 +6,6 @@
 #include "mesh/io/polygon.h"
 #include "mesh/io/read.h"
 
-#include <string.h>
-
 /* "0 0 0\n", "0\n", "0 " */
 enum { VERTEX_LEAST_BYTES = 6, FACE_LEAST_BYTES = 2, CORNER_LEAST_BYTES = 2 };
 

@@ -29,8 +29,6 @@
 #include "mesh/measure/surface.h"
 #include "mesh/mesh.h"
 
-#include <string.h>
-
 enum {
   BLOCK = 512,             /* vertices or facets that share a start */
   CHUNK = 256 * BLOCK,     /* between two reports of progress */

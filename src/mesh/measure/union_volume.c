@@ -20,7 +20,6 @@
 #include "mesh/index/winding.h"
 
 #include <stdatomic.h>
-#include <string.h>
 
 enum {
   FACET_BLOCK = 64,

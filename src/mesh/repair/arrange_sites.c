@@ -9,7 +9,6 @@
 #include "mesh/predicates.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Edges nearer to parallel than this (the sine squared) cross nowhere in particular. */
 #define PARALLEL 1e-24

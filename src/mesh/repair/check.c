@@ -20,7 +20,6 @@
 #include "mesh/mesh.h"
 #include "mesh/repair/shells.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* What reading and welding accept, m; far within the range of the exact predicates. */

@@ -18,7 +18,6 @@
 #include "mesh/repair/repair.h"
 
 #include <float.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {

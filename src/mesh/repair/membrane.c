@@ -12,8 +12,6 @@
 #include "base/alloc.h"
 #include "mesh/repair/repair.h"
 
-#include <string.h>
-
 enum { PIECE_OPEN = 1, PIECE_ODD = 2, PIECE_CROWDED = 4 };
 enum { SIDE_FRONT = 1, SIDE_BACK = 2 };
 

@@ -12,8 +12,6 @@
 #include "mesh/repair/repair.h"
 #include "mesh/repair/rim.h"
 
-#include <string.h>
-
 enum {
   ATTEMPTS = 32, /* sample points of a patch; one in general position is all but sure */
   LOOKS = 256,   /* beside facets that meet */

@@ -21,7 +21,6 @@
 #include "mesh/measure/surface.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {

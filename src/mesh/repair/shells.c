@@ -15,7 +15,6 @@
 #include "mesh/predicates.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Labels in the order of the lowest facets; returns how many shells there are. */
 static size_t label_shells(const scree_mesh *mesh, const scree_adjacency *adjacency,

@@ -62,11 +62,11 @@ scree_status scree_geometry_add_wall(const scree_geometry_making *making, scree_
 /* What is solid of a mesh, which it takes, and what is a sheet; of a file with what was done. */
 scree_status scree_geometry_add_mesh(const scree_geometry_making *making, bool is_file,
                                      scree_mesh *mesh, scree_error *error);
-/* That a surface velocity lies in a surface of that normal. */
+/* Fails unless a surface velocity lies in a surface of that normal. */
 scree_status scree_geometry_check_surface(const scree_reader *reader,
                                           const scree_plan_geometry *geometry,
                                           const double normal[3]);
-/* That a span is square to an axis. */
+/* Fails unless a span is square to an axis. */
 scree_status scree_geometry_check_span(const scree_reader *reader, const scree_place *place,
                                        const double axis[3], const double span[3]);
 

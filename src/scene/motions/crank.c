@@ -1,4 +1,4 @@
-/* To and fro along a line by a crank and a rod. */
+/* The motion to and fro along a line by a crank and a rod. */
 #include "scene/motions/kind.h"
 
 #include <string.h>

@@ -45,7 +45,7 @@ static double size_of(double volume) {
   return cbrt(volume / 0.52359877559829887);
 }
 
-/* All of the shape's; to be freed. */
+/* Every fragment of the shape; to be freed. */
 static scree_status find(const scree_scene *scene, const scree_plan_fragments *plan,
                          const char *part, fragment **found, size_t *count, scree_error *error) {
   size_t bodies = scene->shape_of.count, kept = 0;
@@ -162,7 +162,7 @@ static scree_status write_joints(const scree_scene *scene, const scree_plan_frag
   return scree_output_commit(&output, error);
 }
 
-/* All parts of a name together, in their order. */
+/* A row for all parts of a name together, in their order. */
 static scree_status write_liberation(const scree_scene *scene, const scree_plan_fragments *plan,
                                      const scree_sensor_folder *folder, scree_error *error) {
   scree_output output = {0};

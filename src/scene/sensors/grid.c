@@ -223,7 +223,7 @@ static void place_frame(const scree_scene *scene, const scree_scene_sensor *sens
   s->at = vec3_load(wall.position);
   s->velocity = vec3_load(wall.velocity);
   s->spin = vec3_load(wall.angular_velocity);
-  s->rotation = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  s->rotation = quat_to_mat3(quat_load(q));
 }
 
 static sampling begin_sample(scree_scene *scene, scree_scene_sensor *sensor) {
@@ -393,13 +393,21 @@ static void put_numbers(FILE *stream, const double *values, int count) {
   for (int k = 0; k < count; k++) fprintf(stream, "%.7g%c", values[k], k + 1 < count ? ' ' : '\n');
 }
 
-/* One field of all cells: `count` numbers of the record from `offset` on. */
+static const scree_field fields[] = {
+    SCREE_FIELD_AS(scree_grid_fields, "solid fraction", solid),
+    SCREE_FIELD_AS(scree_grid_fields, "density [kg/m3]", density),
+    SCREE_FIELD_AS(scree_grid_fields, "velocity [m/s]", velocity),
+    SCREE_FIELD_AS(scree_grid_fields, "granular temperature [m2/s2]", temperature),
+    SCREE_FIELD_AS(scree_grid_fields, "stress [Pa]", stress)};
+
+/* One field of all cells. */
 static void put_field(FILE *stream, const scree_scene *scene, const scree_scene_sensor *sensor,
-                      const char *name, size_t offset, int count) {
-  begin_array(stream, name, count);
+                      const scree_field *field) {
+  int count = (int)(field->size / sizeof(double));
+  begin_array(stream, field->key, count);
   for (size_t c = 0; c < scree_grid_of(sensor)->cell_count; c++) {
     scree_grid_fields f = scree_grid_fields_at(scene, sensor, c);
-    put_numbers(stream, (const double *)(const void *)((const char *)&f + offset), count);
+    put_numbers(stream, scree_field_at(field, &f), count);
   }
   fputs("        </DataArray>\n", stream);
 }
@@ -443,14 +451,8 @@ static scree_status write(const scree_scene *scene, const scree_scene_sensor *se
           "  <StructuredGrid WholeExtent=\"0 %zu 0 %zu 0 %zu\">\n"
           "    <Piece Extent=\"0 %zu 0 %zu 0 %zu\">\n      <CellData>\n",
           n[0], n[1], n[2], n[0], n[1], n[2]);
-#define FIELD(name, member, count)                                                                 \
-  put_field(out, scene, sensor, name, offsetof(scree_grid_fields, member), count)
-  FIELD("solid fraction", solid, 1);
-  FIELD("density [kg/m3]", density, 1);
-  FIELD("velocity [m/s]", velocity, 3);
-  FIELD("granular temperature [m2/s2]", temperature, 1);
-  FIELD("stress [Pa]", stress, 6);
-#undef FIELD
+  for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
+    put_field(out, scene, sensor, &fields[i]);
   put_shares(out, scene, sensor);
   fputs("      </CellData>\n      <Points>\n", out);
   begin_array(out, "Points", 3);

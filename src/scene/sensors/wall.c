@@ -6,13 +6,12 @@
  * surfaces"; k is his coefficient over the hardness). Contacts are looked at every few steps,
  * several times in the shortest, and counted for all of them: over many looks the sum is the
  * integral. */
+#include "mesh/mesh.h"
 #include "particle/closest.h"
 #include "scene/sensors/sensor.h"
 #include "world/state/walls.h"
 
 #include "base/alloc.h"
-
-#include <string.h>
 
 typedef struct maps {
   double *sums;   /* each scree_wall_map by triangle of its meshes, one number of each other wall: N
@@ -166,13 +165,6 @@ static scree_status watch_shared(scree_scene *scene, void *shared, scree_error *
   return any ? scree_world_visit_contacts(scene->world, feel, scene, error) : SCREE_OK;
 }
 
-static double triangle_area(const scree_mesh *mesh, size_t t) {
-  vec3 corner[3];
-  for (int k = 0; k < 3; k++)
-    corner[k] = vec3_load(mesh->positions + 3 * (size_t)mesh->triangles[3 * t + (size_t)k]);
-  return 0.5 * vec3_norm(vec3_triangle_normal(corner[0], corner[1], corner[2]));
-}
-
 /* m2: a wall that is no mesh has; an endless one 0. */
 static double area_of(const scree_wall *wall) {
   const double pi = 3.14159265358979323846, r = wall->radius;
@@ -188,7 +180,8 @@ static void read_map(const scree_scene *scene, const scree_scene_sensor *sensor,
   const double over = map == SCREE_MAP_PRESSURE || map == SCREE_MAP_SHEAR ? m->watched : 1;
   scree_world_get_wall(scene->world, index, &wall);
   for (size_t t = 0; t < scree_scene_wall_cells(scene, index); t++) {
-    double area = wall.kind == SCREE_WALL_MESH ? triangle_area(wall.mesh, t) : area_of(&wall);
+    double area = wall.kind == SCREE_WALL_MESH ? 0.5 * vec3_norm(scree_facet_normal(wall.mesh, t))
+                                               : area_of(&wall);
     values[t] = area > 0 && over > 0 ? amounts[t] / (over * area) : NAN;
   }
 }

@@ -9,8 +9,6 @@
 #include "simplify/decimate.h"
 #include "simplify/tuning.h"
 
-#include <string.h>
-
 /* An edge is judged no farther than to so many times the next cost: beyond it waits again. */
 #define JUDGED_TO 8
 /* Progress is told, and cancelling asked for, after so many collapses. */
