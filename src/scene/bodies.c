@@ -28,24 +28,33 @@ static scree_status check_names(const scree_named_table *t, const scree_scene *s
   return SCREE_OK;
 }
 
-/* One of that name, or of the family of that name and of that size; their count: none. */
-static size_t find_shape(const scree_scene *scene, const char *name, double size) {
-  size_t i = 0;
-  for (; i < SCREE_SCENE_SHAPES(scene); i++) {
+/* One of that name, or of the family of that name, and of the size where one is given: the nearest
+ * of that name, where it is none. */
+static scree_status find_shape(const scree_named_table *t, const scree_scene *scene,
+                               const char *name, double size, size_t *index) {
+  double nearest = INFINITY;
+  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
     const scree_plan_shape *s = &scene->plan.shapes.items[i];
     const char *family = scene->plan.families.items[s->family].place.name;
     double own = scene->shapes[i].particle->measures.size;
-    bool named = !name || !strcmp(name, s->place.name) || !strcmp(name, family);
-    if (named && (isnan(size) || fabs(size - own) <= 1e-4 * own)) break;
+    double off = isnan(size) ? 0 : fabs(size - own) / own;
+    if ((name && strcmp(name, s->place.name) && strcmp(name, family)) || off >= nearest) continue;
+    nearest = off;
+    *index = i;
   }
-  return i;
+  if (isinf(nearest)) return scree_rows_fail(&t->rows, "no shape '%.40s'", name ? name : "");
+  if (nearest <= 1e-4) return SCREE_OK;
+  return scree_rows_fail(&t->rows,
+                         "no shape '%.40s' of size %.6g mm, the nearest has %.6g mm: other sizes "
+                         "are those that the shape's `size` in the scene lists",
+                         name ? name : scene->plan.families.items[0].place.name, 1e3 * size,
+                         1e3 * scene->shapes[*index].particle->measures.size);
 }
 
 static scree_status admit(const scree_named_table *t, const double v[REALS], const char *shape,
                           scree_scene *scene, scree_error *error) {
-  size_t index = find_shape(scene, shape, v[13]);
-  if (index == SCREE_SCENE_SHAPES(scene))
-    return scree_rows_fail(&t->rows, "no shape '%.40s' of that name and size", shape ? shape : "");
+  size_t index = 0;
+  SCREE_TRY(find_shape(t, scene, shape, v[13], &index));
   scree_body body = scree_default_body();
   memcpy(body.position, v, sizeof body.position);
   for (int k = 0; k < 3; k++) {

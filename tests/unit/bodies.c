@@ -76,7 +76,9 @@ static void tables(void **state) {
       {",shape,x,y,z\n0,ball,0,0,1\n", NULL},
       {"\xef\xbb\xbf\"shape\";\"x\";\"y\";\"z\"\r\n\"ball\";0;0;1\r\n", NULL},
       {"shape,x,y,z\nbal,0,0,1\n", "line 2: no shape 'bal'"},
-      {"shape,x,y,z,size\nsand,0,0,1,0.011\n", "line 2: no shape 'sand' of that name and size"},
+      {"shape,x,y,z,size\nsand,0,0,1,0.011\n",
+       "line 2: no shape 'sand' of size 11 mm, the nearest has 12 mm: other sizes are those that"},
+      {"shape,x,y,z,size\nball,0,0,1,0.3\n", "line 2: no shape 'ball' of size 300 mm, the nearest"},
       {"shape,x,y,z,qw,qx,qy,qz\nball,0,0,1,0,0,0,0\n", "line 2: "},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
