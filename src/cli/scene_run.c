@@ -392,9 +392,8 @@ static void print_summary(FILE *stream, const scree_scene *scene, const char *st
           "  %zu came in, %zu are inside, %zu went out: %.5g kg in, %.5g kg inside, %.5g kg out\n",
           b.entered_count, b.inside_count, b.left_count, b.entered_mass, b.inside_mass,
           b.left_mass);
-  if (b.inside_count + b.left_count > b.entered_count)
-    fprintf(stream, "  some came apart: there are %zu more than came in\n",
-            b.inside_count + b.left_count - b.entered_count);
+  if (scree_book_pieces(&b))
+    fprintf(stream, "  some came apart: there are %zu more than came in\n", scree_book_pieces(&b));
   for (size_t i = 0; scree_scene_inlet_name(scene, i); i++) {
     size_t waiting;
     scree_scene_inlet_count(scene, i, NULL, &waiting);
