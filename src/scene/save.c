@@ -301,8 +301,8 @@ static scree_status adopt_particles(loader *l) {
   return SCREE_OK;
 }
 
-/* The speed that steps of Hertz's law suit, from the step itself: what is nearest to 1 m/s, at
- * which the gallery's stands, is off by rounding only. */
+/* The speed that steps of Hertz's law suit, from the step itself: the gallery's own is for 1 m/s,
+ * and a step goes as v^-1/5. */
 static void recall_hits(scree_scene *scene) {
   if (scene->plan.contact->time_step > 0) return;
   const double share = scree_world_time_step(scene->gallery, NULL) / scene->time_step;

@@ -1,6 +1,6 @@
 /* Whether contacts are stiff enough for how fast bodies will hit: a linear spring is pressed by
  * v sqrt(m/K), and the law reads depths up to its limit only. The speed is that of the inlet and of
- * the fall from it to the lowest geometry, and beside that of the wall's motion; how much of it a
+ * the fall from it to the wall's lowest, and beside that of the wall's motion; how much of it a
  * body has when it hits is not known, so what exceeds the limit is told. Bodies of a table
  * likewise, by their own speeds. Where the inlet's velocity alone would press a linear spring in by
  * a body's size no hardened one holds it, and it would come out on the far side: that is refused.
