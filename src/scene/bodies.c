@@ -7,6 +7,8 @@
 #include "base/quote.h"
 #include "scene/named_table.h"
 #include "scene/scene.h"
+#include "world/state/save.h"
+#include "world/step/checkpoint.h"
 
 #include <float.h>
 #include <string.h>
@@ -143,6 +145,57 @@ scree_status scree_scene_read_places(scree_scene *scene, const char *folder, scr
 scree_status scree_scene_read_bodies(scree_scene *scene, const char *folder, scree_error *error) {
   SCREE_TRY(read_file(scene, folder, read_table, error));
   return scree_scene_check_pierced(scene, error);
+}
+
+typedef struct deepest {
+  const scree_scene *scene;
+  scree_contact contact;
+  double share; /* of the size of the smaller */
+} deepest;
+
+static double size_of(const scree_scene *scene, size_t body) {
+  return scene->shapes[scene->shape_of.items[body]].particle->measures.size;
+}
+
+static bool keep_deepest(void *context, const scree_contact *contact) {
+  deepest *d = context;
+  double size = size_of(d->scene, contact->body);
+  if (!contact->wall) size = fmin(size, size_of(d->scene, contact->other));
+  if (contact->overlap > d->share * size)
+    *d = (deepest){d->scene, *contact, contact->overlap / size};
+  return true;
+}
+
+/* Contacts are known from the first step on: it is made by a copy, and may fail by what is looked
+ * for. */
+bool scree_scene_bodies_overlap(const scree_scene *scene, char text[SCREE_REMARK]) {
+  if (!scene->plan.bodies || scree_world_step_count(scene->world) > 0) return false;
+  unsigned char *bytes;
+  size_t count;
+  deepest d = {scene, {0}, scene->world->options.overlap_limit};
+  if (scree_world_pack(scene->world, true, &bytes, &count, NULL) != SCREE_OK) return false;
+  scree_world *copy = NULL;
+  if (scree_world_unpack(bytes, count, "", &copy, NULL) == SCREE_OK) {
+    copy->options.time_step *= 1e-6; /* nothing is to move yet */
+    (void)scree_world_step(copy, 1, NULL);
+    (void)scree_world_visit_contacts(copy, keep_deepest, &d, NULL);
+  }
+  scree_world_free(copy);
+  scree_free(bytes);
+  const scree_contact *c = &d.contact;
+  if (!(c->overlap > 0)) return false;
+  char other[100];
+  if (c->wall)
+    snprintf(other, sizeof other, "'%.60s'",
+             scree_scene_geometry_name(scene, scree_scene_wall_geometry(scene, c->other)));
+  else
+    snprintf(other, sizeof other, "body %zu", c->other);
+  snprintf(text, SCREE_REMARK,
+           "bodies: some begin inside of each other or of walls, and are thrown apart: body %zu, "
+           "counted from 0, and %s overlap by %.3g mm at %.4g %.4g %.4g m, %.2g of the size",
+           c->body, other, 1e3 * c->overlap, c->position[0], c->position[1], c->position[2],
+           d.share);
+  return true;
 }
 
 static void put_reals(FILE *stream, const double *values, int count) {

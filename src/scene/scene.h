@@ -256,6 +256,8 @@ scree_status scree_scene_read_places(scree_scene *scene, const char *folder, scr
 scree_status scree_scene_check_pierced(const scree_scene *scene, scree_error *error);
 /* bodies.c: those that are there from the start. */
 scree_status scree_scene_read_bodies(scree_scene *scene, const char *folder, scree_error *error);
+/* Whether some of those begin pressed beyond the overlap limit, with the worst of them. */
+bool scree_scene_bodies_overlap(const scree_scene *scene, char text[SCREE_REMARK]);
 /* `which` of the inlet's shapes. */
 scree_status scree_scene_enter(scree_scene *scene, scree_scene_inlet *inlet, size_t which,
                                const scree_placement *placement, const double velocity[3],
