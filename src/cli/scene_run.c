@@ -201,6 +201,8 @@ static scree_status on_begin(void *context, scree_scene *scene, bool resumed, sc
   if (resumed)
     SCREE_TRY(
         recall_frames(&r->frames, r->forecast.frame_interval, scree_scene_view(scene), error));
+  if (r->output && r->options->overwrite && !r->options->resume) /* not for a scene that is none */
+    SCREE_TRY(cli_clear_scene_output(r->call, r->output, error));
   if (r->output)
     SCREE_TRY(scree_text_write(scree_scene_text(scene), IN_FOLDER(r, "scene.yaml"), true, error));
   SCREE_TRY(write_shapes(r, scene, error));
