@@ -200,6 +200,8 @@ static scree_status on_begin(void *context, scree_scene *scene, bool resumed, sc
   if (resumed)
     SCREE_TRY(
         recall_frames(&r->frames, r->forecast.frame_interval, scree_scene_view(scene), error));
+  if (r->output && r->options->overwrite && !r->options->resume) /* not for a scene that is none */
+    SCREE_TRY(cli_clear_scene_output(r->call, r->output, error));
   if (r->output)
     SCREE_TRY(scree_text_write(scree_scene_text(scene), IN_FOLDER(r, "scene.yaml"), true, error));
   SCREE_TRY(write_shapes(r, scene, error));
@@ -402,9 +404,8 @@ static void print_summary(FILE *stream, const scree_scene *scene, const char *st
           "  %zu came in, %zu are inside, %zu went out: %.5g kg in, %.5g kg inside, %.5g kg out\n",
           b.entered_count, b.inside_count, b.left_count, b.entered_mass, b.inside_mass,
           b.left_mass);
-  if (b.inside_count + b.left_count > b.entered_count)
-    fprintf(stream, "  some came apart: there are %zu more than came in\n",
-            b.inside_count + b.left_count - b.entered_count);
+  if (scree_book_pieces(&b))
+    fprintf(stream, "  some came apart: there are %zu more than came in\n", scree_book_pieces(&b));
   for (size_t i = 0; scree_scene_inlet_name(scene, i); i++) {
     size_t waiting;
     scree_scene_inlet_count(scene, i, NULL, &waiting);

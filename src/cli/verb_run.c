@@ -44,8 +44,6 @@ static scree_status simulate(cli_scene_run *r, scree_error *error) {
   const cli_scene_options *o = r->options;
   char shown[CLI_PRINTABLE_BYTES];
   if (o->output) SCREE_TRY(cli_check_scene_output(r, error));
-  if (o->output && o->overwrite && !o->resume)
-    SCREE_TRY(cli_clear_scene_output(r->call, o->output, error));
   SCREE_TRY(cli_run_scene(r, error));
   if (o->json) return SCREE_OK;
   if (o->output)

@@ -1,4 +1,5 @@
 /* scree study: many runs. */
+#include "base/file.h"
 #include "base/owned.h"
 #include "base/path.h"
 #include "cli/output.h"
@@ -6,6 +7,7 @@
 #include "cli/terminal.h"
 #include "report/program.h"
 
+#include <errno.h>
 #include <string.h>
 
 #define ARGUMENTS study_arguments
@@ -142,6 +144,64 @@ size_t study_jobs_wanted(const cli_call *call, size_t most) {
   return jobs > most ? most : jobs;
 }
 
+/* ---- an earlier study of the folder ---- */
+
+#define ASIDE ".earlier"
+static const char *const made[] = {"shapes",           "leases",           "runs",
+                                   "results",          "scene.yaml",       "study.sqlite",
+                                   "study.sqlite-wal", "study.sqlite-shm", "study.yaml"};
+enum { MADE_COUNT = sizeof made / sizeof *made };
+
+static void remove_made(const char *folder) {
+  for (size_t i = 0; i < MADE_COUNT; i++) cli_remove_tree(SCREE_PATH_IN(folder, made[i]));
+}
+
+/* Puts it aside until the new one has its shapes, unless somebody is at work on it. */
+static scree_status put_aside(const char *folder, scree_error *error) {
+  SCREE_OWNED(scree_study, study);
+  if (!scree_path_exists(SCREE_PATH_IN(folder, "study.yaml"))) return SCREE_OK;
+  if (scree_study_open_folder(folder, &study, NULL) == SCREE_OK) {
+    SCREE_CLEANUP(scree_study_result_free) scree_study_result result = {0};
+    if (scree_study_collect(study, true, NULL) == SCREE_OK &&
+        scree_study_analyse(study, &result, NULL) == SCREE_OK && result.counts.running > 0)
+      return cli_refuse(error, SCREE_EXISTS, folder,
+                        "others are at work on this study; not begun anew");
+  }
+  remove_made(SCREE_PATH_IN(folder, ASIDE)); /* of a call that was killed */
+  SCREE_TRY(scree_folder_create(SCREE_PATH_IN(folder, ASIDE), error));
+  for (size_t i = 0; i < MADE_COUNT; i++)
+    if (scree_path_exists(SCREE_PATH_IN(folder, made[i])) &&
+        !scree_path_rename(SCREE_PATH_IN(folder, made[i]),
+                           SCREE_PATH_IN(SCREE_PATH_IN(folder, ASIDE), made[i])))
+      return cli_refuse(error, SCREE_IO, SCREE_PATH_IN(folder, made[i]), strerror(errno));
+  return SCREE_OK;
+}
+
+static void put_back(const char *folder) {
+  for (size_t i = 0; i < MADE_COUNT; i++)
+    (void)scree_path_rename(SCREE_PATH_IN(SCREE_PATH_IN(folder, ASIDE), made[i]),
+                            SCREE_PATH_IN(folder, made[i]));
+}
+
+/* What is wrong with a new study, or ends it before it has its shapes, costs no earlier run. */
+static scree_status begin(const cli_call *call, scree_study *study, const char *folder,
+                          const scree_study_options *o, scree_error *error) {
+  const study_arguments *a = call->options;
+  const bool anew = a->overwrite && study_rank() == 0;
+  scree_status status = anew ? put_aside(folder, error) : SCREE_OK;
+  const bool may = status == SCREE_OK;
+  if (may) status = scree_study_open(study, folder, error);
+  if (status == SCREE_OK) status = scree_study_prepare(study, o, call->progress, error);
+  if (!anew) return status;
+  if (status == SCREE_OK)
+    remove_made(SCREE_PATH_IN(folder, ASIDE));
+  else if (may && scree_path_exists(SCREE_PATH_IN(folder, ASIDE)))
+    remove_made(folder);
+  if (status != SCREE_OK) put_back(folder);
+  (void)scree_folder_remove(SCREE_PATH_IN(folder, ASIDE));
+  return status;
+}
+
 static scree_status run_study(const cli_call *call, scree_study *study, const char *folder,
                               scree_error *error) {
   const study_arguments *a = call->options;
@@ -154,8 +214,7 @@ static scree_status run_study(const cli_call *call, scree_study *study, const ch
                            .fraction = fraction_done,
                            .context = study,
                            .work = work_as_one};
-  SCREE_TRY(scree_study_open(study, folder, error));
-  SCREE_TRY(scree_study_prepare(study, &o, call->progress, error));
+  SCREE_TRY(begin(call, study, folder, &o, error));
   if (a->slurm) return study_run_slurm(call, folder, runs, error);
   if (!worker && !a->keep_failed) SCREE_TRY(scree_study_reopen(study, error));
   scree_status status = study_run_crew(&crew, worker);
@@ -164,25 +223,6 @@ static scree_status run_study(const cli_call *call, scree_study *study, const ch
   SCREE_TRY(scree_study_collect(study, true, error));
   SCREE_TRY(report(call, study, folder, status == SCREE_OK, &failed, error));
   return failed ? CLI_TOLD : status;
-}
-
-/* Removes an earlier study of the folder, unless somebody is at work on it. */
-static scree_status begin_anew(const char *folder, scree_error *error) {
-  static const char *const made[] = {"shapes",           "leases",           "runs",
-                                     "results",          "scene.yaml",       "study.sqlite",
-                                     "study.sqlite-wal", "study.sqlite-shm", "study.yaml"};
-  SCREE_OWNED(scree_study, study);
-  if (!scree_path_exists(SCREE_PATH_IN(folder, "study.yaml"))) return SCREE_OK;
-  if (scree_study_open_folder(folder, &study, NULL) == SCREE_OK) {
-    SCREE_CLEANUP(scree_study_result_free) scree_study_result result = {0};
-    if (scree_study_collect(study, true, NULL) == SCREE_OK &&
-        scree_study_analyse(study, &result, NULL) == SCREE_OK && result.counts.running > 0)
-      return cli_refuse(error, SCREE_EXISTS, folder,
-                        "others are at work on this study; not begun anew");
-  }
-  for (size_t i = 0; i < sizeof made / sizeof *made; i++)
-    cli_remove_tree(SCREE_PATH_IN(folder, made[i]));
-  return SCREE_OK;
 }
 
 static scree_status run(const cli_call *call, scree_error *error) {
@@ -194,7 +234,6 @@ static scree_status run(const cli_call *call, scree_error *error) {
   SCREE_TRY(scree_study_read(call->inputs[0], &study, error));
   if (a->dry_run && !a->slurm) return list_runs(study, error);
   const char *output = study_folder(call, "study", folder, sizeof folder);
-  if (a->overwrite && study_rank() == 0) SCREE_TRY(begin_anew(output, error));
   return run_study(call, study, output, error);
 }
 

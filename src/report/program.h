@@ -275,6 +275,11 @@ typedef struct scree_words {
 void scree_words_name(const char *name, char *to, size_t size);
 int scree_words_decimals(double spread);
 
+/* How many more there are than came in: what came apart leaves pieces. */
+static inline size_t scree_book_pieces(const scree_scene_book *book) {
+  size_t there = book->inside_count + book->left_count;
+  return there > book->entered_count ? there - book->entered_count : 0;
+}
 /* Says a scene, or its first heap where it has one. stopped: why it ended early, or NULL. */
 void scree_scene_words(const scree_scene *scene, const scree_pile *pile, const char *stopped,
                        scree_words *words);

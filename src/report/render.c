@@ -1,10 +1,10 @@
 /* Pictures of meshes by ray tracing: one jittered primary ray a sample, and at each hit one shadow
  * ray to a large round lamp (soft shadows) and one cosine-weighted ray to a uniform sky (ambient
  * occlusion), both Lambertian. The samples of a pixel are points of the sequence R6 (Roberts 2018),
- * shifted by random numbers of that pixel, so the picture does not depend on threads; where the
- * first few agree there are no more. Everything is moved into a box about the
- * origin of half-size about 1 before it goes to single precision: coordinates far from the origin
- * are no trouble. */
+ * shifted by random numbers of that pixel, so the picture does not depend on threads. Every pixel
+ * takes all of them: to stop where the first few agree leaves specks wherever a ray seldom meets
+ * what the others miss. Everything is moved into a box about the origin of half-size about 1 before
+ * it goes to single precision: coordinates far from the origin are no trouble. */
 #include "base/alloc.h"
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -27,8 +27,8 @@ static const double edge_width_px = 0.9;  /* full width of a drawn edge */
 static const double full_edge_px = 14;    /* triangles this long get edges in full */
 static const double edge_darkness = 0.75; /* how much of the colour an edge takes away */
 static const size_t most_cells = 10000;
-static const double agreement = 0.004; /* of samples, as a share of white: half a step of 8 bits */
-enum { FIRST_SAMPLES = 4, ROWS_PER_BLOCK = 4, BAND_ROWS = 32, CAPTION_PX = 34, GAP_PX = 6 };
+static const double unseen = 0.004; /* a share of white: half a step of 8 bits */
+enum { ROWS_PER_BLOCK = 4, BAND_ROWS = 32, CAPTION_PX = 34, GAP_PX = 6 };
 
 typedef struct camera {
   vec3 eye, right, up, forward; /* right and up scaled to half the image at distance 1 */
@@ -241,7 +241,7 @@ static double irradiance(const view *v, vec3 point, vec3 normal, const sample *a
 static vec3 shade_ground(const view *v, vec3 point, const sample *at) {
   vec3 normal = {0, 0, 1};
   double far = hypot(point.x, point.y) / ground_fade, fade = exp(-far * far);
-  if (fade < agreement) return white;
+  if (fade < unseen) return white;
   double open = lamp_power * vec3_dot(normal, v->lamp) + sky_power;
   double light = fmin(1, irradiance(v, point, normal, at) / open);
   double level = 1 - 0.75 * fade * (1 - light);
@@ -306,8 +306,8 @@ static vec3 trace_sample(const view *v, size_t column, size_t row, const sample 
 }
 
 static void render_pixel(const view *v, size_t column, size_t row) {
-  vec3 sum = {0, 0, 0}, low = white, high = {0, 0, 0};
-  size_t pixel = (v->y + row) * v->image->width + v->x + column, count = 0;
+  vec3 sum = {0, 0, 0};
+  size_t pixel = (v->y + row) * v->image->width + v->x + column;
   scree_rng rng = {.seed = v->seed, .stream = pixel};
   double start[6];
   for (int i = 0; i < 6; i += 2) {
@@ -315,16 +315,11 @@ static void render_pixel(const view *v, size_t column, size_t row) {
     start[i] = (double)(uint32_t)bits * 0x1p-32;
     start[i + 1] = (double)(bits >> 32) * 0x1p-32;
   }
-  while (count < v->options->samples) {
-    const sample at = sample_at(start, count++);
-    vec3 color = trace_sample(v, column, row, &at);
-    sum = vec3_add(sum, color);
-    low = vec3_min(low, color);
-    high = vec3_max(high, color);
-    vec3 spread = vec3_sub(high, low);
-    if (count == FIRST_SAMPLES && fmax(spread.x, fmax(spread.y, spread.z)) < agreement) break;
+  for (size_t i = 0; i < v->options->samples; i++) {
+    const sample at = sample_at(start, i);
+    sum = vec3_add(sum, trace_sample(v, column, row, &at));
   }
-  sum = vec3_scale(sum, 1 / (double)count);
+  sum = vec3_scale(sum, 1 / (double)v->options->samples);
   uint8_t *out = v->image->pixels + 3 * pixel;
   out[0] = scree_to_srgb(sum.x);
   out[1] = scree_to_srgb(sum.y);

@@ -69,10 +69,9 @@ void scree_scene_words(const scree_scene *scene, const scree_pile *pile, const c
   if (pile) {
     say_heap(scene, pile, w);
   } else {
-    const bool apart = b.inside_count + b.left_count > b.entered_count;
     SCREE_ADD_TEXT(w->answer, "%zu particles came in%s, %zu are inside and %zu went out in %.4g s.",
-                   b.entered_count, apart ? " and came apart" : "", b.inside_count, b.left_count,
-                   scree_world_time(scree_scene_view(scene)));
+                   b.entered_count, scree_book_pieces(&b) ? " and came apart" : "", b.inside_count,
+                   b.left_count, scree_world_time(scree_scene_view(scene)));
     if (b.waiting_count) SCREE_ADD_TEXT(w->but, "%zu found no room at inlets.", b.waiting_count);
   }
   say_hardening(scene, w);

@@ -7,6 +7,8 @@
 #include "base/quote.h"
 #include "scene/named_table.h"
 #include "scene/scene.h"
+#include "world/state/save.h"
+#include "world/step/checkpoint.h"
 
 #include <float.h>
 #include <string.h>
@@ -28,24 +30,33 @@ static scree_status check_names(const scree_named_table *t, const scree_scene *s
   return SCREE_OK;
 }
 
-/* One of that name, or of the family of that name and of that size; their count: none. */
-static size_t find_shape(const scree_scene *scene, const char *name, double size) {
-  size_t i = 0;
-  for (; i < SCREE_SCENE_SHAPES(scene); i++) {
+/* One of that name, or of the family of that name, and of the size where one is given: the nearest
+ * of that name, where it is none. */
+static scree_status find_shape(const scree_named_table *t, const scree_scene *scene,
+                               const char *name, double size, size_t *index) {
+  double nearest = INFINITY;
+  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
     const scree_plan_shape *s = &scene->plan.shapes.items[i];
     const char *family = scene->plan.families.items[s->family].place.name;
     double own = scene->shapes[i].particle->measures.size;
-    bool named = !name || !strcmp(name, s->place.name) || !strcmp(name, family);
-    if (named && (isnan(size) || fabs(size - own) <= 1e-4 * own)) break;
+    double off = isnan(size) ? 0 : fabs(size - own) / own;
+    if ((name && strcmp(name, s->place.name) && strcmp(name, family)) || off >= nearest) continue;
+    nearest = off;
+    *index = i;
   }
-  return i;
+  if (isinf(nearest)) return scree_rows_fail(&t->rows, "no shape '%.40s'", name ? name : "");
+  if (nearest <= 1e-4) return SCREE_OK;
+  return scree_rows_fail(&t->rows,
+                         "no shape '%.40s' of size %.6g mm, the nearest has %.6g mm: other sizes "
+                         "are those that the shape's `size` in the scene lists",
+                         name ? name : scene->plan.families.items[0].place.name, 1e3 * size,
+                         1e3 * scene->shapes[*index].particle->measures.size);
 }
 
 static scree_status admit(const scree_named_table *t, const double v[REALS], const char *shape,
                           scree_scene *scene, scree_error *error) {
-  size_t index = find_shape(scene, shape, v[13]);
-  if (index == SCREE_SCENE_SHAPES(scene))
-    return scree_rows_fail(&t->rows, "no shape '%.40s' of that name and size", shape ? shape : "");
+  size_t index = 0;
+  SCREE_TRY(find_shape(t, scene, shape, v[13], &index));
   scree_body body = scree_default_body();
   memcpy(body.position, v, sizeof body.position);
   for (int k = 0; k < 3; k++) {
@@ -134,6 +145,57 @@ scree_status scree_scene_read_places(scree_scene *scene, const char *folder, scr
 scree_status scree_scene_read_bodies(scree_scene *scene, const char *folder, scree_error *error) {
   SCREE_TRY(read_file(scene, folder, read_table, error));
   return scree_scene_check_pierced(scene, error);
+}
+
+typedef struct deepest {
+  const scree_scene *scene;
+  scree_contact contact;
+  double share; /* of the size of the smaller */
+} deepest;
+
+static double size_of(const scree_scene *scene, size_t body) {
+  return scene->shapes[scene->shape_of.items[body]].particle->measures.size;
+}
+
+static bool keep_deepest(void *context, const scree_contact *contact) {
+  deepest *d = context;
+  double size = size_of(d->scene, contact->body);
+  if (!contact->wall) size = fmin(size, size_of(d->scene, contact->other));
+  if (contact->overlap > d->share * size)
+    *d = (deepest){d->scene, *contact, contact->overlap / size};
+  return true;
+}
+
+/* Contacts are known from the first step on: it is made by a copy, and may fail by what is looked
+ * for. */
+bool scree_scene_bodies_overlap(const scree_scene *scene, char text[SCREE_REMARK]) {
+  if (!scene->plan.bodies || scree_world_step_count(scene->world) > 0) return false;
+  unsigned char *bytes;
+  size_t count;
+  deepest d = {scene, {0}, scene->world->options.overlap_limit};
+  if (scree_world_pack(scene->world, true, &bytes, &count, NULL) != SCREE_OK) return false;
+  scree_world *copy = NULL;
+  if (scree_world_unpack(bytes, count, "", &copy, NULL) == SCREE_OK) {
+    copy->options.time_step *= 1e-6; /* nothing is to move yet */
+    (void)scree_world_step(copy, 1, NULL);
+    (void)scree_world_visit_contacts(copy, keep_deepest, &d, NULL);
+  }
+  scree_world_free(copy);
+  scree_free(bytes);
+  const scree_contact *c = &d.contact;
+  if (!(c->overlap > 0)) return false;
+  char other[100];
+  if (c->wall)
+    snprintf(other, sizeof other, "'%.60s'",
+             scree_scene_geometry_name(scene, scree_scene_wall_geometry(scene, c->other)));
+  else
+    snprintf(other, sizeof other, "body %zu", c->other);
+  snprintf(text, SCREE_REMARK,
+           "bodies: some begin inside of each other or of walls, and are thrown apart: body %zu, "
+           "counted from 0, and %s overlap by %.3g mm at %.4g %.4g %.4g m, %.2g of the size",
+           c->body, other, 1e3 * c->overlap, c->position[0], c->position[1], c->position[2],
+           d.share);
+  return true;
 }
 
 static void put_reals(FILE *stream, const double *values, int count) {

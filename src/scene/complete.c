@@ -269,9 +269,9 @@ static scree_status prepare(work *w, scree_error *error) {
   if (job->folder) SCREE_TRY(find_checkpoint(w, error));
   bool resumed = w->scene != NULL;
   if (!resumed) SCREE_TRY(make_scene(w, error));
+  if (job->begun) SCREE_TRY(job->begun(job->context, w->scene, resumed, error));
   if (job->folder) SCREE_TRY(open_series(w, error));
   if (job->folder && !job->no_motion) SCREE_TRY(open_motion(w, resumed, error));
-  if (job->begun) SCREE_TRY(job->begun(job->context, w->scene, resumed, error));
   return keep_state(w, error);
 }
 

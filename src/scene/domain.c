@@ -40,7 +40,7 @@ static void take_in_endless(scree_scene_reach *reach, vec3 axis, bool plane) {
   }
 }
 
-static void take_in_wall(const scree_scene *scene, size_t index, scree_scene_reach *reach) {
+void scree_scene_take_in_wall(const scree_scene *scene, size_t index, scree_scene_reach *reach) {
   scree_wall wall;
   scree_world_get_wall(scene->world, index, &wall);
   vec3 at = vec3_load(wall.position), axis = vec3_unit(vec3_load(wall.axis));
@@ -59,11 +59,12 @@ static void take_in_wall(const scree_scene *scene, size_t index, scree_scene_rea
     take_in_endless(reach, axis, wall.kind == SCREE_WALL_PLANE);
 }
 
-scree_scene_reach scree_scene_reach_of(const scree_scene *scene) {
+static scree_scene_reach reach_of(const scree_scene *scene) {
   scree_scene_reach reach = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
   const scree_plan *plan = &scene->plan;
   double low[3], high[3];
-  for (size_t w = 0; w < scree_world_wall_count(scene->world); w++) take_in_wall(scene, w, &reach);
+  for (size_t w = 0; w < scree_world_wall_count(scene->world); w++)
+    scree_scene_take_in_wall(scene, w, &reach);
   for (size_t i = 0; i < plan->inlets.count; i++) {
     const scree_plan_inlet *inlet = &plan->inlets.items[i];
     if (inlet->layers && inlet->layers->in) { /* that geometry is taken in already */
@@ -79,7 +80,7 @@ scree_scene_reach scree_scene_reach_of(const scree_scene *scene) {
 
 scree_scene_reach scree_scene_domain(const scree_scene *scene) {
   const scree_plan *plan = &scene->plan;
-  scree_scene_reach reach = scree_scene_reach_of(scene);
+  scree_scene_reach reach = reach_of(scene);
   double margin = 0, low[3], high[3];
   take_in(&reach, scene->table_low, scene->table_high);
   for (size_t i = 0; i < plan->outlets.count; i++) {

@@ -281,6 +281,7 @@ bool scree_scene_remark(const scree_scene *scene, size_t index, char text[SCREE_
   remark_frames(scene, &r);
   remark_pinches(scene, &r);
   remark_starts(scene, &r);
+  if (r.count == index && scree_scene_bodies_overlap(scene, text)) return true; /* a step's work */
   return r.count > index;
 }
 

@@ -226,6 +226,7 @@ static scree_status set_up(scree_scene *scene, const char *folder, scree_error *
   SCREE_TRY(scree_geometry_add(scene, folder, scene->world, error));
   scree_world_share_walls(scene->world, scene->gallery);
   scene->gallery->hit_speed = scree_scene_hit_speed(scene);
+  if (!(scene->plan.contact->time_step > 0)) scene->world->hit_speed = scene->gallery->hit_speed;
   scene->time_step = scree_world_time_step(scene->gallery, NULL);
   scene->world->options.time_step = scene->time_step;
   plan_ticks(scene);

@@ -256,6 +256,8 @@ scree_status scree_scene_read_places(scree_scene *scene, const char *folder, scr
 scree_status scree_scene_check_pierced(const scree_scene *scene, scree_error *error);
 /* bodies.c: those that are there from the start. */
 scree_status scree_scene_read_bodies(scree_scene *scene, const char *folder, scree_error *error);
+/* Whether some of those begin pressed beyond the overlap limit, with the worst of them. */
+bool scree_scene_bodies_overlap(const scree_scene *scene, char text[SCREE_REMARK]);
 /* `which` of the inlet's shapes. */
 scree_status scree_scene_enter(scree_scene *scene, scree_scene_inlet *inlet, size_t which,
                                const scree_placement *placement, const double velocity[3],
@@ -309,11 +311,11 @@ scree_status scree_scene_check_softness(const scree_scene *scene, scree_error *e
 void scree_scene_empty(scree_scene *scene);
 /* What left the domain that the scene has where it names none. */
 void scree_scene_take_lost(scree_scene *scene);
-/* domain.c: the box of geometry as it stands and of the inlets; that domain. */
+/* domain.c: makes it larger by a wall as it stands; that domain. */
 typedef struct scree_scene_reach {
   double low[3], high[3]; /* m; infinite where there is no end */
 } scree_scene_reach;
-scree_scene_reach scree_scene_reach_of(const scree_scene *scene);
+void scree_scene_take_in_wall(const scree_scene *scene, size_t index, scree_scene_reach *reach);
 scree_scene_reach scree_scene_domain(const scree_scene *scene);
 
 /* sensors.c: classes of bodies, by which the numbers of some sensors come: of a shape's sizes each,

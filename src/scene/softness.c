@@ -1,6 +1,6 @@
 /* Whether contacts are stiff enough for how fast bodies will hit: a linear spring is pressed by
  * v sqrt(m/K), and the law reads depths up to its limit only. The speed is that of the inlet and of
- * the fall from it to the lowest geometry, and beside that of the wall's motion; how much of it a
+ * the fall from it to the wall's lowest, and beside that of the wall's motion; how much of it a
  * body has when it hits is not known, so what exceeds the limit is told. Bodies of a table
  * likewise, by their own speeds. Where the inlet's velocity alone would press a linear spring in by
  * a body's size no hardened one holds it, and it would come out on the far side: that is refused.
@@ -31,21 +31,48 @@ static scree_scene_reach region_of(const scree_scene_inlet *inlet) {
   return region;
 }
 
-/* m: along gravity, from the highest corner of a region to the lowest of the geometry; 0 where the
- * geometry has no lowest. */
-static double fall_from(const scree_scene *scene, scree_scene_reach region) {
-  vec3 down = vec3_load(scene->plan.gravity);
-  if (!(vec3_norm(down) > 0)) return 0;
-  down = vec3_unit(down);
-  scree_scene_reach all = scree_scene_reach_of(scene);
-  const double n[3] = {down.x, down.y, down.z};
-  double from = 0, to = 0;
-  for (int k = 0; k < 3; k++) {
-    if (n[k] == 0) continue;
-    from += n[k] * (n[k] > 0 ? region.low[k] : region.high[k]);
-    to += n[k] * (n[k] > 0 ? all.high[k] : all.low[k]);
+static const double steep = 0.05; /* cosine: steeper planes are sides, which stop no fall */
+
+/* m: from the highest corner of a region down to the lowest of a wall, of a plane under the corner
+ * that is farthest above it; below 0: it is under none of the region. */
+static double fall_to_wall(const scree_scene *scene, const scree_scene_reach *region, vec3 down,
+                           size_t index) {
+  scree_scene_reach reach = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+  scree_scene_take_in_wall(scene, index, &reach);
+  scree_wall wall;
+  scree_world_get_wall(scene->world, index, &wall);
+  const vec3 at = vec3_load(wall.position), normal = vec3_unit(vec3_load(wall.axis));
+  const bool plane = wall.kind == SCREE_WALL_PLANE;
+  const double against = -vec3_dot(normal, down);
+  if (plane && against < steep) return -INFINITY;
+  double highest = INFINITY, lowest = -INFINITY, deepest = -INFINITY;
+  for (int corner = 0; corner < 8; corner++) {
+    double from[3], to[3];
+    for (int k = 0; k < 3; k++) {
+      from[k] = corner >> k & 1 ? region->high[k] : region->low[k];
+      to[k] = corner >> k & 1 ? reach.high[k] : reach.low[k];
+    }
+    highest = fmin(highest, vec3_dot(vec3_load(from), down));
+    if (!plane) lowest = fmax(lowest, vec3_dot(vec3_load(to), down));
+    deepest = fmax(deepest, vec3_dot(normal, vec3_sub(vec3_load(from), at)) / against);
   }
-  return isfinite(to - from) ? fmax(0, to - from) : 0;
+  if (plane) return deepest;
+  return isfinite(lowest) ? lowest - highest : -INFINITY;
+}
+
+/* m: along gravity, from the highest corner of a region to the first plane under it; where there is
+ * none, to the lowest of the geometry. */
+static double fall_from(const scree_scene *scene, const scree_scene_reach *region) {
+  const vec3 gravity = vec3_load(scene->plan.gravity);
+  double planes = INFINITY, others = 0;
+  for (size_t w = 0; vec3_norm(gravity) > 0 && w < scree_world_wall_count(scene->world); w++) {
+    const double fall = fall_to_wall(scene, region, vec3_unit(gravity), w);
+    if (scree_world_wall_at(scene->world, w)->given.kind != SCREE_WALL_PLANE)
+      others = fmax(others, fall);
+    else if (fall >= 0)
+      planes = fmin(planes, fall);
+  }
+  return isfinite(planes) ? planes : others;
 }
 
 /* ---- contacts ---- */
@@ -97,7 +124,8 @@ typedef struct search {
 /* Bodies of an inlet, or of the table. */
 typedef struct origin {
   size_t inlet, shape;
-  double speed;
+  double enters, gravity, falls; /* m/s, m/s2, m: at most */
+  scree_scene_reach region;
 } origin;
 
 static void keep_worst(search *s, const scree_scene_softness *found) {
@@ -131,14 +159,32 @@ static double fastest_wall(const scree_scene *scene) {
   return fastest;
 }
 
+static double fallen(const origin *from, double falls) {
+  return sqrt(from->enters * from->enters + 2 * from->gravity * falls);
+}
+
+/* What hits a geometry has fallen to its lowest. */
+static double speed_on(const search *s, const origin *from, size_t geometry) {
+  const scree_scene *scene = s->scene;
+  const scree_scene_geometry *g = &scene->geometry[geometry];
+  double falls = from->gravity > 0 ? -INFINITY : 0;
+  for (size_t k = 0; falls < from->falls && k < g->wall_count; k++) {
+    const vec3 down = vec3_unit(vec3_load(scene->plan.gravity));
+    const double fall = fall_to_wall(scene, &from->region, down, g->first_wall + k);
+    falls = fmax(falls, fall >= 0 ? fall : from->falls);
+  }
+  return fallen(from, fmin(falls, from->falls)) +
+         (s->moving ? scree_motions_fastest(scene, geometry) : 0);
+}
+
 /* Everything that such a body may hit, at its speed and beside that at the walls' own. */
 static void look_at_hits(search *s, const origin *from) {
   const scree_scene *scene = s->scene;
   touching t = {.shape = from->shape, .is_wall = true};
   for (t.other = 0; t.other < scene->plan.geometry.count; t.other++)
-    look(s, from, &t, from->speed + (s->moving ? scree_motions_fastest(scene, t.other) : 0));
+    look(s, from, &t, speed_on(s, from, t.other));
   t.is_wall = false;
-  const double speed = fmax(from->speed, s->moving ? fastest_wall(scene) : 0);
+  const double speed = fmax(fallen(from, from->falls), s->moving ? fastest_wall(scene) : 0);
   for (t.other = 0; t.other < SCREE_SCENE_SHAPES(scene); t.other++) look(s, from, &t, speed);
 }
 
@@ -152,7 +198,7 @@ static void look_at_squeezes(search *s, const origin *from) {
     for (size_t g = 0; g < scene->plan.geometry.count; g++) {
       const meeting below = meet(scene, &(touching){k, g, true});
       const double series = above.stiffness * below.stiffness / (above.stiffness + below.stiffness),
-                   speed = from->speed + (s->moving ? scree_motions_fastest(scene, g) : 0);
+                   speed = speed_on(s, from, g);
       keep_worst(s,
                  &(scree_scene_softness){.inlet = from->inlet,
                                          .shape = from->shape,
@@ -181,24 +227,28 @@ static double speed_of_inlet(const scree_scene_inlet *inlet) {
 
 typedef void looker(search *s, const origin *from);
 
-/* The speed that an inlet gives, with the fall from it. */
-static double fall_speed(const scree_scene *scene, const scree_scene_inlet *inlet, double gravity) {
-  const double enters = speed_of_inlet(inlet),
-               falls = gravity > 0 ? fall_from(scene, region_of(inlet)) : 0;
-  return sqrt(enters * enters + 2 * gravity * falls);
-}
-
 static double gravity_of(const scree_scene *scene) {
   return vec3_norm(vec3_load(scene->plan.gravity));
+}
+
+static origin origin_of_inlet(const scree_scene *scene, size_t index, double gravity) {
+  const scree_scene_inlet *inlet = &scene->inlets[index];
+  origin from = {.inlet = index, .enters = speed_of_inlet(inlet), .gravity = gravity};
+  from.region = region_of(inlet);
+  from.falls = gravity > 0 ? fall_from(scene, &from.region) : 0;
+  return from;
 }
 
 double scree_scene_hit_speed(const scree_scene *scene) {
   static const double least = 0.1; /* what rests is pressed too */
   double speed = scene->plan.bodies ? 1 : least;
   for (size_t i = 0; i < scene->plan.inlets.count; i++)
-    speed = fmax(speed, scene->inlets[i].plan->layers
-                            ? 1
-                            : fall_speed(scene, &scene->inlets[i], gravity_of(scene)));
+    if (scene->inlets[i].plan->layers) {
+      speed = fmax(speed, 1);
+    } else {
+      const origin from = origin_of_inlet(scene, i, gravity_of(scene));
+      speed = fmax(speed, fallen(&from, from.falls));
+    }
   return speed + fastest_wall(scene);
 }
 
@@ -206,7 +256,7 @@ static void look_at_inlets(search *s, looker *at, double gravity) {
   const scree_scene *scene = s->scene;
   for (size_t i = 0; i < scene->plan.inlets.count; i++) {
     const scree_scene_inlet *inlet = &scene->inlets[i];
-    origin from = {.inlet = i, .speed = fall_speed(scene, inlet, gravity)};
+    origin from = origin_of_inlet(scene, i, gravity);
     for (size_t k = 0; k < inlet->plan->shapes.count; k++) {
       from.shape = inlet->shapes[k];
       at(s, &from);
@@ -218,10 +268,10 @@ static void look_at_inlets(search *s, looker *at, double gravity) {
 static void look_at_table(search *s, looker *at, double gravity) {
   const scree_scene *scene = s->scene;
   if (!scene->plan.bodies) return;
-  scree_scene_reach region;
-  memcpy(region.low, scene->table_low, sizeof region.low);
-  memcpy(region.high, scene->table_high, sizeof region.high);
-  const double falls = fall_from(scene, region);
+  origin from = {.inlet = SIZE_MAX, .gravity = gravity};
+  memcpy(from.region.low, scene->table_low, sizeof from.region.low);
+  memcpy(from.region.high, scene->table_high, sizeof from.region.high);
+  from.falls = fall_from(scene, &from.region);
   for (size_t shape = 0; shape < SCREE_SCENE_SHAPES(scene); shape++) {
     double fastest = -1;
     for (size_t i = 0; i < scene->shape_of.count; i++) {
@@ -230,7 +280,8 @@ static void look_at_table(search *s, looker *at, double gravity) {
       scree_world_get_body(scene->world, i, &body);
       fastest = fmax(fastest, vec3_norm(vec3_load(body.velocity)));
     }
-    const origin from = {SIZE_MAX, shape, sqrt(fastest * fastest + 2 * gravity * falls)};
+    from.shape = shape;
+    from.enters = fastest;
     if (fastest >= 0) at(s, &from);
   }
 }

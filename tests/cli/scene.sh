@@ -48,6 +48,9 @@ ls out
 run run small.yaml -o out --no-picture
 run run small.yaml -o out --no-picture --resume -q --set inlets.feed.count=21
 run run small.yaml -o out --no-picture --resume -q --set output.frames=0.001
+# -f begins anew once the scene is one: what is wrong with it costs no earlier result
+run run small.yaml -o out -f --set bodies.file=none.csv
+ls out | wc -l
 run run small.yaml -o out --no-picture -f -q | head -2 | numbers
 run run -o out --resume -q --no-picture | head -2 | numbers
 grep '"file"' out/result.json

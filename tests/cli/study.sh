@@ -22,6 +22,11 @@ sed 's/friction_all: .*/friction_all: [0.3]/; s/replicates: 2/replicates: 1/' ti
 cp -r whole again && touch again/results/old.yaml again/notes
 run study other.yaml -o again -f --jobs 1 2>/dev/null >/dev/null && hashes again | wc -l && ls again | grep notes && ls again/results | wc -l
 run study other.yaml -o again -f --worker 2>&1 | lines 2
+# what is wrong with another one costs no earlier run
+hashes again >before.txt
+sed 's/^shapes:.*/shapes: [none.ply]/' other.yaml >none.yaml
+run study none.yaml -o again -f
+hashes again | cmp - before.txt && cmp other.yaml again/study.yaml && ls -A again/runs again/shapes | wc -l && ls -A again | grep earlier
 # a worker killed in the middle, two processes after it, then a look at it
 "$SCREE" study tiny.yaml -o parts --worker --no-wait &
 worker=$!

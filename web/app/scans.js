@@ -126,8 +126,8 @@ export class ScansTab {
       return;
     }
     scan.told.textContent = ` ${(scan.log[0] ?? '').replace(`${scan.file.name}: `, '')}`;
-    scan.text.textContent = scan.log.join('\n');
-    scan.details.hidden = scan.log.length === 0;
+    scan.text.textContent = scan.log.slice(1).join('\n');
+    scan.details.hidden = scan.log.length < 2;
   }
 
   // Where the program names the repair that would help, a button that does it.
