@@ -116,7 +116,7 @@ static void what_passes_a_thin_wall_between_steps_stops(void **state) {
     scree_error error;
     assert_int_equal(scree_world_step(world, 200, &error), SCREE_DIVERGED);
     print_message("%s\n", error.message);
-    assert_non_null(strstr(error.message, "body 0 moved by 0.001 m past body 1 in one step"));
+    assert_non_null(strstr(error.message, "body 0 moved past body 1 by more than "));
     scree_world_free(world);
   }
   scree_particle_free(cube);

@@ -142,12 +142,12 @@ static scree_status describe_passed(scree_world *world, uint32_t k) {
 
 static scree_status describe_speed(scree_world *world, uint32_t k) {
   const scree_neighbours two = neighbours_at(world, k), *n = &two;
-  return scree_fail(
-      &world->failure, SCREE_DIVERGED,
-      "world: step %llu, body %u moved by %.3g m past %s %u in one step of %.3g s; at "
-      "most %.3g m (the thinnest wall of the two, or twice the overlap limit)",
-      (unsigned long long)world->step_count, n->a, pair_at(world, k).list.travel,
-      n->wall ? "wall" : "body", n->b, world->time_step, 2 * n->law.thin);
+  return scree_fail(&world->failure, SCREE_DIVERGED,
+                    "world: step %llu, body %u moved past %s %u by more than %.3g m (the thinnest "
+                    "wall of the two, or twice the overlap limit) in one step of %.3g s: shorter "
+                    "steps see it",
+                    (unsigned long long)world->step_count, n->a, n->wall ? "wall" : "body", n->b,
+                    2 * n->law.thin, world->time_step);
 }
 
 static scree_status describe_start(scree_world *world, const scree_trouble *trouble) {
