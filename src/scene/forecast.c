@@ -3,6 +3,7 @@
  * volume, or little more; what it holds makes room by falling out of it. */
 #include "base/number.h"
 #include "scene/geometry.h"
+#include "scene/motions.h"
 #include "scene/region.h"
 #include "scene/sensors/sensor.h"
 #include "scene/starts.h"
@@ -193,6 +194,16 @@ static void remark_units(const scree_scene *scene, remarks *r) {
   }
 }
 
+static void remark_rotations(const scree_scene *scene, remarks *r) {
+  double axis[3];
+  for (size_t i = 0; i < scene->plan.geometry.count; i++)
+    if (scree_motions_sweep(scene, i, axis) && is_asked(r))
+      snprintf(r->text, SCREE_REMARK,
+               "%s: turns about [%g, %g, %g] through the origin, which is not the cylinder's axis, "
+               "so that it sweeps about: `rotate` takes `axis` and `through`",
+               scene->plan.geometry.items[i].place.path, axis[0], axis[1], axis[2]);
+}
+
 static void remark_frames(const scree_scene *scene, remarks *r) {
   scree_scene_forecast f;
   double interval = scene->plan.output->frames;
@@ -278,6 +289,7 @@ bool scree_scene_remark(const scree_scene *scene, size_t index, char text[SCREE_
   remark_units(scene, &r);
   remark_inlets(scene, &r);
   remark_cylinders(scene, &r);
+  remark_rotations(scene, &r);
   remark_frames(scene, &r);
   remark_pinches(scene, &r);
   remark_starts(scene, &r);

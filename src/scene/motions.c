@@ -5,6 +5,8 @@
 #include "scene/motions/kind.h"
 #include "scene/scene.h"
 
+#include <string.h>
+
 #define MOTION_KIND(T, row, key, ...) &scree_motion_##key,
 static const scree_motion_kind *const kinds[] = {SCREE_MOTION_KINDS(MOTION_KIND, )};
 enum { KINDS = sizeof kinds / sizeof *kinds };
@@ -83,6 +85,26 @@ scree_status scree_motions_set(const scree_scene *scene, size_t index, scree_wor
     SCREE_TRY(scree_world_set_wall_motion(world, made->first_wall + w, motions, count, error));
   }
   return SCREE_OK;
+}
+
+bool scree_motions_sweep(const scree_scene *scene, size_t index, double axis[3]) {
+  static const double slight = 1e-6;
+  const scree_plan_geometry *g = &scene->plan.geometry.items[index];
+  const scree_scene_geometry *made = &scene->geometry[index];
+  scree_wall_motion motions[SCREE_MOST_MOTIONS];
+  if (g->motion.count != 1 || put_motions(g, 0, motions) != 1) return false;
+  const vec3 about = vec3_unit(vec3_load(motions->axis));
+  if (!motions->turns || vec3_norm(vec3_load(motions->through)) > 0) return false;
+  memcpy(axis, motions->axis, sizeof motions->axis);
+  for (size_t k = 0; k < made->wall_count; k++) {
+    scree_wall wall;
+    scree_world_get_wall(scene->world, made->first_wall + k, &wall);
+    const double aslant = vec3_norm(vec3_cross(about, vec3_unit(vec3_load(wall.axis)))),
+                 beside = vec3_norm(vec3_cross(about, vec3_load(wall.position)));
+    if (wall.kind == SCREE_WALL_CYLINDER && (aslant > slight || beside > slight * wall.radius))
+      return true;
+  }
+  return false;
 }
 
 /* ---- how fast ---- */

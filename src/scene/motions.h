@@ -16,6 +16,8 @@ scree_status scree_motions_read(scree_scene *scene, size_t geometry, const char 
                                 scree_error *error);
 /* m/s, rad/s: of a wall that stands at a place; false: they change. */
 bool scree_motion_velocity(const scree_plan_motion *motion, vec3 place, vec3 *velocity, vec3 *spin);
+/* Whether a cylinder of the geometry turns about an axis through the origin that is not its own. */
+bool scree_motions_sweep(const scree_scene *scene, size_t geometry, double axis[3]);
 /* m/s: the most, of the geometry's farthest point; motions act together. */
 double scree_motions_fastest(const scree_scene *scene, size_t geometry);
 /* Refuses motions that pass bodies within a step: jumps of tables. */

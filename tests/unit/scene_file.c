@@ -364,6 +364,21 @@ static void remarks(void **state) {
       {"materials.grain.young", "210e9", "materials: the stiffest contact gives way by at most"},
       {"inlets.feed.rate", "20000", "inlets.feed: of 20000 bodies about"},
       {"inlets.feed.count", "10", NULL},
+      {"geometry.drum",
+       "{material: steel, cylinder: {radius: 0.1, axis: [0, 1, 0], length: 0.1}, at: [0, 0, 0.2], "
+       "motion: "
+       "[{rotate: {speed: 6}}]}",
+       "geometry.drum: turns about [0, 0, 1] through the origin, which is not the cylinder's axis"},
+      {"geometry.drum",
+       "{material: steel, cylinder: {radius: 0.1, axis: [0, 1, 0], length: 0.1}, at: [0, 0, 0.2], "
+       "motion: "
+       "[{rotate: {speed: 6, axis: [0, 1, 0], through: [0, 0, 0.2]}}]}",
+       NULL},
+      {"geometry.drum",
+       "{material: steel, cylinder: {radius: 0.1, axis: [0, 1, 0], length: 0.1}, motion: [{rotate: "
+       "{speed: 6, axis: "
+       "[0, 1, 0]}}]}",
+       NULL},
       {"output.frames", "1e-6", "output.frames: 1e-06 s is shorter than a time step"},
       {"output.frames", "2e-4", NULL},
       {"output.frames", "5e-5", "output.frames: 40001 frames"},
