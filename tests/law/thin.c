@@ -308,13 +308,58 @@ static void a_grain_rests_on_a_slab(void **state) {
   scree_particle_free(slab);
 }
 
+/* A wedge pressed into a steep notch is held from both sides by what it rests on: nothing of it is
+ * inside, and it stays where the flanks hold it, with the force and after it. */
+static void a_wedge_rests_in_a_notch(void **state) {
+  (void)state;
+  const double half_angle = 8 * degree, apex = 0.018, low = 0.03, high = 0.055, play = 5e-5,
+               a = (low - apex) * tan(half_angle) - play,
+               b = (high - apex) * tan(half_angle) - play;
+  const double xy[] = {-a, low, a, low, b, high, -b, high};
+  scree_error error;
+  law_setup setup = law_default();
+  setup.stiffness = 1e7;
+  scree_world *world = law_world(&setup);
+  size_t index;
+  scree_mesh notch = solid_notch(0.06, half_angle, 0.05);
+  scree_wall wall = {.kind = SCREE_WALL_MESH, .material = 1, .axis = {0, 0, 1}, .mesh = &notch};
+  CHECK_OK(scree_world_add_wall(world, &wall, NULL, &error), error);
+  scree_particle *wedge = shape_particle(solid_prism(xy, 4, 0.03));
+  scree_body body = lying(wedge);
+  const double middle = low + (high - low) / 3 * (a + 2 * b) / (a + b);
+  memcpy(body.position, (double[]){0.03, middle, 0.025}, sizeof body.position);
+  index = law_body(world, wedge, body);
+  const double force[3] = {0, -5, 0}, none[3] = {0, 0, 0};
+  CHECK_OK(scree_world_set_body_force(world, index, force, none, &error), error);
+  double jammed = 0, pressed[2];
+  for (int released = 0; released < 2; released++) {
+    for (int i = 0; i < 200; i++) {
+      law_step(world, 20);
+      scree_observation o;
+      scree_world_observe(world, &o);
+      jammed = fmax(jammed, o.largest_overlap);
+      assert_int_equal(o.depenetration_count, 0);
+    }
+    scree_world_get_body(world, index, &body);
+    pressed[released] = body.position[1];
+    CHECK_OK(scree_world_set_body_force(world, index, none, none, &error), error);
+  }
+  scree_particle_measures m;
+  scree_particle_measure(wedge, &m);
+  print_message("pressed %.3g of roundings, %.3g m in, %.3g m back\n", jammed / m.rounding,
+                middle - pressed[0], pressed[1] - pressed[0]);
+  LAW_BELOW("L17", "a wedge in a notch goes in, m", middle - pressed[0], 0.002);
+  LAW_BELOW("L17", "moves when let go, m", fabs(pressed[1] - pressed[0]), 2e-4);
+  scree_world_free(world);
+  scree_mesh_free(&notch);
+  scree_particle_free(wedge);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(stacks_stand_right),
-                                     cmocka_unit_test(an_open_rim_is_passed),
-                                     cmocka_unit_test(turned_inside_out_holds),
-                                     cmocka_unit_test(what_lies_in_each_other_is_told),
-                                     cmocka_unit_test(a_grain_rests_on_a_slab),
-                                     cmocka_unit_test(blades_win_nothing),
-                                     cmocka_unit_test(what_is_pressed_too_deep_parts)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(stacks_stand_right),       cmocka_unit_test(an_open_rim_is_passed),
+      cmocka_unit_test(turned_inside_out_holds),  cmocka_unit_test(what_lies_in_each_other_is_told),
+      cmocka_unit_test(a_grain_rests_on_a_slab),  cmocka_unit_test(blades_win_nothing),
+      cmocka_unit_test(a_wedge_rests_in_a_notch), cmocka_unit_test(what_is_pressed_too_deep_parts)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -235,7 +235,6 @@ static void take_places(const scree_world *world, const scree_pair *pair, scree_
 
 /* What is to be found before the law. */
 static void ask(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
-  scratch->before.depenetrating = pair->depenetrating;
   scratch->before.was_depenetrating = pair->was_depenetrating;
   pair->was_depenetrating = false;
   scree_pair_ask_depths(world, pair, scratch);
@@ -245,8 +244,7 @@ static void ask(const scree_world *world, scree_pair *pair, scree_scratch *scrat
 static void apply_contact_law(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
                               scree_pair_work *work) {
   const scree_frame *relative = &scratch->relative;
-  const bool depenetrating = scratch->before.depenetrating,
-             was_depenetrating = scratch->before.was_depenetrating;
+  const bool pushed = scree_is_pushed(pair), was_depenetrating = scratch->before.was_depenetrating;
   if (pair->depenetrating)
     work->let_go = pair->contact.elastic + pair->substeps.elastic_since; /* of the last step */
   scratch->overlap_before = pair->contact.overlap;
@@ -258,7 +256,7 @@ static void apply_contact_law(const scree_world *world, scree_pair *pair, scree_
     work->let_go -= pair->contact.elastic; /* what the features feel anew was not loaded by work */
   if (!pair->touching) return;
   pair->book.kick = 0.5 * (scratch->drift + scratch->step);
-  work->begins_depenetration |= !depenetrating && pair->depenetrating;
+  work->begins_depenetration |= !pushed && scree_is_pushed(pair);
   const double half = 0.5 * scratch->drift, rest = 0.5 * pair->book.kick - half;
   work->dashpot = half * powers.dashpot;
   work->tangential = half * powers.tangential;

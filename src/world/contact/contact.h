@@ -9,6 +9,11 @@ static inline double scree_depenetration_speed(const scree_pair_law *law) {
   return law->limit / (passage_patience * law->contact_time);
 }
 
+/* Whether the two are on their way out of each other. */
+static inline bool scree_is_pushed(const scree_pair *pair) {
+  return pair->depenetrating && vec3_norm2(pair->apart.direction) > 0;
+}
+
 /* Whether there is anything to be found before the law. */
 static inline bool scree_asks_depths(const scree_depth_question *question) {
   return question->start || question->edges;

@@ -395,10 +395,13 @@ static scree_smooth_maximum felt_overlap(const scree_world *world, const scree_p
   return (scree_smooth_maximum){.cutoff = -pair->law.smoothing};
 }
 
-/* Bodies that part are apart here: once they are pushed, where their springs would hardly press. */
+/* Bodies that part are apart here: once they are pushed, where their springs would hardly press;
+ * before, where they are no deeper than their springs tell, up to the limit: so one is wedged in
+ * the other. */
 static double apart_depth(const scree_pair *pair) {
-  bool pushed = vec3_norm2(pair->apart.direction) > 0;
-  return pushed ? -apart_share * pair->law.reach : 0;
+  const double reach = pair->law.reach,
+               told = scree_min(pair->contact.overlap, pair->law.limit) - reach;
+  return scree_is_pushed(pair) ? -apart_share * reach : scree_max(0, told);
 }
 
 /* But for what they came in by since the last step, in which they were not seen. */
@@ -432,9 +435,8 @@ static double way_since(const scree_particle *a, const scree_scratch *scratch) {
 
 /* Bodies that part, and at `least` so deep, need no look. */
 static bool part_still(const scree_pair *pair, double least) {
-  bool pushed = vec3_norm2(pair->apart.direction) > 0;
-  return pair->depenetrating && pushed &&
-         least > (1 - depenetration_look_share) * pair->apart.found && least > 0;
+  return scree_is_pushed(pair) && least > (1 - depenetration_look_share) * pair->apart.found &&
+         least > 0;
 }
 
 void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
@@ -493,9 +495,12 @@ static void answer(const scree_world *world, scree_pair *pair, double start, dou
   pair->depth = pair->apart.found = depth;
   scratch->counters.depth_queries++;
   if (question->start) note_start(pair, pair->depth, work);
-  if (pair->depth <= question->claimed && question->claimed > 0) pair->depenetrating = true;
+  const bool misled = pair->depth <= question->claimed && question->claimed > 0;
+  if (misled) pair->depenetrating = true;
   if (!pair->depenetrating || !are_apart(world, pair, scratch)) return;
+  const bool pushed = scree_is_pushed(pair);
   pair->depenetrating = false;
+  if (!pushed && !misled) return; /* wedged */
   pair->was_depenetrating = true;
   pair->apart.direction = (vec3){0, 0, 0};
   start_anew(pair, scratch);

@@ -57,7 +57,7 @@ typedef struct scree_findings {
 typedef struct scree_pair_before {
   scree_list_state list;
   scree_pair_wrench wrench;
-  bool asleep, depenetrating, was_depenetrating;
+  bool asleep, was_depenetrating;
 } scree_pair_before;
 
 /* A pair in hand: where its lists and its bodies are, and what is found out about it in a step. A
