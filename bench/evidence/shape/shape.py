@@ -60,6 +60,7 @@ def scene(name, scan, description, friction, rolling, seed=1):
 
 def tower(scan, description, friction, rolling, seed):
     """Angle of the wedge below, packing, time until 40 are out, how many stay, processor time of a body and step."""
+    grain(scan, description)
     begun = processor_time()
     box = scene("tower", scan, description, friction, rolling, seed)
     box.run(until=0.7)
@@ -171,48 +172,52 @@ def predictions(what, path, scan, seeds, runs, descriptions):
 
 
 def compare(scan, path, *others):
-    """Errors of a scan's descriptions, description less truth, drawn 4,000 times."""
+    """Errors of a scan's descriptions, description less truth, drawn 4,000 times. A draw holds for all of them: the truth that two
+    descriptions are held against is the same in both."""
     rng, runs, tables = random.Random(1), grouped(path, scan, "friction", "rolling"), [grouped(other, scan, "way") for other in others]
-    scatter = {name: pooled(runs, name) for name in ("angle", "packing", "discharge", "stays")}
-    names = [(table, name, pooled(table, name)) for table, columns in zip(tables, (["run_out"], ["slope", "segregation"])) for name in columns
-             if any(len(rows) > 1 for rows in table.values())]  # one run of each tells no scatter
+    columns = [(runs, name) for name in ("angle", "packing", "discharge", "stays")]
+    columns += [(table, name) for table, names in zip(tables, (["run_out"], ["slope", "segregation"])) for name in names
+                if any(len(rows) > 1 for rows in table.values())]  # one run of each tells no scatter
+    first, noise = {}, {}
+    for table, name in columns:
+        for key, rows in table.items():
+            first[name, key] = mean([r[name] for r in rows])
+            noise[name, key] = pooled(table, name) / math.sqrt(len(rows))
+    draws = [{key: m + rng.gauss(0, noise[key]) for key, m in first.items()} for _ in range(4000)]
+    truth = {name: (TRUTH, *AS_TRUE) if table is runs else (TRUTH, "as true") for table, name in columns}
 
-    def drawn(rows, name, sd, draw):
-        return mean([r[name] for r in rows]) + (rng.gauss(0, sd / math.sqrt(len(rows))) if draw else 0)
-
-    def errors(description, way, draw):
-        rows, found = WAYS.get(way, [AS_TRUE]), {}
-        angles = [drawn(runs[key], "angle", scatter["angle"], draw) for key in [(TRUTH, *AS_TRUE), *((description, *row) for row in rows)]]
-        at = place(angles[1:], angles[0], True) if way in WAYS else None
-        for name in ("packing", "discharge", "stays"):
-            values = [drawn(runs[description, *row], name, scatter[name], draw) for row in rows]
-            found[name] = (along(values, at) if way in WAYS else values[0]) - drawn(runs[TRUTH, *AS_TRUE], name, scatter[name], draw)
-        for table, name, sd in names:
-            if (description, way) in table and (TRUTH, "as true") in table:
-                found[name] = drawn(table[description, way], name, sd, draw) - drawn(table[TRUTH, "as true"], name, sd, draw)
+    def errors(description, way, means):
+        keys, found = [(description, *row) for row in WAYS.get(way, [AS_TRUE])], {}
+        at = place([means["angle", key] for key in keys], means["angle", truth["angle"]], True) if way in WAYS else None
+        for table, name in columns[1:]:
+            if table is runs:
+                values = [means[name, key] for key in keys]
+                found[name] = (along(values, at) if at else values[0]) - means[name, truth[name]]
+            elif (description, way) in table and truth[name] in table:
+                found[name] = means[name, (description, way)] - means[name, truth[name]]
         return {name: e for name, e in found.items() if not math.isnan(e)}
 
     def score(found):
         return math.sqrt(mean([(e / MARGINS[name]) ** 2 for name, e in found.items()]))
 
-    base = [score(errors("recommended", "as true", True)) for _ in range(4000)]
+    base, bases = score(errors("recommended", "as true", first)), [score(errors("recommended", "as true", d)) for d in draws]
     for description in dict.fromkeys(key[0] for key in runs if key[0] != TRUTH):
         cost = mean([r["us"] for key, rows in runs.items() if key[0] == description for r in rows])
         for way, setting in fitted(runs, description).items():
             seeds = min(len(runs[description, *row]) for row in WAYS.get(way, [AS_TRUE]))
-            first, draws = errors(description, way, False), [errors(description, way, True) for _ in range(4000)]
-            for name in [*first, "all", "less recommended"]:
-                if name in first:
-                    value, many = first[name], [d[name] for d in draws if name in d]
+            told, drawn = errors(description, way, first), [errors(description, way, d) for d in draws]
+            for name in [*told, "all", "less recommended"]:
+                if name in told:
+                    value, many = told[name], [d[name] for d in drawn if name in d]
                 else:
-                    value, many = score(first), [score(d) for d in draws]
+                    value, many = score(told), [score(d) for d in drawn]
                     if name != "all":
-                        value, many = value - score(errors("recommended", "as true", False)), [a - b for a, b in zip(many, base)]
+                        value, many = value - base, [a - b for a, b in zip(many, bases)]
                 many.sort()
                 low, high = many[len(many) // 20], many[len(many) * 19 // 20]
                 margin = MARGINS.get(name, 0.0)
                 verdict = "right" if -margin < low and high < margin else "wrong" if high < -margin or low > margin else "open"
-                if name not in first:
+                if name not in told:
                     verdict = "" if name == "all" or low <= 0 <= high else "larger" if low > 0 else "smaller"
                 show(scan, description, way, *setting, cost, seeds, name, value, low, high, verdict)
 
