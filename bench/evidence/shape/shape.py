@@ -4,7 +4,7 @@ what was not fitted.
 
   shape.py tower TABLE.csv SCAN SEEDS DESCRIPTION...   heap, packing, discharge and what stays, by friction and rolling friction
   shape.py slope|drum TABLE.csv SCAN SEEDS TOWER.csv DESCRIPTION...   run-out; slope and segregation: as the truth is and as fitted
-  shape.py compare TOWER.csv SLOPE.csv DRUM.csv   what is fitted and the errors of what is not, as CSV
+  shape.py compare SLOPE.csv DRUM.csv TOWER.csv   what is fitted and the errors of what is not, as CSV
 
 SCAN is stone, device or boulder. SEEDS is a range as 2-4; tables get the rows that they lack. Descriptions: 4x (the truth), recommended,
 0.25x, 0.0625x, clump1 to clump50. Margins: ../margins.md. Environment: SCREE_DATA_DIR (stone and device, default ../shared/data),
@@ -171,7 +171,7 @@ def predictions(what, path, scan, seeds, runs, descriptions):
                     table.add(scan, description, way, seed, *setting, *name(scan, description, *setting, seed))
 
 
-def compare(scan, path, *others):
+def compare(scan, path, others):
     """Errors of a scan's descriptions, description less truth, drawn 4,000 times. A draw holds for all of them: the truth that two
     descriptions are held against is the same in both."""
     rng, runs, tables = random.Random(1), grouped(path, scan, "friction", "rolling"), [grouped(other, scan, "way") for other in others]
@@ -195,10 +195,12 @@ def compare(scan, path, *others):
                 found[name] = (along(values, at) if at else values[0]) - means[name, truth[name]]
             elif (description, way) in table and truth[name] in table:
                 found[name] = means[name, (description, way)] - means[name, truth[name]]
+        if not at:
+            found["angle"] = means["angle", keys[0]] - means["angle", truth["angle"]]  # told, and no part of the error
         return {name: e for name, e in found.items() if not math.isnan(e)}
 
     def score(found):
-        return math.sqrt(mean([(e / MARGINS[name]) ** 2 for name, e in found.items()]))
+        return math.sqrt(mean([(e / MARGINS[name]) ** 2 for name, e in found.items() if name in MARGINS]))
 
     base, bases = score(errors("recommended", "as true", first)), [score(errors("recommended", "as true", d)) for d in draws]
     for description in dict.fromkeys(key[0] for key in runs if key[0] != TRUTH):
@@ -217,8 +219,8 @@ def compare(scan, path, *others):
                 low, high = many[len(many) // 20], many[len(many) * 19 // 20]
                 margin = MARGINS.get(name, 0.0)
                 verdict = "right" if -margin < low and high < margin else "wrong" if high < -margin or low > margin else "open"
-                if name not in told:
-                    verdict = "" if name == "all" or low <= 0 <= high else "larger" if low > 0 else "smaller"
+                if name not in MARGINS:
+                    verdict = "" if name in ("all", "angle") or low <= 0 <= high else "larger" if low > 0 else "smaller"
                 show(scan, description, way, *setting, cost, seeds, name, value, low, high, verdict)
 
 
@@ -232,8 +234,9 @@ def main(verb, path, *words):
         return towers(path, words[0], span(words[1]), words[2:])
     if verb == "compare":
         show("scan", "description", "way", "friction", "rolling", "us", "seeds", "quantity", "error", "low", "high", "verdict")
-        for scan in dict.fromkeys(row["scan"] for row in read(path)):
-            compare(scan, path, *words)
+        for scan in dict.fromkeys(row["scan"] for row in read(words[-1])):
+            if any(row["scan"] == scan for row in read(words[0])):  # the drum comes last: a scan that got so far
+                compare(scan, words[-1], [path, *words[:-1]])
         return None
     return predictions(verb, path, words[0], span(words[1]), grouped(words[2], words[0], "friction", "rolling"), words[3:])
 
