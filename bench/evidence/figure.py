@@ -2,6 +2,7 @@
 import math
 
 COLOURS = ["#000000", "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#8c564b"]
+WIDTH, HEIGHT = 820, 400
 
 
 def ticks(low, high):
@@ -21,17 +22,32 @@ def distribution(values):
 
 def write(path, series, x_name, y_name, box=None):
     """series: name, points, which may have a label and an interval of y, and whether they are "line" or "points"; box: x and y from, to."""
-    width, height, left, bottom, top, right = 820, 400, 60, 50, 15, 195
+    if any(points for _, points, _ in series):
+        save(path, [axes(series, x_name, y_name, box)])
+
+
+def stack(path, panels, x_name, y_name, box):
+    """Panels one below the other on the same axes: a title, and series as above."""
+    save(path, [axes(series, x_name, f"{title}: {y_name}", box) for title, series in panels])
+
+
+def save(path, panels):
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT * len(panels)}" font-family="sans-serif" font-size="13">']
+    for k, lines in enumerate(panels):
+        out += lines if k == 0 else [f'<g transform="translate(0 {HEIGHT * k})">', *lines, "</g>"]
+    with open(path, "w") as file:
+        file.write("\n".join([*out, "</svg>"]) + "\n")
+
+
+def axes(series, x_name, y_name, box):
+    width, height, left, bottom, top, right = WIDTH, HEIGHT, 60, 50, 15, 195
     every = [p for _, points, _ in series for p in points]
-    if not every:
-        return
     x0, x1, y0, y1 = box or (min(p[0] for p in every), max(p[0] for p in every), min(p[1] for p in every), max(p[1] for p in every))
 
     def at(x, y):
         return (left + (x - x0) / (x1 - x0) * (width - left - right), height - bottom - (y - y0) / (y1 - y0) * (height - bottom - top))
 
-    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="13">',
-           f'<rect width="{width}" height="{height}" fill="white"/>',
+    out = [f'<rect width="{width}" height="{height}" fill="white"/>',
            f'<clipPath id="in"><rect x="{left}" y="{top}" width="{width - left - right}" height="{height - bottom - top}"/></clipPath>']
     for v in ticks(x0, x1):
         x, y = at(v, y0)
@@ -48,9 +64,10 @@ def write(path, series, x_name, y_name, box=None):
             out.append(f'<path d="M{way}" fill="none" stroke="{colour}" stroke-width="1.6" clip-path="url(#in)"/>')
         else:
             out += ['<circle cx="{:.1f}" cy="{:.1f}" r="3" fill="{}"/>'.format(*at(*p[:2]), colour) for p in points]
-            out += ['<text x="{:.1f}" y="{:.1f}" font-size="10">{}</text>'.format(at(*p[:2])[0] + 5, at(*p[:2])[1] + 3, p[2]) for p in points if len(p) > 2]
+            side, anchor = (-5, "end") if k == 0 else (5, "start")  # labels of the first series to the left, out of the others' way
+            out += ['<text x="{:.1f}" y="{:.1f}" font-size="10" text-anchor="{}">{}</text>'.format(at(*p[:2])[0] + side, at(*p[:2])[1] + 3, anchor, p[2])
+                    for p in points if len(p) > 2]
             out += ['<path d="M{:.1f} {:.1f}V{:.1f}" stroke="{}"/>'.format(*at(p[0], p[3]), at(p[0], p[4])[1], colour) for p in points if len(p) > 4]
         y = top + 16 + 17 * k
         out.append(f'<path d="M{width - right + 10} {y - 4}h18" stroke="{colour}" stroke-width="3"/><text x="{width - right + 34}" y="{y}">{name}</text>')
-    with open(path, "w") as file:
-        file.write("\n".join([*out, "</svg>"]) + "\n")
+    return out

@@ -7,7 +7,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "boulders"))
 from boulders import measured_rows  # noqa: E402
 from common import DATA, HERE, ROOT, read  # noqa: E402
 from compare import rockable, simulated  # noqa: E402
-from figure import distribution, write  # noqa: E402
+from figure import distribution, stack, write  # noqa: E402
 
 RESULTS, FIGURES = HERE / "results", ROOT / "docs" / "figures"
 
@@ -73,16 +73,18 @@ def bulk():
 
 def shape():
     table = RESULTS / "shape-compared.csv"
-    if table.exists():
-        most, series = 8.0, {name: [] for name in ("friction as true", "friction fitted", "rolling fitted at 0.25", "rolling fitted at 0.5")}
-        for r in read(table):
-            if r["quantity"] == "all":
-                way = list(series)[("as true", "friction", "rolling", "both").index(r["way"])]
-                error, label = float(r["error"]), {"clump1": "sphere", "0.0625x": "a sixteenth"}.get(r["description"], r["description"])
-                series[way].append((float(r["us"]), min(error, most), f"{label}: {error:.0f}" if error > most else label,
-                                    *(min(float(r[end]), most) for end in ("low", "high"))))
-        write(FIGURES / "shape-and-calibration.svg", [(name, points, "points") for name, points in series.items() if points],
-              "processor time of a body and step, us", "error of what was not fitted, margins", (0, 2.5, 0, 1.05 * most))
+    if not table.exists():
+        return
+    most, names, rows = 8.0, {"as true": "friction as true", "rolling": "rolling fitted at 0.5", "friction": "friction fitted"}, read(table)
+    panels = {row["scan"]: {way: [] for way in names} for row in rows}
+    for r in rows:
+        if r["quantity"] == "all":
+            error, label = float(r["error"]), {"clump1": "sphere", "0.25x": "a quarter", "0.0625x": "a sixteenth"}.get(r["description"], r["description"])
+            panels[r["scan"]][r["way"]].append((float(r["us"]), min(error, most), f"{label}: {error:.0f}" if error > most else label,
+                                                *(min(float(r[end]), most) for end in ("low", "high"))))
+    stack(FIGURES / "shape-and-calibration.svg", [(scan, [(names[way], points, "points") for way, points in series.items() if points])
+                                                  for scan, series in panels.items()],
+          "processor time of a body and step, us", "error of what was not fitted, margins", (0, 1.8, 0, 1.05 * most))
 
 
 if __name__ == "__main__":

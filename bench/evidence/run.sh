@@ -161,14 +161,18 @@ estimator() {
 }
 
 shape() {
-  local tower=$results/shape-tower.csv slope=$results/shape-slope.csv drum=$results/shape-drum.csv
+  local tower=$results/shape-tower.csv slope=$results/shape-slope.csv drum=$results/shape-drum.csv scan
   local descriptions=(4x recommended clump1 clump5 0.0625x clump20 0.25x clump50)
   [ -d "${SCREE_DATA_DIR:-$root/../shared/data}" ] || { echo "shape: skipped, there is no folder of scans (SCREE_DATA_DIR)" >&2 && return; }
-  piece "$here/shape/shape.py" tower "$tower" 2-4 "${descriptions[@]}"
-  [ "$stopped" ] && return
-  piece "$here/shape/shape.py" slope "$slope" 2-4 "$tower" "${descriptions[@]}"
-  piece "$here/shape/shape.py" drum "$drum" 2-4 "$tower" "${descriptions[@]}"
-  table "$results/shape-compared.csv" "$here/shape/shape.py" compare "$tower" "$slope" "$drum"
+  for scan in stone device boulder; do
+    [ $scan != boulder ] || [ -d "$SCREE_EVIDENCE_DIR/authume" ] || continue
+    piece "$here/shape/shape.py" tower "$tower" $scan 2-4 "${descriptions[@]}"
+    [ "$stopped" ] && return
+    piece "$here/shape/shape.py" slope "$slope" $scan 2-4 "$tower" "${descriptions[@]}"
+    piece "$here/shape/shape.py" drum "$drum" $scan 2-4 "$tower" "${descriptions[@]}"
+    [ "$stopped" ] && return
+  done
+  compared "$tower" "$results/shape-compared.csv" "$here/shape/shape.py" compare "$slope" "$drum"
 }
 
 for case in "$@"; do

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Does shape beat calibration? Cheaper descriptions of a stone, whose friction or rolling friction is fitted to the truth's heap, tell
+"""Does shape beat calibration? Cheaper descriptions of a scan, whose friction or rolling friction is fitted to the truth's heap, tell
 what was not fitted.
 
-  shape.py tower TABLE.csv SEEDS DESCRIPTION...   heap, packing, discharge and what stays, by friction and rolling friction
-  shape.py slope|drum TABLE.csv SEEDS TOWER.csv DESCRIPTION...   run-out; slope and segregation: as the truth is and as fitted
-  shape.py compare TOWER.csv SLOPE.csv DRUM.csv   what is fitted and the errors of what is not, as CSV
+  shape.py tower TABLE.csv SCAN SEEDS DESCRIPTION...   heap, packing, discharge and what stays, by friction and rolling friction
+  shape.py slope|drum TABLE.csv SCAN SEEDS TOWER.csv DESCRIPTION...   run-out; slope and segregation: as the truth is and as fitted
+  shape.py compare SLOPE.csv DRUM.csv TOWER.csv   what is fitted and the errors of what is not, as CSV
 
-SEEDS is a range as 2-4; tables get the rows that they lack. Descriptions: 4x (the truth), recommended, 0.25x, 0.0625x, clump1 to
-clump50. Margins: ../margins.md. Environment: SCREE_DATA_DIR (the stone's folder, default ../shared/data)."""
+SCAN is stone, device or boulder. SEEDS is a range as 2-4; tables get the rows that they lack. Descriptions: 4x (the truth), recommended,
+0.25x, 0.0625x, clump1 to clump50. Margins: ../margins.md. Environment: SCREE_DATA_DIR (stone and device, default ../shared/data),
+SCREE_EVIDENCE_DIR (the boulder)."""
 import math
 import os
 import pathlib
@@ -16,44 +17,52 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from common import ROOT, WORK, Table, deviation, library, mean, processor_time, read, run, show  # noqa: E402
+from common import DATA, ROOT, WORK, Table, deviation, library, mean, processor_time, read, run, show  # noqa: E402
 
-SCAN = pathlib.Path(os.environ.get("SCREE_DATA_DIR", ROOT.parent / "shared" / "data")) / "stone_073ac.ply"
+FOLDER = pathlib.Path(os.environ.get("SCREE_DATA_DIR", ROOT.parent / "shared" / "data"))
+SCANS = {"stone": FOLDER / "stone_073ac.ply", "device": FOLDER / "ycb_power_drill.obj", "boulder": DATA / "authume" / "SP3A.stl"}
+LEVELS = ("4x", "recommended", "0.25x", "0.0625x")
 TRUTH, FRICTION, D = "4x", 0.5, 0.02
 # Ways to fit: rows of friction and rolling friction, along which one of them grows.
-WAYS = {"friction": [(0.25, 0.0), (0.5, 0.0), (0.9, 0.0)], "rolling": [(0.25, 0.0), (0.25, 0.15), (0.25, 0.4)],
-        "both": [(0.5, 0.0), (0.5, 0.15), (0.5, 0.4)]}
-KEY = ["description", "friction", "rolling", "seed"]
+WAYS = {"rolling": [(0.5, 0.0), (0.5, 0.15), (0.5, 0.4)], "friction": [(0.25, 0.0), (0.5, 0.0), (0.9, 0.0)]}
+KEY = ["scan", "description", "friction", "rolling", "seed"]
 AS_TRUE = (FRICTION, 0.0)
 MARGINS = {"packing": 0.015, "discharge": 0.02, "stays": 4, "run_out": 0.05, "slope": 2, "segregation": 0.1}
 
 
-def grain(description):
-    """The file of a description, made once."""
-    path = WORK / "shape" / description / (SCAN.stem + (".csv" if description.startswith("clump") else ".stl"))
-    if not path.exists():
+def grain(scan, description):
+    """The file of a description, made once; the levels of a scan together, as its curve costs more than they do."""
+    name = SCANS[scan].stem + (".csv" if description.startswith("clump") else ".stl")
+    path = WORK / "shape" / scan / description / name
+    if path.exists():
+        return path
+    if description.startswith("clump"):
         path.parent.mkdir(parents=True, exist_ok=True)
-        if description.startswith("clump"):
-            run("clump", SCAN, "-n", description[5:], "-o", path.parent, "-q", "-f", "--threads", 1)
-        else:
-            mesh = library().load(str(SCAN)).repair()
-            curve = (mesh[0] if isinstance(mesh, tuple) else mesh).curve()
-            count = curve.choose().recommended.triangle_count * (1.0 if description == "recommended" else float(description[:-1]))
-            curve.mesh(curve.find(max(4, round(count)))).write(str(path))
+        run("clump", SCANS[scan], "-n", description[5:], "-o", path.parent, "-q", "-f", "--threads", 1)
+        return path
+    mesh = library().load(str(SCANS[scan]), "m").repair()
+    curve = (mesh[0] if isinstance(mesh, tuple) else mesh).curve()
+    recommended = curve.choose().recommended.triangle_count
+    for level in LEVELS:
+        count = recommended * (1.0 if level == "recommended" else float(level[:-1]))
+        file = WORK / "shape" / scan / level / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        curve.mesh(curve.find(max(4, round(count)))).write(str(file))
     return path
 
 
-def scene(name, description, friction, rolling, seed=1):
-    path = grain(description)
+def scene(name, scan, description, friction, rolling, seed=1):
+    path = grain(scan, description)
     file = path.with_name(f"{name}.yaml")
     file.write_text((HERE / file.name).read_text().replace("file: grain.stl", f"{'clump' if path.suffix == '.csv' else 'file'}: {path.name}"))
     return library().Scene(str(file), {"materials.grain.friction": friction, "materials.grain.rolling_friction": rolling, "seed": seed})
 
 
-def tower(description, friction, rolling, seed):
+def tower(scan, description, friction, rolling, seed):
     """Angle of the wedge below, packing, time until 40 are out, how many stay, processor time of a body and step."""
+    grain(scan, description)
     begun = processor_time()
-    box = scene("tower", description, friction, rolling, seed)
+    box = scene("tower", scan, description, friction, rolling, seed)
     box.run(until=0.7)
     heights = [p[2] for p in box.bodies().position.tolist()]
     packing = len(heights) * math.pi / 6 * D ** 3 / (0.16 * 0.1 * 2 * mean(heights))
@@ -72,22 +81,22 @@ def tower(description, friction, rolling, seed):
     return angle, packing, moment, len(at) - below, 1e6 * (processor_time() - begun) / (90 * box.world.step_count)
 
 
-def slope(description, friction, rolling, seed):
+def slope(scan, description, friction, rolling, seed):
     """How far 30 bodies, far from each other, run out from the foot: the mean and its standard error."""
     rng, rows = random.Random(seed), ["shape,size,x,y,z,qw,qx,qy,qz"]
     for k in range(30):
         turn = [rng.gauss(0, 1) for _ in range(4)]
         rows.append(f"grain,{D},-0.52,{0.2 * k},0.35," + ",".join(repr(q / math.hypot(*turn)) for q in turn))
-    (grain(description).parent / "bodies.csv").write_text("\n".join(rows) + "\n")
-    fall = scene("slope", description, friction, rolling)
+    (grain(scan, description).parent / "bodies.csv").write_text("\n".join(rows) + "\n")
+    fall = scene("slope", scan, description, friction, rolling)
     fall.run()
     ways = [p[0] for p in fall.bodies().position.tolist()]
     return mean(ways), deviation(ways) / math.sqrt(len(ways))
 
 
-def drum(description, friction, rolling, seed):
+def drum(scan, description, friction, rolling, seed):
     """Over three quarters of a turn, after a half: slope of the common centre; how much farther the large ones are from the axis."""
-    shell, slopes, apart = scene("drum", description, friction, rolling, seed), [], []
+    shell, slopes, apart = scene("drum", scan, description, friction, rolling, seed), [], []
     for k in range(31):
         shell.run(until=1.3 + 0.05 * k)
         bodies = shell.bodies()
@@ -99,24 +108,25 @@ def drum(description, friction, rolling, seed):
 
 
 def settings(description):
-    return [AS_TRUE] if description == TRUTH else sorted({row for rows in WAYS.values() for row in rows})
+    return [AS_TRUE] if description == TRUTH else list(dict.fromkeys(row for rows in WAYS.values() for row in rows))
 
 
-def towers(path, seeds, descriptions):
-    table = Table(path, [*KEY, "angle", "packing", "discharge", "stays", "us"], 4)
+def towers(path, scan, seeds, descriptions):
+    table = Table(path, [*KEY, "angle", "packing", "discharge", "stays", "us"], 5)
     for seed in seeds:
         for description in descriptions:
             for setting in settings(description):
-                if table.key((description, *setting, seed)) not in table.done:
-                    table.add(description, *setting, seed, *tower(description, *setting, seed))
+                if table.key((scan, description, *setting, seed)) not in table.done:
+                    table.add(scan, description, *setting, seed, *tower(scan, description, *setting, seed))
 
 
-def grouped(path, *names):
-    """Rows by description and way, or by description and setting."""
+def grouped(path, scan, *names):
+    """A scan's rows by description and way, or by description and setting."""
     groups = {}
     for row in read(path) if pathlib.Path(path).exists() else []:
-        key = (row["description"], *(row[n] if n == "way" else float(row[n]) for n in names))
-        groups.setdefault(key, []).append({k: float(v) for k, v in row.items() if k not in ("description", "way")})
+        if row["scan"] == scan:
+            key = (row["description"], *(row[n] if n == "way" else float(row[n]) for n in names))
+            groups.setdefault(key, []).append({k: float(v) for k, v in row.items() if k not in ("scan", "description", "way")})
     return groups
 
 
@@ -151,61 +161,67 @@ def fitted(runs, description):
     return found
 
 
-def predictions(what, path, seeds, runs, descriptions):
+def predictions(what, path, scan, seeds, runs, descriptions):
     name, names = {"slope": (slope, ["run_out", "error"]), "drum": (drum, ["slope", "segregation"])}[what]
-    table = Table(path, ["description", "way", "seed", "friction", "rolling", *names], 3)
+    table = Table(path, ["scan", "description", "way", "seed", "friction", "rolling", *names], 4)
     for seed in seeds:
         for description in descriptions:
             for way, setting in fitted(runs, description).items():
-                if table.key((description, way, seed)) not in table.done:
-                    table.add(description, way, seed, *setting, *name(description, *setting, seed))
+                if table.key((scan, description, way, seed)) not in table.done:
+                    table.add(scan, description, way, seed, *setting, *name(scan, description, *setting, seed))
 
 
-def compare(runs, *others):
-    """Errors, description less truth, drawn 4,000 times."""
-    rng, tables = random.Random(1), [grouped(path, "way") for path in others]
-    scatter = {name: pooled(runs, name) for name in ("angle", "packing", "discharge", "stays")}
-    names = [(table, name, pooled(table, name)) for table, columns in zip(tables, (["run_out"], ["slope", "segregation"])) for name in columns
-             if any(len(rows) > 1 for rows in table.values())]  # one run of each tells no scatter
+def compare(scan, path, others):
+    """Errors of a scan's descriptions, description less truth, drawn 4,000 times. A draw holds for all of them: the truth that two
+    descriptions are held against is the same in both."""
+    rng, runs, tables = random.Random(1), grouped(path, scan, "friction", "rolling"), [grouped(other, scan, "way") for other in others]
+    columns = [(runs, name) for name in ("angle", "packing", "discharge", "stays")]
+    columns += [(table, name) for table, names in zip(tables, (["run_out"], ["slope", "segregation"])) for name in names
+                if any(len(rows) > 1 for rows in table.values())]  # one run of each tells no scatter
+    first, noise = {}, {}
+    for table, name in columns:
+        for key, rows in table.items():
+            first[name, key] = mean([r[name] for r in rows])
+            noise[name, key] = pooled(table, name) / math.sqrt(len(rows))
+    draws = [{key: m + rng.gauss(0, noise[key]) for key, m in first.items()} for _ in range(4000)]
+    truth = {name: (TRUTH, *AS_TRUE) if table is runs else (TRUTH, "as true") for table, name in columns}
 
-    def drawn(rows, name, sd, draw):
-        return mean([r[name] for r in rows]) + (rng.gauss(0, sd / math.sqrt(len(rows))) if draw else 0)
-
-    def errors(description, way, draw):
-        rows, found = WAYS.get(way, [AS_TRUE]), {}
-        angles = [drawn(runs[key], "angle", scatter["angle"], draw) for key in [(TRUTH, *AS_TRUE), *((description, *row) for row in rows)]]
-        at = place(angles[1:], angles[0], True) if way in WAYS else None
-        for name in ("packing", "discharge", "stays"):
-            values = [drawn(runs[description, *row], name, scatter[name], draw) for row in rows]
-            found[name] = (along(values, at) if way in WAYS else values[0]) - drawn(runs[TRUTH, *AS_TRUE], name, scatter[name], draw)
-        for table, name, sd in names:
-            if (description, way) in table and (TRUTH, "as true") in table:
-                found[name] = drawn(table[description, way], name, sd, draw) - drawn(table[TRUTH, "as true"], name, sd, draw)
+    def errors(description, way, means):
+        keys, found = [(description, *row) for row in WAYS.get(way, [AS_TRUE])], {}
+        at = place([means["angle", key] for key in keys], means["angle", truth["angle"]], True) if way in WAYS else None
+        for table, name in columns[1:]:
+            if table is runs:
+                values = [means[name, key] for key in keys]
+                found[name] = (along(values, at) if at else values[0]) - means[name, truth[name]]
+            elif (description, way) in table and truth[name] in table:
+                found[name] = means[name, (description, way)] - means[name, truth[name]]
+        if not at:
+            found["angle"] = means["angle", keys[0]] - means["angle", truth["angle"]]  # told, and no part of the error
         return {name: e for name, e in found.items() if not math.isnan(e)}
 
     def score(found):
-        return math.sqrt(mean([(e / MARGINS[name]) ** 2 for name, e in found.items()]))
+        return math.sqrt(mean([(e / MARGINS[name]) ** 2 for name, e in found.items() if name in MARGINS]))
 
-    show("description", "way", "friction", "rolling", "us", "quantity", "error", "low", "high", "verdict")
-    base = [score(errors("recommended", "as true", True)) for _ in range(4000)]
+    base, bases = score(errors("recommended", "as true", first)), [score(errors("recommended", "as true", d)) for d in draws]
     for description in dict.fromkeys(key[0] for key in runs if key[0] != TRUTH):
         cost = mean([r["us"] for key, rows in runs.items() if key[0] == description for r in rows])
         for way, setting in fitted(runs, description).items():
-            first, draws = errors(description, way, False), [errors(description, way, True) for _ in range(4000)]
-            for name in [*first, "all", "less recommended"]:
-                if name in first:
-                    value, many = first[name], [d[name] for d in draws if name in d]
+            seeds = min(len(runs[description, *row]) for row in WAYS.get(way, [AS_TRUE]))
+            told, drawn = errors(description, way, first), [errors(description, way, d) for d in draws]
+            for name in [*told, "all", "less recommended"]:
+                if name in told:
+                    value, many = told[name], [d[name] for d in drawn if name in d]
                 else:
-                    value, many = score(first), [score(d) for d in draws]
+                    value, many = score(told), [score(d) for d in drawn]
                     if name != "all":
-                        value, many = value - score(errors("recommended", "as true", False)), [a - b for a, b in zip(many, base)]
+                        value, many = value - base, [a - b for a, b in zip(many, bases)]
                 many.sort()
                 low, high = many[len(many) // 20], many[len(many) * 19 // 20]
                 margin = MARGINS.get(name, 0.0)
                 verdict = "right" if -margin < low and high < margin else "wrong" if high < -margin or low > margin else "open"
-                if name not in first:
-                    verdict = "" if name == "all" or low <= 0 <= high else "larger" if low > 0 else "smaller"
-                show(description, way, *setting, cost, name, value, low, high, verdict)
+                if name not in MARGINS:
+                    verdict = "" if name in ("all", "angle") or low <= 0 <= high else "larger" if low > 0 else "smaller"
+                show(scan, description, way, *setting, cost, seeds, name, value, low, high, verdict)
 
 
 def span(word):
@@ -215,10 +231,14 @@ def span(word):
 
 def main(verb, path, *words):
     if verb == "tower":
-        return towers(path, span(words[0]), words[1:])
+        return towers(path, words[0], span(words[1]), words[2:])
     if verb == "compare":
-        return compare(grouped(path, "friction", "rolling"), *words)
-    return predictions(verb, path, span(words[0]), grouped(words[1], "friction", "rolling"), words[2:])
+        show("scan", "description", "way", "friction", "rolling", "us", "seeds", "quantity", "error", "low", "high", "verdict")
+        for scan in dict.fromkeys(row["scan"] for row in read(words[-1])):
+            if any(row["scan"] == scan for row in read(words[0])):  # the drum comes last: a scan that got so far
+                compare(scan, words[-1], [path, *words[:-1]])
+        return None
+    return predictions(verb, path, words[0], span(words[1]), grouped(words[2], words[0], "friction", "rolling"), words[3:])
 
 
 if __name__ == "__main__":
