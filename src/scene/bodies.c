@@ -40,7 +40,8 @@ static scree_status find_shape(const scree_named_table *t, const scree_scene *sc
     const char *family = scene->plan.families.items[s->family].place.name;
     double own = scene->shapes[i].particle->measures.size;
     double off = isnan(size) ? 0 : fabs(size - own) / own;
-    if ((name && strcmp(name, s->place.name) && strcmp(name, family)) || off >= nearest) continue;
+    if (name && strcmp(name, s->place.name) != 0 && strcmp(name, family) != 0) continue;
+    if (off >= nearest) continue;
     nearest = off;
     *index = i;
   }
