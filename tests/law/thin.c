@@ -338,6 +338,7 @@ static void a_wedge_rests_in_a_notch(void **state) {
       scree_observation o;
       scree_world_observe(world, &o);
       jammed = fmax(jammed, o.largest_overlap);
+      assert_int_equal(o.depenetrating_pairs, 0);
       assert_int_equal(o.depenetration_count, 0);
     }
     scree_world_get_body(world, index, &body);

@@ -223,10 +223,11 @@ static void fade(double spring, scree_contact_point *contact, load_sums *sums) {
   sums->normal.moment = vec3_add(sums->normal.moment, vec3_cross(contact->at, force));
 }
 
-/* Where the contacts hold the bodies against each other these are to part, from the next step on.
- * So they are where features alone cancel and the contact lasts, deeper than references count from:
- * the next step asks for the depth; not in a sheet, which has none, and between whose sides a body
- * may be wedged. And so they are where edges lie inside and are pressed beyond the overlap limit.
+/* Where the contacts hold the bodies against each other these are to part, from the next step on,
+ * unless its look at depths finds that one is wedged in the other. So they are where features alone
+ * cancel and the contact lasts, deeper than references count from: the next step asks for the
+ * depth; not in a sheet, which has none, and between whose sides a body may be wedged. And so they
+ * are where edges lie inside and are pressed beyond the overlap limit.
  */
 static void judge(const scree_world *world, scree_pair *pair, const scree_contact_list *contacts) {
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);

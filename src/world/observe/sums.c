@@ -2,6 +2,7 @@
  * the state is brought back to the last force evaluation: x_n = x - v dt, v_n = v - (F/m + g) dt/2.
  */
 #include "world/observe/sums.h"
+#include "world/contact/contact.h"
 #include "world/contact/spheres.h"
 #include "world/state/spin.h"
 
@@ -53,7 +54,7 @@ static void add_pair(const scree_world *world, const scree_pair *pair, scree_sum
   if (pair->substeps.followed && !pair->wall)
     add_motion_ahead(world, pair->b, vec3_neg(ahead->force), ahead->torque_b, sums);
   sums->pairs++;
-  sums->depenetrating += pair->depenetrating;
+  sums->depenetrating += scree_is_pushed(pair); /* not what is only suspected */
   sums->contacts += pair->contact.count;
   sums->body_sides += pair->wall ? 1 : 2;
 }
