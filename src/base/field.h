@@ -1,9 +1,9 @@
 /* A member of a struct as a row of a table, said once: what is read of files (schema.h), and what
  * is written to them, drawn and told.
  *
- *     static const scree_field rows[] = {SCREE_FIELD_OF(scree_clump, iou),
- *                                        SCREE_FIELD_AS(scree_clump, "to_mesh_mean",
- * to_mesh.mean)};
+ *     static const scree_field rows[] = {
+ *         SCREE_FIELD_OF(scree_clump, iou),
+ *         SCREE_FIELD_AS(scree_clump, "to_mesh_mean", to_mesh.mean)};
  *
  * A row takes its kind and size from the member, so that it cannot contradict the struct. */
 #pragma once

@@ -156,6 +156,13 @@ static void remove_made(const char *folder) {
   for (size_t i = 0; i < MADE_COUNT; i++) cli_remove_tree(SCREE_PATH_IN(folder, made[i]));
 }
 
+static void put_back(const char *folder) {
+  for (size_t i = 0; i < MADE_COUNT; i++)
+    (void)scree_path_rename(SCREE_PATH_IN(SCREE_PATH_IN(folder, ASIDE), made[i]),
+                            SCREE_PATH_IN(folder, made[i]));
+  (void)scree_folder_remove(SCREE_PATH_IN(folder, ASIDE));
+}
+
 /* Puts it aside until the new one has its shapes, unless somebody is at work on it. */
 static scree_status put_aside(const char *folder, scree_error *error) {
   SCREE_OWNED(scree_study, study);
@@ -172,15 +179,13 @@ static scree_status put_aside(const char *folder, scree_error *error) {
   for (size_t i = 0; i < MADE_COUNT; i++)
     if (scree_path_exists(SCREE_PATH_IN(folder, made[i])) &&
         !scree_path_rename(SCREE_PATH_IN(folder, made[i]),
-                           SCREE_PATH_IN(SCREE_PATH_IN(folder, ASIDE), made[i])))
-      return cli_refuse(error, SCREE_IO, SCREE_PATH_IN(folder, made[i]), strerror(errno));
+                           SCREE_PATH_IN(SCREE_PATH_IN(folder, ASIDE), made[i]))) {
+      scree_status status =
+          cli_refuse(error, SCREE_IO, SCREE_PATH_IN(folder, made[i]), strerror(errno));
+      put_back(folder);
+      return status;
+    }
   return SCREE_OK;
-}
-
-static void put_back(const char *folder) {
-  for (size_t i = 0; i < MADE_COUNT; i++)
-    (void)scree_path_rename(SCREE_PATH_IN(SCREE_PATH_IN(folder, ASIDE), made[i]),
-                            SCREE_PATH_IN(folder, made[i]));
 }
 
 /* What is wrong with a new study, or ends it before it has its shapes, costs no earlier run. */
@@ -188,17 +193,12 @@ static scree_status begin(const cli_call *call, scree_study *study, const char *
                           const scree_study_options *o, scree_error *error) {
   const study_arguments *a = call->options;
   const bool anew = a->overwrite && study_rank() == 0;
-  scree_status status = anew ? put_aside(folder, error) : SCREE_OK;
-  const bool may = status == SCREE_OK;
-  if (may) status = scree_study_open(study, folder, error);
+  if (anew) SCREE_TRY(put_aside(folder, error));
+  scree_status status = scree_study_open(study, folder, error);
   if (status == SCREE_OK) status = scree_study_prepare(study, o, call->progress, error);
-  if (!anew) return status;
-  if (status == SCREE_OK)
-    remove_made(SCREE_PATH_IN(folder, ASIDE));
-  else if (may && scree_path_exists(SCREE_PATH_IN(folder, ASIDE)))
-    remove_made(folder);
-  if (status != SCREE_OK) put_back(folder);
-  (void)scree_folder_remove(SCREE_PATH_IN(folder, ASIDE));
+  if (!anew || !scree_path_exists(SCREE_PATH_IN(folder, ASIDE))) return status;
+  remove_made(status == SCREE_OK ? SCREE_PATH_IN(folder, ASIDE) : folder);
+  put_back(folder); /* nothing, where the new one has taken its place */
   return status;
 }
 
